@@ -7,8 +7,8 @@
 
 namespace sg {
 
-/// One rank's view of the others. What is the same for all parts (a range, a sum, a count) comes from all_gather() alone, put together in the
-/// order of the ranks, so that all ranks compute the same bytes. A collective call: every rank makes it, in the same order.
+/// One rank's view of the others. Anything common to all parts (a range, a sum, a count) must come from all_gather(), combined in rank
+/// order, so that all ranks compute the same bytes. A collective call: every rank makes it, in the same order.
 class Communicator {
  public:
   virtual ~Communicator() = default;

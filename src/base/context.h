@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a running operation may ask of its surroundings: stop?, report, remember a note, how much memory.
+// What a running operation needs from its environment: cancellation, progress, notes, the memory limit.
 #pragma once
 #include <atomic>
 #include <cstddef>

@@ -83,10 +83,10 @@ std::string nearest_name(std::string_view name, std::span<const std::string> can
 }
 
 std::string unknown_name_hint(std::string_view name, std::span<const std::string> candidates) {
-  if (candidates.empty()) return "there are none";
+  if (candidates.empty()) return "none are available";
   std::string hint;
   if (std::string near = nearest_name(name, candidates); !near.empty()) hint = "did you mean '" + near + "'? ";
-  hint += "has: ";
+  hint += "available: ";
   constexpr size_t shown = 24;
   for (size_t i = 0; i < std::min(candidates.size(), shown); ++i) hint += (i ? ", " : "") + candidates[i];
   if (candidates.size() > shown) hint += ", ... (" + std::to_string(candidates.size()) + " in all)";

@@ -9,7 +9,7 @@
 
 namespace sg {
 
-/// Who has to act: the caller (usage), the owner of the file (data), us (internal), nobody (cancelled).
+/// Who has to act: the caller (usage), the owner of the file (data), the developers (internal), nobody (cancelled).
 enum class ErrorKind { usage, data, internal, cancelled };
 
 /// The one exception type. what() reads "where: problem; hint (while A, while B)".
@@ -51,10 +51,10 @@ decltype(auto) with_context(std::string_view doing, F&& f) {
   }
 }
 
-/// The candidate nearest to `name` (Damerau-Levenshtein, case ignored), or "" when none is close enough to be meant.
+/// The candidate nearest to `name` (Damerau-Levenshtein, case ignored), or "" when none is close enough.
 std::string nearest_name(std::string_view name, std::span<const std::string> candidates);
 
-/// Hint for an unknown name: "did you mean 'temperature'? has: temperature, pressure".
+/// Hint for an unknown name: "did you mean 'temperature'? available: temperature, pressure".
 std::string unknown_name_hint(std::string_view name, std::span<const std::string> candidates);
 
 }  // namespace sg

@@ -11,9 +11,9 @@ namespace sg {
 
 /// 64-byte aligned memory; from 4 MB on, on huge pages (a hint to the system). Throws std::bad_alloc.
 void* allocate_large(size_t bytes);
-/// `bytes` as asked for. Blocks of a megabyte and more may stay with the program for the next one of about that size.
+/// `bytes` as requested. Blocks of a megabyte and more may be kept for the next request of about that size.
 void free_large(void* p, size_t bytes) noexcept;
-/// How much may stay so; the default is 256 MB. Never more than half of what was in use at once.
+/// How much may be kept; the default is 256 MB. Never more than half of the peak use.
 void keep_freed_blocks(size_t bytes);
 
 template <class T>

@@ -6,7 +6,7 @@
 
 namespace sg {
 
-/// The nearest T (halves to even); the ends of T beyond them (those of 64 bits are no doubles), 0 for NaN. Without a check any of these
+/// The nearest T (halves to even); the ends of T beyond them (those of 64 bits are not doubles), 0 for NaN. Without a check any of these
 /// would be undefined behaviour.
 template <class T>
 T nearest_whole(double v) {

@@ -7,8 +7,8 @@
 
 namespace sg {
 
-/// Disjoint sets of 0 .. n-1. The smallest member is the root, so that roots do not depend on the order of joins. Several threads
-/// may join at once while none touches another's members: root() shortens paths.
+/// Disjoint sets of 0 .. n-1. The smallest member is the root, so that roots do not depend on the order of joins. Several threads may join
+/// concurrently as long as none touches another's members, since root() shortens paths.
 template <class Id = uint32_t>
 class UnionFind {
  public:

@@ -20,7 +20,7 @@ void cap_vector_width() {
   if (word == "avx2") hwy::DisableTargets(HWY_AVX2 - 1);
   else if (word == "baseline") hwy::DisableTargets(HWY_SSE4 - 1);
   else if (!word.empty())
-    fail_usage("'" + std::string(word) + "' is not a vector width", "SG_SIMD", "say avx2 or baseline, or leave it unset");
+    fail_usage("'" + std::string(word) + "' is not a vector width", "SG_SIMD", "use avx2 or baseline, or leave it unset");
 }
 
 std::string vector_target() {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// How wide the vectors are that this process computes with. Results never depend on it; SG_SIMD in the environment lets anyone check.
+// Vector width used by this process. Results never depend on it; SG_SIMD in the environment allows checking that.
 #pragma once
 #include <string>
 
 namespace sg {
 
-/// Caps the vector width as SG_SIMD says: `avx2` leaves out AVX-512, `baseline` AVX2 too (files that are not compiled for
+/// Caps the vector width as given by SG_SIMD: `avx2` leaves out AVX-512, `baseline` AVX2 too (files that are not compiled for
 /// SSE4 compute one lane at a time);
 /// unset or empty: no cap. Before the first vector code runs; not thread-safe. Throws Error(usage) for other words.
 void cap_vector_width();

@@ -26,7 +26,7 @@ struct Words {
   Words(const std::string& text, const char* option) {
     std::vector<std::string> all = quoted_words(text);
     if (all.size() > 1 && all[0].size() > 1 && all[0].back() == ':') label = all[0].substr(0, all[0].size() - 1), all.erase(all.begin());
-    if (all.empty()) fail_usage("is empty", option, "write a name and key=value words");
+    if (all.empty()) fail_usage("is empty", option, "write a name followed by key=value words");
     first = all[0];
     rest.assign(all.begin() + 1, all.end());
   }
@@ -85,7 +85,7 @@ class Chains {
       PipelineFile::Step step;
       step.operation = words.first;
       step.name = words.label.empty() ? fmt::format("{}_{}{}", base, words.first, i + 1) : fmt::format("{}_{}", base, words.label);
-      if (!words.label.empty() && names_.count(words.label)) fail_usage(fmt::format("'{}' names two steps", words.label), "-f");
+      if (!words.label.empty() && names_.count(words.label)) fail_usage(fmt::format("two steps are named '{}'", words.label), "-f");
       const std::string on = words.take_unless_own("on", [&](const std::string&name) { return names_.count(name) > 0; }),
                         with = words.take("with");
       if (!on.empty() || !with.empty()) step.from.push_back(on.empty() ? before : step_named(on, "-f " + words.first + " on"));
@@ -151,7 +151,7 @@ class Chains {
 
 PipelineFile pipeline_of(const Options& o) {
   if (o.inputs.empty() == o.source.empty())
-    fail_usage(o.inputs.empty() ? "name a file to read, or a source to compute with --source" : "name files or a --source, not both",
+    fail_usage(o.inputs.empty() ? "name a file to read, or a source to compute with --source" : "give files or a --source, not both",
                fmt::format("sightglass {}", word_of(o.command)), fmt::format("see: sightglass {} --help", word_of(o.command)));
   Chains chains(o);
   for (size_t i = 0; i < o.inputs.size(); ++i)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands on the command line as steps of a pipeline file.
+// The command line as steps of a pipeline file.
 #pragma once
 #include "cli/options.h"
 #include "pipeline/file/pipeline_file.h"
@@ -10,7 +10,7 @@ namespace sg {
 ///   NAME: before the operation   names the step
 ///   on=NAME                      takes that step in place of the one before: a name, "input" (what is read), or an operation of the chain
 ///   with=A,B                     further inputs: names as above, or files (patterns of series too)
-/// and in that of --show of=NAME. Throws Error(usage) for names that are none, with what would be right.
+/// and in that of --show of=NAME. Throws Error(usage) for unknown names, with what would be right.
 PipelineFile pipeline_of(const Options& o);
 
 }  // namespace sg

@@ -68,7 +68,7 @@ void catch_signals() {
   ::signal(SIGPIPE, SIG_IGN);
 }
 
-// Out of a pipe comes at most this much, unless --memory says more.
+// A pipe may deliver at most this much, unless --memory allows more.
 constexpr size_t most_piped = size_t(1) << 30;
 
 Options with_streams(Options o, const Context& context) {
@@ -78,7 +78,7 @@ Options with_streams(Options o, const Context& context) {
   return o;
 }
 
-// Messages go to stderr, so that stdout holds results alone.
+// Messages go to stderr, so that stdout has only results.
 void connect(Context& context, const Options& o) {
   context.memory_limit = o.memory;
   set_memory_limit(o.memory);
@@ -127,21 +127,21 @@ int cli_main(int argc, char** argv) {
     catch_signals();
     const int status = dispatch_command(with_streams(o, context), context);
     interruptible = nullptr;
-    check_files_unchanged();  // what was said on stdout
-    if (std::fflush(stdout) != 0) fail_data("standard output cannot be written");
+    check_files_unchanged();  // what was written to stdout
+    if (std::fflush(stdout) != 0) fail_data("cannot write to standard output");
     return status;
   } catch (const Error& e) {
     interruptible = nullptr;
-    // What an operation said of numbers that changed under it misleads.
+    // What an operation reported about numbers that changed meanwhile is misleading.
     const std::string changed = e.kind() == ErrorKind::cancelled ? "" : mapped_watch().changed(1);
     if (!changed.empty()) {
-      say_error("sightglass: " + changed + ": the file changed while it was read; read it again when it is written completely");
+      say_error("sightglass: " + changed + ": the file changed while it was being read; read it again once it has been written completely");
       return 3;
     }
     say_error(std::string("sightglass: ") + e.what());
     return e.kind() == ErrorKind::cancelled && stopped_by ? 128 + stopped_by : e.exit_code();
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "sightglass: not enough memory; state a smaller region or fewer fields\n");
+    std::fprintf(stderr, "sightglass: not enough memory; read a smaller region or fewer fields\n");
     return 3;
   } catch (const std::exception& e) {
     say_error(fmt::format("sightglass: internal error: {}; please report it with the command and the file", e.what()));

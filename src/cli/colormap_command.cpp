@@ -44,10 +44,10 @@ Image swatch(const Colormap& map, const LightnessReport& report) {
 std::string verdict(const Colormap& map, const LightnessReport& r) {
   switch (map.kind) {
     case MapKind::sequential:
-      return r.falls_float == 0 ? "lightness rises all the way: order is seen without a legend" : "lightness falls in places";
-    case MapKind::diverging: return "lightness rises to the middle and falls again: distance from the middle is seen";
-    case MapKind::cyclic: return "begins and ends alike: for angles and phases";
-    case MapKind::categorical: return "no order: one colour per label";
+      return r.falls_float == 0 ? "lightness rises throughout: order can be seen without a legend" : "lightness falls in places";
+    case MapKind::diverging: return "lightness rises to the middle and falls again: distance from the middle can be seen";
+    case MapKind::cyclic: return "starts and ends with the same colour: for angles and phases";
+    case MapKind::categorical: return "unordered: one colour per label";
     case MapKind::unsafe:
       return "lightness rises and falls along the map: it shows edges that are not in the data, and hides some that are";
   }
@@ -56,7 +56,7 @@ std::string verdict(const Colormap& map, const LightnessReport& r) {
 
 std::string hex_or_none(const std::optional<Vec3f>& c) { return c ? color_text(*c) : std::string("none"); }
 
-// What a file says beyond the colours, as JSON members or one line of text.
+// A file's data besides the colours, as JSON members or one line of text.
 std::string file_facts(const FileColormap& f, bool json) {
   if (json) {
     auto color = [](const std::optional<Vec3f>& c) { return c ? json_string(color_text(*c)) : std::string("null"); };
@@ -93,7 +93,7 @@ void list_file(const std::string& path, const std::vector<FileColormap>& maps, b
 int run_colormap(const Options& o, Context&) {
   if (o.inputs.empty()) {
     if (!o.output.empty())
-      fail_usage("which map is to be drawn?", "sightglass colormap", "name one: sightglass colormap sight -o sight.png");
+      fail_usage("no map given to draw", "sightglass colormap", "name one, e.g. sightglass colormap sight -o sight.png");
     std::string json = "{\"colormaps\":[";
     bool first = true;
     for (const Colormap& m : colormaps()) {
@@ -131,10 +131,10 @@ int run_colormap(const Options& o, Context&) {
       if (file) std::printf("  %s\n", printable(file_facts(*file, false)).c_str());
       const bool hinge_only = map.kind == MapKind::diverging && kind_of_colors(map) != MapKind::diverging;
       std::printf("  %s\n",
-                  hinge_only ? "two sides that meet at a value; lightness does not tell how far from it" : verdict(map, r).c_str());
+                  hinge_only ? "two sides that meet at a value; lightness does not show the distance from it" : verdict(map, r).c_str());
       std::printf("  lightness L* from %s to %s (CIELAB, D65)\n", short_number(r.lowest, 4).c_str(), short_number(r.highest, 4).c_str());
       std::printf("  L* falls in %d of 255 steps (%d after rounding the colours to 8 bits)\n", r.falls_float, r.falls_8bit);
-      std::printf("  colour difference per unit of position: %s at most, %s at least (CIEDE2000)\n", short_number(r.steepest, 4).c_str(),
+      std::printf("  colour difference per unit of position: from %s down to %s (CIEDE2000)\n", short_number(r.steepest, 4).c_str(),
                   short_number(r.flattest, 4).c_str());
       std::printf("  first %s, middle %s, last %s\n", color_text(map.at(0)).c_str(), color_text(map.at(0.5)).c_str(),
                   color_text(map.at(1)).c_str());

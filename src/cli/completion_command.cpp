@@ -26,7 +26,7 @@ Candidates colormap_candidates() {
   return all;
 }
 
-// What may stand behind "name=", the last element of a list.
+// What may follow "name=", the last element of a list.
 Candidates values_of(const ParamDecl& d) {
   if (d.name == "map") return colormap_candidates();
   Candidates all = d.choices_;
@@ -88,7 +88,7 @@ Candidates show_candidates(const std::string& text) {
   });
 }
 
-// Words of one group of parameters, like those of --camera, where `names` may stand alone.
+// Words of one group of parameters, like those of --camera, where `names` may be given alone.
 template <class P>
 Candidates group_candidates(const std::string& text, const std::vector<std::string>& names) {
   const size_t blank = text.find_last_of(' ');

@@ -38,7 +38,7 @@ std::vector<Demo> demos() {
        {"gradient", "magnitude", "contour values=0"},
        {"surface"}},
       {"tangle",
-       "three nested surfaces of the tangle cube, seen through each other",
+       "three nested translucent surfaces of the tangle cube",
        "tangle size=80",
        {"contour values=-4,0,6"},
        {"surface field='contour value' opacity=0.45"}},
@@ -102,7 +102,7 @@ void make_folders(const std::string& path) {
     at = path.find('/', at + 1);
     const std::string part = path.substr(0, at);
     struct stat st {};
-    if (!part.empty() && ::stat(part.c_str(), &st) != 0 && ::mkdir(part.c_str(), 0777) != 0) fail_data("the folder cannot be made", part);
+    if (!part.empty() && ::stat(part.c_str(), &st) != 0 && ::mkdir(part.c_str(), 0777) != 0) fail_data("cannot create the folder", part);
   }
 }
 
@@ -133,7 +133,7 @@ void find_files(const std::string& folder, std::vector<std::string>& found) {
   }
 }
 
-// Why a file of a folder is passed over: it is a table or a colour map, which no picture shows as it stands. Broken files are not.
+// Why a file of a folder is passed over: it is a table or a colour map, which cannot be drawn directly. Broken files are not.
 std::optional<std::string> why_skipped(const std::string& path) {
   const std::string ext = extension_of(path);
   if (ext != "csv" && ext != "tsv" && ext != "txt" && ext != "json" && ext != "gml") return {};
@@ -145,7 +145,7 @@ std::optional<std::string> why_skipped(const std::string& path) {
     Context quiet;
     bool any = false;
     for_each_dataset(read_data(path, {}, quiet), [&](const std::string&, const DatasetPtr&) { any = true; });
-    return any ? std::nullopt : std::optional<std::string>("a table; table_to_points makes points of its rows");
+    return any ? std::nullopt : std::optional<std::string>("a table; table_to_points turns its rows into points");
   } catch (const Error&) {
     return {};
   }
@@ -191,7 +191,7 @@ int sheet_of_folder(const Options& o, Context& context) {
     if (!o.quiet) std::printf("%s\n", path.c_str());
   }
   if (!o.quiet) std::printf("%zu files, %zu refused, %zu skipped\n", files.size(), failed, skipped);
-  if (pictures.empty()) fail_data("holds no file that can be drawn", o.inputs[0]);
+  if (pictures.empty()) fail_data("contains no file that can be drawn", o.inputs[0]);
   return 0;
 }
 
@@ -199,7 +199,8 @@ int sheet_of_folder(const Options& o, Context& context) {
 
 int run_demo(const Options& o, Context& context) {
   if (!o.inputs.empty()) {
-    if (o.sheet.empty()) fail_usage("name the sheet to write", "sightglass demo", "like: sightglass demo FOLDER --sheet sheet.png");
+    if (o.sheet.empty())
+      fail_usage("no sheet to write was given", "sightglass demo", "write e.g. sightglass demo FOLDER --sheet sheet.png");
     return sheet_of_folder(o, context);
   }
   const std::string folder = o.output.empty() ? "out" : o.output;
@@ -216,7 +217,7 @@ int run_demo(const Options& o, Context& context) {
     if (!o.sheet.empty()) pictures.push_back({std::move(p.image), fmt::format("{}: {}", d.name, d.sentence)});
   }
   if (!o.sheet.empty()) write_image(o.sheet, contact_sheet(pictures, 3, 560));
-  if (!o.quiet) std::printf("Each picture can be made again from itself: sightglass open %s/gyroid.png\n", folder.c_str());
+  if (!o.quiet) std::printf("Each picture can be remade from the recipe stored in it: sightglass open %s/gyroid.png\n", folder.c_str());
   return 0;
 }
 

@@ -222,7 +222,7 @@ void add_parts(const Data& data, const std::string& name, const std::string& pat
 std::string info_text(const Data& data, const std::string& name, bool quick, const std::vector<double>& times) {
   std::string r;
   add_parts(data, name, "", quick, r);
-  return (r.empty() ? printable(name) + "\n  nothing in it\n" : r) + times_text(times);
+  return (r.empty() ? printable(name) + "\n  empty\n" : r) + times_text(times);
 }
 
 std::string series_json(const SeriesRange& range, const std::vector<double>& times) {

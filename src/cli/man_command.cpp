@@ -12,7 +12,7 @@ namespace sg {
 
 namespace {
 
-// Text that troff takes as it stands.
+// Text escaped for troff.
 std::string plain(std::string_view text) {
   std::string r;
   for (const char c : text) {
@@ -48,7 +48,7 @@ bool has_flag(const CommandDoc& command, const FlagDoc& flag) {
 }
 
 std::string commands_text(const std::vector<CommandDoc>& commands) {
-  // What all commands take is told once.
+  // Options common to all commands are listed once.
   const auto common = [&](const FlagDoc& f) {
     return std::all_of(commands.begin(), commands.end(), [&](const CommandDoc& c) { return has_flag(c, f); });
   };
@@ -58,7 +58,7 @@ std::string commands_text(const std::vector<CommandDoc>& commands) {
     for (const FlagDoc& f : c.flags)
       if (!common(f)) r += entry(names_of(f), f.doc);
   }
-  r += ".SH OPTIONS OF EVERY COMMAND\n";
+  r += ".SH COMMON OPTIONS\n";
   for (const FlagDoc& f : commands.front().flags)
     if (common(f)) r += entry(names_of(f), f.doc);
   return r;
@@ -69,14 +69,14 @@ std::string operations_text() {
   for (const Operation& o : operations())
     if (std::find(families.begin(), families.end(), o.family) == families.end()) families.push_back(o.family);
   std::string r =
-      ".SH OPERATIONS\nSources (\\-\\-source) compute data, the others (\\-f) change it;\n.B sightglass ops NAME\n"
+      ".SH OPERATIONS\nSources (\\-\\-source) compute data, the others (\\-f) process it;\n.B sightglass ops NAME\n"
       "lists the parameters of each with units, ranges and choices.\n";
   for (const std::string_view family : families) {
     r += ".SS " + plain(family) + "\n";
     for (const Operation& o : operations())
       if (o.family == family) r += entry(plain(o.name), o.sentence);
   }
-  r += ".SH WAYS TO SHOW\nWhat \\-\\-show takes.\n";
+  r += ".SH WAYS TO SHOW\nArguments of \\-\\-show.\n";
   for (const ShowKind& k : show_kinds()) r += entry(plain(k.name), k.sentence);
   return r;
 }
@@ -85,19 +85,19 @@ std::string operations_text() {
 
 int run_man(const Options&, Context&) {
   std::string r = ".\\\" Made by `sightglass man`.\n.TH SIGHTGLASS 1 \"\" \"Sightglass " SG_VERSION "\" \"User Commands\"\n";
-  r += ".SH NAME\nsightglass \\- pictures from the numbers of simulations and scanners\n.SH SYNOPSIS\n";
+  r += ".SH NAME\nsightglass \\- render simulation and scanner data\n.SH SYNOPSIS\n";
   const std::vector<CommandDoc> commands = command_docs();
   for (const CommandDoc& c : commands)
     r += ".B sightglass " + plain(c.name) + "\n[\\fIoptions\\fR]" +
          (c.input.empty() ? std::string() : " \\fI" + (c.words.empty() ? "input" : plain("name")) + "\\fR") + "\n.br\n";
-  r += ".SH DESCRIPTION\nReads meshes and images, filters them, and renders surfaces and volumes with legends, axes and units. Without\n"
-       "options it looks at the data, chooses, and says on one line what it chose and why. Every PNG carries its recipe, which\n"
+  r += ".SH DESCRIPTION\nReads meshes and images, filters them, and renders surfaces and volumes with legends, axes and units. Whatever\n"
+       "is not specified is chosen from the data, and one line says what was chosen and why. Every PNG contains its recipe, which\n"
        ".B sightglass open\nfollows. The same input gives the same bytes on any number of threads.\n";
   r += commands_text(commands) + operations_text();
   r += ".SH EXIT STATUS\n0 done, 2 usage, 3 data, 4 internal; 130, 143 and 129 when stopped by SIGINT, SIGTERM and SIGHUP.\n";
   r += ".SH ENVIRONMENT\n";
   r += entry("SIGHTGLASS_PLUGINS",
-             "The one folder where plug-ins (readers with large libraries) are looked for; else those of the installation.");
+             "The only folder to search for plug-ins (readers that need large libraries); default: those of the installation.");
   r += ".SH EXAMPLES\n.nf\n" +
        plain(
            "sightglass render head.mhd -o head.png\n"

@@ -36,13 +36,13 @@ std::string overview(const std::vector<CatalogEntry>& all) {
       case EntryKind::film: others += line; break;
     }
   }
-  return ops_help() + shows + others + "\nformats that are read\n" + formats_line(all, EntryKind::reader) + "\nformats that are written\n" +
-         formats_line(all, EntryKind::writer) + "\nsightglass ops NAME lists the parameters of one.\n";
+  return ops_help() + shows + others + "\nreadable formats\n" + formats_line(all, EntryKind::reader) + "\nwritable formats\n" +
+         formats_line(all, EntryKind::writer) + "\nsightglass ops NAME lists its parameters.\n";
 }
 
 std::string explained(const CatalogEntry& e) {
   const std::string params = params_help(e.schema);
-  return fmt::format("{}: {}\n{}{}", e.name, e.sentence, params.empty() ? "  It has no parameters.\n" : params,
+  return fmt::format("{}: {}\n{}{}", e.name, e.sentence, params.empty() ? "  No parameters.\n" : params,
                      e.operation ? words_help(*e.operation) : "");
 }
 

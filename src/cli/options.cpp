@@ -29,7 +29,7 @@ struct FlagName {
   std::string_view param, flag, about = {};  // about: of a switch
 };
 constexpr FlagName reading_flags[] = {{"times", "series-times"}, {"big_endian", ""}, {"piece", ""}, {"pieces", ""}, {"ghost_levels", ""}};
-constexpr FlagName writing_flags[] = {{"binary", "!ascii", "Numbers as text."}};
+constexpr FlagName writing_flags[] = {{"binary", "!ascii", "Write numbers as text."}};
 
 std::string flag_of(std::string_view param, std::span<const FlagName> names) {
   for (const FlagName& n : names)
@@ -68,15 +68,15 @@ std::string doc_of(std::string_view param) {
 
 void add_common(CLI::App& a, Options& o, RawText& raw) {
   a.add_option("--threads", o.threads, "Worker threads; 0 = all cores");
-  a.add_option("--memory", raw.memory, "Memory to stay within, like 2G");
+  a.add_option("--memory", raw.memory, "Memory limit, e.g. 2G");
   a.add_flag("--quiet,-q", o.quiet, "Print errors only");
-  a.add_flag("--verbose,-v", o.verbose, "Print what is done, step by step");
+  a.add_flag("--verbose,-v", o.verbose, "Print each step as it is done");
   a.add_flag("--read-anywhere", o.read_anywhere,
-             "Files and recipes may name files anywhere, not only below their own folder and the working folder");
+             "Let files and recipes name files anywhere, not only below their own folder and the working folder");
 }
 
 void add_reading(CLI::App& a, Options& o, RawText& raw) {
-  // The declarations bound to what is read, under the names of the flags, so that mistakes are told by these.
+  // The declarations bound to the read options, under the names of the flags, so that errors use these names.
   const auto schema = std::make_shared<Schema>(schema_of(o.read));
   for (ParamDecl& d : schema->decls()) {
     const std::string flag = flag_of(d.name, reading_flags);
@@ -84,8 +84,8 @@ void add_reading(CLI::App& a, Options& o, RawText& raw) {
     d.name = "--" + flag;
     add_flag(a, d, flag, d.doc, [schema, name = d.name](const std::string& text) { set_param(*schema, name, text, ""); });
   }
-  a.add_flag("--series", o.series, "The files are one series in time (like 'flow_*.vtk' in quotes, or flow_{n}.vtk, which need no flag)");
-  a.add_option("--piece", raw.piece, "Read one piece of several, like 0/4, or 0/4/1 with a layer of ghost cells");
+  a.add_flag("--series", o.series, "Treat the files as one time series ('flow_*.vtk' in quotes and flow_{n}.vtk need no flag)");
+  a.add_option("--piece", raw.piece, "Read one piece of several, e.g. 0/4, or 0/4/1 with one layer of ghost cells");
   a.add_option_function<std::string>(
        "--endian", [&o](const std::string& order) { o.read.raw_big_endian = order == "big"; }, "Raw bricks: byte order")
       ->check(CLI::IsMember({"little", "big"}));
@@ -122,12 +122,12 @@ void add_writing(CLI::App& a, Options& o) {
 void add_pipeline(CLI::App& a, Options& o) {
   a.add_option(
        "-f,--filter", o.filters,
-       "An operation and its parameters: 'contour field=T values=300,400'; may be repeated, they chain. with=FILE: a further input, or a "
-       "step of the chain by its operation or by the name in front ('seeds: topology_seeds'); on=STEP: that one instead of the step "
-       "before; 'input' is what is read (calc on=cell: on its cells, unless a step has that name)")
+       "An operation and its parameters, e.g. 'contour field=T values=300,400'; repeat to chain operations. with=X adds a further input: a "
+       "file, or a step of the chain by its operation or its name ('seeds: topology_seeds' names a step). on=STEP takes that step as input "
+       "instead of the previous one; 'input' is the data read (calc on=cell: its cells, unless a step has that name)")
       ->allow_extra_args(false);
-  a.add_option("-s,--source", o.source, "Compute the data instead of reading a file: 'gyroid size=128'");
-  a.add_flag("--explain", o.explain, "Print the plan and what it will cost, run nothing");
+  a.add_option("-s,--source", o.source, "Compute the data instead of reading a file, e.g. 'gyroid size=128'");
+  a.add_flag("--explain", o.explain, "Print the plan and its estimated cost without running it");
 }
 
 void add_film(CLI::App& a, Options& o) {
@@ -147,25 +147,29 @@ void add_film(CLI::App& a, Options& o) {
 
 void add_size(CLI::App& a, Options& o) { a.add_option("--size", o.size, doc_of<PictureParams>("size")); }
 
-void add_output(CLI::App& a, Options& o) { a.add_option("-o,--output", o.output, doc_of<FilmParams>("output") + " Or .png, .jpg, .webp."); }
+void add_output(CLI::App& a, Options& o) {
+  a.add_option("-o,--output", o.output, doc_of<FilmParams>("output") + " Still pictures: .png, .jpg, .webp.");
+}
 
 void add_picture(CLI::App& a, Options& o, RawText& raw) {
-  a.add_option("--show", o.shows, "How to show it: 'surface|volume|lines|points|labels|outline key=value ...'; may be repeated")
+  a.add_option("--show", o.shows,
+               "How to show the data: 'surface|volume|lines|points|labels|glyphs|outline key=value ...'; may be repeated")
       ->allow_extra_args(false);
   a.add_option("--field", o.field, doc_of<ColoringParams>("field"));
   a.add_option("--map", o.map, doc_of<ColoringParams>("map"));
   a.add_option("--scale", o.scale, doc_of<ColoringParams>("scale"));
-  a.add_option("--camera", o.camera, "'top', 'front', 'iso', or key=value words: 'azimuth=30 elevation=10 zoom=1.5'");
+  a.add_option("--camera", o.camera,
+               "A named view ('top', 'front', 'iso', ...) or key=value words, e.g. 'azimuth=30 elevation=10 zoom=1.5'");
   add_size(a, o);
   a.add_option("--title", o.title, doc_of<PictureParams>("title"));
   a.add_option("--background", o.background, doc_of<PictureParams>("background"));
-  a.add_option("--picture", o.picture, "Further key=value of the picture (see: sightglass ops picture)")->allow_extra_args(false);
+  a.add_option("--picture", o.picture, "Further picture parameters as key=value (see: sightglass ops picture)")->allow_extra_args(false);
   add_film(a, o);
   a.add_flag("--progressive", o.progressive,
-             "Volumes that memory does not hold: write a coarse picture at once, and finer ones in its place until it is the final one");
+             "Volumes larger than memory: write a coarse picture at once, then replace it by finer ones up to the final one");
   a.add_option(
       "--within", raw.within,
-      "Volumes that memory does not hold: the best picture that is ready after this time, like 2s or 500ms, with its level and error");
+      "Volumes larger than memory: write the best picture ready after this time, e.g. 2s or 500ms, and report its level and error");
   add_output(a, o);
 }
 
@@ -181,33 +185,33 @@ std::vector<size_t> whole_numbers(const std::string& text, char separator, const
 
 void finish_raw(const RawText& raw, Options& o) {
   if (!raw.piece.empty()) {
-    const auto n = whole_numbers(raw.piece, '/', "--piece", "like 0/4");
+    const auto n = whole_numbers(raw.piece, '/', "--piece", "write e.g. 0/4");
     if (n.size() < 2 || n.size() > 3 || n[0] >= n[1] || n[1] > 1000000 || (n.size() == 3 && n[2] > 1000))
-      fail_usage(fmt::format("'{}' is not a piece of several", raw.piece), "--piece", "like 0/4: pieces count from 0");
+      fail_usage(fmt::format("'{}' is not a piece of several", raw.piece), "--piece", "write e.g. 0/4; pieces count from 0");
     o.read.piece = int(n[0]), o.read.pieces = int(n[1]), o.read.ghost_levels = n.size() == 3 ? int(n[2]) : 0;
   }
   if (!o.read.raw_type.empty() && o.read.raw_dims[0] == 0)
-    fail_usage("--type describes a raw brick, whose size is missing", "--dims", "like --dims 256,256,128");
+    fail_usage("--type describes a raw brick, but its size is missing", "--dims", "add e.g. --dims 256,256,128");
   check(o.read);
   if (o.threads < 0 || o.threads > 4096)
-    fail_usage(fmt::format("{} is no number of threads", o.threads), "--threads", "from 0 (all cores) to 4096");
+    fail_usage(fmt::format("{} is not a valid number of threads", o.threads), "--threads", "give 0 (all cores) to 4096");
   if (!raw.within.empty()) {
     std::string_view number = raw.within;
     const double unit = number.ends_with("ms") ? 1e-3 : 1;
     number.remove_suffix(number.ends_with("ms") ? 2 : number.ends_with('s') ? 1 : 0);
     const auto time = parse_double(number);
     if (!time || !(*time > 0) || !std::isfinite(*time))
-      fail_usage(fmt::format("'{}' is no time", raw.within), "--within", "like 2s or 500ms");
+      fail_usage(fmt::format("'{}' is not a valid time", raw.within), "--within", "write e.g. 2s or 500ms");
     o.within = *time * unit;
   }
   if (!raw.memory.empty()) {
     const auto bytes = parse_bytes(raw.memory);
-    if (!bytes || *bytes == 0) fail_usage(fmt::format("'{}' is not an amount of memory", raw.memory), "--memory", "like 512M or 2G");
+    if (!bytes || *bytes == 0) fail_usage(fmt::format("'{}' is not an amount of memory", raw.memory), "--memory", "write e.g. 512M or 2G");
     o.memory = size_t(*bytes);
   }
 }
 
-// CLI11 says "The following argument was not expected: --sise"; say what was meant.
+// CLI11 says "The following argument was not expected: --sise"; suggest what was meant.
 [[noreturn]] void fail_unknown(const CLI::App& command, const CLI::ParseError& e) {
   const std::string text = e.what();
   const size_t at = text.find(": ");
@@ -226,19 +230,19 @@ void finish_raw(const RawText& raw, Options& o) {
 }
 
 const char* const overview =
-    "Sightglass: from the numbers of simulations and scanners to pictures that can be trusted.\n\n"
-    "  sightglass render IN... [-f 'OP key=value ...']... [--show 'surface|volume|lines|points|labels|outline key=value ...']...\n"
-    "             [--camera ...] [--size 1920x1080] [-o OUT.png]      a picture; without options it looks at the data and chooses\n"
-    "  sightglass info IN [--json] [--quick] [--all-times]           what is in a file\n"
-    "  sightglass convert IN [-f ...]... -o OUT.vtu                  filter and write data\n"
+    "Sightglass: trustworthy pictures from simulation and scanner data.\n\n"
+    "  sightglass render IN... [-f 'OP key=value ...']... [--show 'surface|volume|lines|points|labels|glyphs|outline key=value ...']...\n"
+    "             [--camera ...] [--size 1920x1080] [-o OUT.png]      render a picture; anything left open is chosen from the data\n"
+    "  sightglass info IN [--json] [--quick] [--all-times]           describe what is in a file\n"
+    "  sightglass convert IN [-f ...]... -o OUT.vtu                  filter data and write it to another file\n"
     "  sightglass run PIPELINE.yaml                                  run a pipeline file\n"
-    "  sightglass open PICTURE.png                                   make a picture again from the recipe inside it\n"
-    "  sightglass ops [NAME] [--json]                                operations and their parameters\n"
-    "  sightglass colormap [NAME or FILE[:NAME]]                 colour maps and their lightness analysis\n"
-    "  sightglass demo                                               some pictures of what it can do, into out/\n"
-    "  sightglass completions bash|zsh|fish                          completion of commands, operations and parameters for a shell\n"
-    "  sightglass man                                                the manual page: sightglass man | man -l -\n\n"
-    "Each command has --help. Exit codes: 0 done, 2 usage, 3 data, 4 internal.\n";
+    "  sightglass open PICTURE.png                                   remake a picture from the recipe stored in it\n"
+    "  sightglass ops [NAME] [--json]                                list operations and their parameters\n"
+    "  sightglass colormap [NAME or FILE[:NAME]]                     list colour maps and analyse their lightness\n"
+    "  sightglass demo                                               render sample pictures into out/\n"
+    "  sightglass completions bash|zsh|fish                          print a shell's completion script\n"
+    "  sightglass man                                                print the manual page: sightglass man | man -l -\n\n"
+    "Every command takes --help. Exit codes: 0 done, 2 usage, 3 data, 4 internal.\n";
 
 void declare_render(CLI::App& a, Options& o, RawText& raw) {
   a.add_option("input", o.inputs, "Files to read");
@@ -247,10 +251,10 @@ void declare_render(CLI::App& a, Options& o, RawText& raw) {
 
 void declare_info(CLI::App& a, Options& o, RawText& raw) {
   a.add_option("input", o.inputs, "Files to read");
-  a.add_flag("--json", o.json, "For programs");
+  a.add_flag("--json", o.json, "Print JSON, for programs");
   add_pipeline(a, o);
-  a.add_flag("--quick", o.quick, "Without ranges: touches no value");
-  a.add_flag("--all-times", o.all_times, "Ranges over all steps of a series, one step in memory at a time");
+  a.add_flag("--quick", o.quick, "Leave out ranges and read no values");
+  a.add_flag("--all-times", o.all_times, "Give ranges over all steps of a series, with one step in memory at a time");
   add_reading(a, o, raw);
 }
 
@@ -264,32 +268,32 @@ void declare_convert(CLI::App& a, Options& o, RawText& raw) {
 void declare_run(CLI::App& a, Options& o, RawText&) {
   a.add_option("input", o.inputs, "Pipeline file (YAML)")->required();
   add_output(a, o), add_size(a, o), add_film(a, o);
-  a.add_flag("--explain", o.explain, "Print the plan and what it will cost, run nothing");
+  a.add_flag("--explain", o.explain, "Print the plan and its estimated cost without running it");
 }
 
 void declare_open(CLI::App& a, Options& o, RawText&) {
   a.add_option("input", o.inputs, "Picture (PNG)")->required();
-  a.add_option("-o,--output", o.output, "Write the picture here; default: NAME-again.png beside it");
+  a.add_option("-o,--output", o.output, "Picture to write; default: NAME-again.png beside the original");
   add_size(a, o);
-  a.add_flag("--recipe", o.recipe, "Print the recipe and stop");
+  a.add_flag("--recipe", o.recipe, "Print the recipe instead of following it");
 }
 
 void declare_ops(CLI::App& a, Options& o, RawText&) {
-  a.add_option("name", o.inputs, "Operation, way to show, format, 'read', 'camera', 'picture' or 'film'");
-  a.add_flag("--json", o.json, "For programs: JSON schema of the parameters");
-  a.add_flag("--cpp", o.cpp, "For C++ programs: all operations and ways to show as structs (sightglass/operations.h)");
+  a.add_option("name", o.inputs, "An operation, a way to show, a format, 'read', 'camera', 'picture' or 'film'");
+  a.add_flag("--json", o.json, "Print JSON Schemas of the parameters, for programs");
+  a.add_flag("--cpp", o.cpp, "Print a C++ header with every operation and way to show as a struct (sightglass/operations.h)");
 }
 
 void declare_colormap(CLI::App& a, Options& o, RawText&) {
-  a.add_option("name", o.inputs, "Colour map; NAME_r is its reverse");
+  a.add_option("name", o.inputs, "Colour map, or file of colour maps (FILE[:NAME]); NAME_r is reversed");
   a.add_option("-o,--output", o.output, "Write a picture of the map");
-  a.add_flag("--json", o.json, "For programs");
+  a.add_flag("--json", o.json, "Print JSON, for programs");
 }
 
 void declare_demo(CLI::App& a, Options& o, RawText&) {
-  a.add_option("folder", o.inputs, "Render every file in this folder onto the sheet instead")->expected(0, 1);
-  a.add_option("-o,--out", o.output, "Folder; default out/");
-  a.add_option("--sheet", o.sheet, "All pictures on one sheet: file to write");
+  a.add_option("folder", o.inputs, "Instead, render every file below this folder onto the sheet")->expected(0, 1);
+  a.add_option("-o,--out", o.output, "Folder for the pictures; default: out/");
+  a.add_option("--sheet", o.sheet, "File to write with all pictures on one contact sheet");
 }
 
 void declare_completions(CLI::App& a, Options& o, RawText&) {
@@ -304,17 +308,17 @@ struct Declaration {
   void (*declare)(CLI::App&, Options&, RawText&);
 };
 constexpr Declaration declarations[] = {
-    {Command::render, "Makes a picture of the data. Without options it looks at the data and chooses.", declare_render},
-    {Command::info, "Says what is in a file: mesh, sizes, cell types, bounds, fields with their ranges.", declare_info},
-    {Command::convert, "Reads, filters and writes data; the extension of the output chooses the format.", declare_convert},
-    {Command::run, "Runs a pipeline file.", declare_run},
-    {Command::open, "Makes a picture again from the recipe inside it.", declare_open},
-    {Command::ops, "Lists operations, or explains one.", declare_ops},
-    {Command::colormap, "Lists colour maps, or prints the lightness analysis of one.", declare_colormap},
-    {Command::demo, "Renders some pictures of what Sightglass can do.", declare_demo},
-    {Command::completions, "Prints the completion of a shell: source <(sightglass completions bash); installed packages have it in place.",
+    {Command::render, "Render a picture of the data. Whatever is not given is chosen from the data.", declare_render},
+    {Command::info, "Describe what is in a file: mesh, sizes, cell types, bounds, fields and their ranges.", declare_info},
+    {Command::convert, "Read, filter and write data; the extension of the output determines its format.", declare_convert},
+    {Command::run, "Run a pipeline file.", declare_run},
+    {Command::open, "Remake a picture from the recipe stored in it.", declare_open},
+    {Command::ops, "List operations, or describe one.", declare_ops},
+    {Command::colormap, "List colour maps, or print the lightness analysis of one.", declare_colormap},
+    {Command::demo, "Render sample pictures of what Sightglass can do.", declare_demo},
+    {Command::completions, "Print a shell's completion script, e.g. for: source <(sightglass completions bash). Packages install it.",
      declare_completions},
-    {Command::man, "Prints the manual page in troff.", declare_man},
+    {Command::man, "Print the manual page as troff source.", declare_man},
 };
 
 // The flags and arguments of a command.
@@ -335,8 +339,8 @@ WriteOptions writing(const Options& o, const Format& format) {
   for (const ParamDecl& d : schema.decls()) has += (has.empty() ? "--" : " --") + bare(flag_of(d.name, writing_flags));
   for (const std::string& word : o.written)
     if (const std::string param = word.substr(0, word.find('=')); !schema.find(param))
-      fail_usage(fmt::format("{} files take no --{}", format.name, bare(flag_of(param, writing_flags))), o.output,
-                 has.empty() ? "there are no such options" : "they take " + has);
+      fail_usage(fmt::format("{} files do not take --{}", format.name, bare(flag_of(param, writing_flags))), o.output,
+                 has.empty() ? "they take no options" : "they take " + has);
   return write_options(format, o.written);
 }
 
@@ -377,7 +381,7 @@ Options parse_options(int argc, char** argv) {
     fail_unknown(a, e);
   }
   finish_raw(raw, o);
-  if (o.series && o.inputs.empty()) fail_usage("names no files", "--series", "like --series flow_*.vtk");
+  if (o.series && o.inputs.empty()) fail_usage("names no files", "--series", "write e.g. --series flow_*.vtk");
   if (o.series) o.inputs = {series_path(std::move(o.inputs), true)};
   o.command = *command;
   return o;
@@ -393,7 +397,7 @@ std::vector<CommandDoc> command_docs() {
     declare(d, a, o, raw);
     CommandDoc doc{name, a.get_description(), {}, {}, {}};
     for (const CLI::Option* option : a.get_options()) {
-      std::vector<std::string> choices;  // CLI11 tells of them in the text of the type: "TEXT:{a,b}"
+      std::vector<std::string> choices;  // CLI11 lists them in the text of the type: "TEXT:{a,b}"
       const std::string type = option->get_type_name();
       const size_t open = type.find('{'), close = type.find('}');
       if (open != type.npos && close != type.npos)

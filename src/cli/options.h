@@ -18,7 +18,7 @@ constexpr auto enum_words(Command) {
 }
 
 struct Options {
-  Command command = Command::none;   ///< none: --help or --version, all is said
+  Command command = Command::none;   ///< none: --help or --version: nothing left to do
   std::vector<std::string> inputs;   ///< files, or what the command names
   std::vector<std::string> filters;  ///< each one -f: operation and key=value words
   std::vector<std::string> shows;    ///< each one --show
@@ -42,7 +42,7 @@ struct Options {
 /// Parses; for --help and --version prints to stdout and sets command to none. Throws Error(usage).
 Options parse_options(int argc, char** argv);
 
-/// A flag of a command, as the man page and completions tell of it.
+/// A flag of a command, for the man page and completions.
 struct FlagDoc {
   std::vector<std::string> names;  ///< "-o", "--output"
   bool takes_value = false;
@@ -51,13 +51,13 @@ struct FlagDoc {
 };
 struct CommandDoc {
   std::string name, doc;
-  std::string input;               ///< what it takes beside flags: "File to read"; "" = nothing
+  std::string input;               ///< what it takes besides flags: "File to read"; "" = nothing
   std::vector<std::string> words;  ///< ... where these are all
   std::vector<FlagDoc> flags;
 };
 /// Every command of the help, from the same declarations that parse_options() reads.
 std::vector<CommandDoc> command_docs();
-/// What the flags say of a file in this format. Throws Error(usage) for flags that it does not take.
+/// What the flags say about a file in this format. Throws Error(usage) for flags that it does not take.
 WriteOptions writing(const Options& o, const Format& format);
 
 }  // namespace sg

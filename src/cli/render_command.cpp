@@ -37,7 +37,7 @@ void check_output(const std::string& path) {
   if (std::find(known.begin(), known.end(), ext) == known.end()) {
     std::string list;
     for (const std::string& e : known) list += (list.empty() ? "." : " .") + e;
-    fail_usage(fmt::format("'{}' is no picture format", ext), path, "can write: " + list);
+    fail_usage(fmt::format("'{}' is not a picture format", ext), path, "supported: " + list);
   }
   AtomicFile probe(path);  // missing folder, no permission, a folder of that name: removed again at once
 }
@@ -72,7 +72,7 @@ void check_memory(const PipelineGraph& built, const Options& o) {
   for (const PlannedStep& step : built.graph.plan(targets_of(built)))
     if (!step.reads_parts) bytes += step.bytes;
   if (bytes > o.memory)
-    fail_usage(fmt::format("the steps are expected to hold {}, more than the {} allowed", human_bytes(bytes), human_bytes(o.memory)),
+    fail_usage(fmt::format("the steps are expected to need {}, more than the {} allowed", human_bytes(bytes), human_bytes(o.memory)),
                "--memory", "--explain shows which; allow more, or read a smaller part");
 }
 
@@ -87,7 +87,7 @@ std::string describe(const PictureDraft& d) {
   return text;
 }
 
-// Writes each picture as soon as it is there. What is said about one goes on when the next begins.
+// Writes each picture as soon as it is there. Messages about one continue when the next begins.
 void set_drafts(PictureOptions& options, const PipelineFile& file, const std::string& output, const Options& o) {
   if (!o.progressive && !(o.within > 0)) return;
   options.on_draft = [&file, output, quiet = o.quiet](const Picture& picture, const PictureDraft& draft) {
@@ -132,7 +132,7 @@ int render_to(PipelineFile& file, const std::string& output, PictureOptions opti
 
 namespace {
 
-// The parameters of the film with what the command line says of them.
+// The parameters of the film, set from the command line.
 void take_film_flags(const Options& o, FilmParams& film) {
   Schema schema = schema_of(film);
   set_params(schema, o.film, "film");
@@ -148,7 +148,8 @@ int render_into(PipelineFile file, const FilmParams& film, const PictureOptions&
     return 0;
   }
   if (word_value(o.film, "times") && !o.explain)
-    fail_usage("several times need several pictures", "--times", "number them: -o out_{n}.png, or make a film: -o film.webm");
+    fail_usage("several times need several pictures, but the output name is a single one", "--times",
+               "number them with -o out_{n}.png, or make a film with -o film.webm");
   return render_to(file, film.output, options, o, context);
 }
 
@@ -164,8 +165,8 @@ int run_render(const Options& o, Context& context) {
   take_film_flags(o, film);
   film.output = !o.output.empty() ? o.output : (o.inputs.empty() ? file.steps[0].operation : stem_of(o.inputs[0])) + ".png";
   if (is_film(film.output) && (o.progressive || o.within > 0))
-    fail_usage("the pictures of a series are final at once", o.progressive ? "--progressive" : "--within",
-               "leave it out, or make one picture");
+    fail_usage("the pictures of a series are final from the start", o.progressive ? "--progressive" : "--within",
+               "leave it out, or render a single picture");
   return render_into(std::move(file), film, options, o, context);
 }
 
@@ -209,7 +210,7 @@ int run_open(const Options& o, Context& context) {
     const Fence fence(path, output);
     std::vector<std::string> changed;
     PipelineFile file = recipe_in(image, path, changed);
-    for (const std::string& c : changed) context.warn(fmt::format("'{}' is not what it was when the picture was made", c));
+    for (const std::string& c : changed) context.warn(fmt::format("'{}' has changed since the picture was made", c));
     if (!o.size.empty()) file.picture.push_back("size=" + o.size);
     render_to(file, output, {}, o, context);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text for people: whatever names it holds, it does nothing to a terminal but stand there.
+// Text for people: whatever names it contains, it cannot affect a terminal.
 #pragma once
 #include <string>
 

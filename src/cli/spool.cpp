@@ -32,8 +32,7 @@ void write_all(int fd, const char* bytes, size_t n, const std::string& path) {
     const ssize_t done = ::write(fd, bytes, n);
     if (done < 0 && errno == EINTR) continue;
     if (done <= 0)
-      fail_data(std::string("what comes out of the pipe cannot be kept in $TMPDIR: ") + std::strerror(errno), path,
-                "save it in a file first");
+      fail_data(std::string("cannot store the pipe's data in $TMPDIR:  ") + std::strerror(errno), path, "save it in a file first");
     bytes += done, n -= size_t(done);
   }
 }
@@ -55,17 +54,17 @@ std::string with_stream_names(std::string text) {
 std::string spooled(const std::string& path, size_t most, const Context& context) {
   if (!names_stream(path)) return path;
   const int from = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-  if (from < 0) fail_data(std::string("cannot be opened: ") + std::strerror(errno), path);
+  if (from < 0) fail_data(std::string("cannot open the input: ") + std::strerror(errno), path);
   if (::isatty(from)) {
     ::close(from);
     fail_data("is a terminal, not a file", path);
   }
-  // In a folder of its own: what comes out of the pipe may name no file beside it.
+  // In a folder of its own: data from the pipe may not name files next to it.
   static std::deque<PartialFile> kept;  // removed at the end
   const char* chosen = std::getenv("TMPDIR");
   const std::string name = kept.emplace_back((chosen && *chosen ? std::string(chosen) : std::string("/tmp")) + "/sightglass-pipe").name();
   const int to = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
-  if (to < 0) fail_data(std::string("what comes out of the pipe cannot be kept in $TMPDIR: ") + std::strerror(errno), path);
+  if (to < 0) fail_data(std::string("cannot store the pipe's data in $TMPDIR:  ") + std::strerror(errno), path);
   std::vector<char> part(size_t(1) << 20);
   size_t all = 0;
   for (;;) {
@@ -79,7 +78,7 @@ std::string spooled(const std::string& path, size_t most, const Context& context
     if (n == -2 || (n < 0 && (errno == EINTR || errno == EAGAIN))) continue;
     if (n < 0) fail_data(std::string("cannot be read: ") + std::strerror(errno), path);
     if ((all += size_t(n)) > most)
-      fail_data(fmt::format("more than {} come out of the pipe", human_bytes(most)), path,
+      fail_data(fmt::format("the pipe delivers more than {}", human_bytes(most)), path,
                 "save it in a file first, or allow more with --memory");
     write_all(to, part.data(), size_t(n), path);
   }

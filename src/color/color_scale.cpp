@@ -122,7 +122,7 @@ Vec4f ColorScale::color(double value) const { return color_at(position(value)); 
 
 ColorTable color_table(const ColorScale& scale, int size) {
   if (scale.kind == ScaleKind::log && scale.labels.empty() && !(scale.lo > 0 && scale.hi > 0))
-    fail_usage(fmt::format("a log colour scale cannot show the range {} to {}", short_number(scale.lo), short_number(scale.hi)),
+    fail_usage(fmt::format("a log colour scale cannot show the range from {} to {}", short_number(scale.lo), short_number(scale.hi)),
                "colour scale", "give a range above 0, or use a symlog scale");
   const size_t n = std::max({size_t(std::max(size, 2)), 2 * scale.labels.size() + 1});
   ColorTable table;

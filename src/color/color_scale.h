@@ -26,12 +26,12 @@ struct ColorScale {
   bool clamp = true;                     ///< false: values out of range are not drawn (transparent)
   std::vector<double> labels;            ///< categorical: the values, in order; a value takes the colour of its place
   std::vector<std::string> label_names;  ///< categorical: text per label, may be empty
-  /// With labels that stand for neighbouring bands of values: their borders, one more than labels; the legend shows these.
+  /// With labels that represent neighbouring bands of values: their borders, one more than labels; the legend shows these.
   std::vector<double> limits;
   std::string title, unit;
 
   /// Position on the map, may lie outside [0,1] (below, above), NaN for NaN and, on a log scale, for values <= 0.
-  /// With labels: the middle of the label's band, NaN for a value that is none of them (up to rounding to float).
+  /// With labels: the middle of the label's band, NaN for any other value (up to rounding to float).
   double position(double value) const;
   /// The value drawn at a position (inverse of position).
   double value_at(double t) const;
@@ -55,8 +55,8 @@ struct ColorTable {
 /// At least `size` samples (more when labels need them). Throws Error(usage) for a log scale whose range is not positive.
 ColorTable color_table(const ColorScale& scale, int size = 4096);
 
-/// Values, ascending, at which the colour, or whether there is one, jumps, or bends so sharply that even samples would not tell: stops,
-/// borders of bands, the ends of the scale. Narrow ramps between stops have some more on their way. None for labels.
+/// Values, ascending, at which the colour, or whether there is one, jumps, or bends so sharply that evenly spaced samples would miss it:
+/// stops, borders of bands, the ends of the scale. Narrow ramps between stops have additional ones in between. None for labels.
 std::vector<double> color_knots(const ColorScale& scale);
 
 /// Piecewise-linear opacity over values: sorted (value, opacity) points; constant beyond the ends.
@@ -76,10 +76,10 @@ struct TickLabel {
   double value;
   std::string text;
 };
-/// About `wanted` round values in [lo, hi] with texts that tell them apart; powers of ten on a log scale.
+/// About `wanted` round values in [lo, hi] with texts that distinguish them; powers of ten on a log scale.
 std::vector<TickLabel> nice_ticks(double lo, double hi, int wanted, ScaleKind kind = ScaleKind::linear, double linear_threshold = 0);
 
-/// The shortest texts (up to 8 digits) that tell the values apart to a hundredth of their smallest distance.
+/// The shortest texts (up to 8 digits) that resolve the values to a hundredth of their smallest distance.
 std::vector<std::string> distinct_texts(const std::vector<double>& values);
 
 }  // namespace sg

@@ -56,7 +56,7 @@ std::vector<Vec3f> jet() {
 
 std::vector<Vec3f> rainbow() { return {{0, 0, 1}, {0, 1, 1}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}}; }
 
-/// Eight that please beside each other, then farthest points: each the colour of a CIELAB grid (L* 30 to 88, chroma 18 to 85)
+/// Eight hand-picked colours that work together, then farthest points: each the colour of a CIELAB grid (L* 30 to 88, chroma 18 to 85)
 /// whose smallest CIEDE2000 distance to all before it, to white, to black and to the NaN grey is largest. No two are closer
 /// than 18, no two of the first eight closer than 24; the test measures that.
 std::vector<Vec3f> labels() {
@@ -90,7 +90,7 @@ constexpr Entry entries[] = {
      "Purple over white to green, equally light on both sides, safe for red-green blindness."},
     {"phase", MapKind::cyclic, phase, "Once round the hues at nearly equal lightness, for angles and phases; both ends are one colour."},
     {"labels", MapKind::categorical, labels,
-     "Colours for names and numbers without order: 8 that please, then the farthest from all before (CIEDE2000)."},
+     "Colours for names and numbers without order: 8 hand-picked, then each as different as possible from all before (CIEDE2000)."},
     {"jet", MapKind::unsafe, jet,
      "The old rainbow clip(1.5-|4x-{3,2,1}|): its lightness falls in 114 of 255 steps and shows edges that are not in the data."},
     {"rainbow", MapKind::unsafe, rainbow,
@@ -107,7 +107,7 @@ constexpr std::pair<std::string_view, std::string_view> elsewhere[] = {
     {"tab20", "labels"},     {"glasbey", "labels"},    {"turbo", "sight"},   {"spectral", "coolwarm"},
 };
 
-/// Built at first use, each alone: a picture needs one map.
+/// Each built on first use: a picture needs one map.
 const Colormap& built(size_t i) {
   static std::array<std::once_flag, count> once;
   static std::array<Colormap, count> maps;
@@ -118,12 +118,12 @@ const Colormap& built(size_t i) {
 [[noreturn]] void fail_unknown(std::string_view name) {
   for (const auto& [theirs, ours] : elsewhere)
     if (name == theirs || (name.size() > 2 && name.ends_with("_r") && name.substr(0, name.size() - 2) == theirs))
-      fail_usage(fmt::format("colour map '{}' is not built in", name), "colour map", fmt::format("the nearest of ours is '{}'", ours));
+      fail_usage(fmt::format("colour map '{}' is not built in", name), "colour map", fmt::format("the nearest built-in one is '{}'", ours));
   std::vector<std::string> names;
   for (const Entry& e : entries) names.push_back(e.name);
   const bool reversed = name.size() > 2 && name.ends_with("_r");
   fail_usage(fmt::format("colour map '{}' not found", name), "colour map",
-             unknown_name_hint(reversed ? name.substr(0, name.size() - 2) : name, names) + "; or a file: .cpt, .json:NAME, .css:NAME");
+             unknown_name_hint(reversed ? name.substr(0, name.size() - 2) : name, names) + "; or name a file: .cpt, .json:NAME, .css:NAME");
 }
 
 }  // namespace

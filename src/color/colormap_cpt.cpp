@@ -41,7 +41,7 @@ struct CptParser {
     const bool hsv = n == 3 && model == Model::hsv;
     const double most = n == 4 ? 100 : 255;
     for (size_t i = 0; i < n; ++i)
-      if (!(v[i] >= 0 && v[i] <= (hsv ? (i == 0 ? 360 : 1) : most))) fail(fmt::format("'{}' is no colour", text));
+      if (!(v[i] >= 0 && v[i] <= (hsv ? (i == 0 ? 360 : 1) : most))) fail(fmt::format("'{}' is not a colour", text));
     if (n == 1) return of_bytes(v[0], v[0], v[0]);
     if (hsv) return hsv_to_rgb(v[0], v[1], v[2]);
     if (n == 3) return of_bytes(v[0], v[1], v[2]);
@@ -56,12 +56,12 @@ struct CptParser {
     const std::string base = t.substr(0, end);
     const auto number = parse_int(std::string_view(t).substr(end));
     if (number && (base == "gray" || base == "grey")) {
-      if (*number < 0 || *number > 100) fail(fmt::format("'{}' is no colour", text));
+      if (*number < 0 || *number > 100) fail(fmt::format("'{}' is not a colour", text));
       const double v = std::floor(double(*number) * 2.55 + 0.5);
       return of_bytes(v, v, v);
     }
     // darkorange1 .. darkorange4: shades of which the darker ones are 93.2, 80.4 and 54.5 percent.
-    if (number && (*number < 1 || *number > 4)) fail(fmt::format("'{}' is no colour", text));
+    if (number && (*number < 1 || *number > 4)) fail(fmt::format("'{}' is not a colour", text));
     constexpr float shades[] = {1, 0.932f, 0.804f, 0.545f};
     const float shade = number ? shades[*number - 1] : 1;
     if (number && base == "darkorange") return of_bytes(255, 127, 0) * shade;
@@ -70,7 +70,7 @@ struct CptParser {
     try {
       return parse_color(base, "") * shade;
     } catch (const Error&) {
-      fail(fmt::format("'{}' is no colour", text));
+      fail(fmt::format("'{}' is not a colour", text));
     }
   }
 
@@ -78,11 +78,11 @@ struct CptParser {
   Vec3f color(std::string_view text) const {
     text = text.substr(0, text.find('@'));
     if (text.starts_with('#')) {
-      if (text.size() != 7) fail(fmt::format("'{}' is no colour", text));
+      if (text.size() != 7) fail(fmt::format("'{}' is not a colour", text));
       try {
         return parse_color(text, "");
       } catch (const Error&) {
-        fail(fmt::format("'{}' is no colour", text));
+        fail(fmt::format("'{}' is not a colour", text));
       }
     }
     const bool dashes = model == Model::hsv && text.find('/') == std::string_view::npos && text.find('-') != std::string_view::npos;
@@ -95,13 +95,13 @@ struct CptParser {
       v[i] = x.value_or(0);
     }
     if (numbers) return of_numbers(v, parts.size(), text);
-    if (parts.size() != 1 || text.empty()) fail(fmt::format("'{}' is no colour", text));
+    if (parts.size() != 1 || text.empty()) fail(fmt::format("'{}' is not a colour", text));
     return named(text);
   }
 
   double number(std::string_view text) const {
     const auto v = parse_double(text);
-    if (!v || !std::isfinite(*v)) fail(fmt::format("'{}' is no number", text));
+    if (!v || !std::isfinite(*v)) fail(fmt::format("'{}' is not a number", text));
     return *v;
   }
 
@@ -114,7 +114,7 @@ struct CptParser {
       const std::string m = to_lower(value.starts_with('+') ? value.substr(1) : value);
       if (m == "hsv") model = Model::hsv;
       else if (m == "cmyk") model = Model::cmyk;
-      else if (m != "rgb") fail(fmt::format("the colour model '{}' is none of RGB, HSV, CMYK", value));
+      else if (m != "rgb") fail(fmt::format("the colour model '{}' is not one of RGB, HSV, CMYK", value));
     } else if (key == "HARD_HINGE" || key == "SOFT_HINGE") {
       f.hinge = equals == std::string::npos ? 0 : parse_double(value).value_or(0);
       f.hard_hinge = key == "HARD_HINGE";
@@ -135,9 +135,9 @@ struct CptParser {
     auto color_at = [&](size_t i) { return separate ? color(fmt::format("{}/{}/{}", w[i], w[i + 1], w[i + 2])) : color(w[i]); };
     const size_t second = separate ? 4 : 2;
     const double z0 = number(w[0]), z1 = number(w[second]);
-    if (!(z1 > z0)) fail(fmt::format("a slice from {} to {}", w[0], w[second]));
+    if (!(z1 > z0)) fail(fmt::format("a slice runs from {} to {}", w[0], w[second]));
     if (!nodes.empty() && std::abs(z0 - nodes.back().position) > 1e-6 * std::max(std::abs(z0), z1 - z0))
-      fail(fmt::format("a slice from {}, but the one before ends at {}", w[0], nodes.back().position));
+      fail(fmt::format("a slice begins at {}, but the previous one ends at {}", w[0], nodes.back().position));
     const ColorNode a{nodes.empty() ? z0 : nodes.back().position, color_at(1)}, b{z1, color_at(second + 1)};
     if (nodes.empty() || !(nodes.back().color == a.color)) nodes.push_back(a);
     nodes.push_back(b);
@@ -166,9 +166,9 @@ FileColormap parse_cpt(std::string_view text, const std::string& path) {
     const size_t semicolon = row.find(';');
     const std::string label(semicolon == std::string_view::npos ? "" : trim(row.substr(semicolon + 1)));
     const auto w = words(row.substr(0, semicolon));
-    if (w.empty()) p.fail("a label without a colour");
+    if (w.empty()) p.fail("a label has no colour");
     if (w[0] == "B" || w[0] == "F" || w[0] == "N") {
-      if (w.size() != 2 && w.size() != 4) p.fail(fmt::format("'{}' needs one colour", w[0]));
+      if (w.size() != 2 && w.size() != 4) p.fail(fmt::format("'{}' needs a colour", w[0]));
       const Vec3f c = p.color(w.size() == 2 ? std::string(w[1]) : fmt::format("{}/{}/{}", w[1], w[2], w[3]));
       (w[0] == "B" ? f.below : w[0] == "F" ? f.above : f.nan) = c;
       continue;
@@ -186,10 +186,10 @@ FileColormap parse_cpt(std::string_view text, const std::string& path) {
     } else {
       p.fail(fmt::format("{} words; a slice has 4, a category 2", w.size()));
     }
-    if (!nodes.empty() && !categories.empty()) p.fail("slices and categories in one table");
+    if (!nodes.empty() && !categories.empty()) p.fail("the table mixes slices and categories");
     ++f.entries;
   }
-  if (f.entries == 0) fail_data("holds no slice and no category", path);
+  if (f.entries == 0) fail_data("contains neither slices nor categories", path);
   f.space = p.model == Model::hsv ? "HSV" : p.model == Model::cmyk ? "CMYK" : "RGB";
   if (!categories.empty()) {
     f.map.kind = MapKind::categorical;

@@ -82,7 +82,7 @@ std::vector<FileColormap> parse_css_maps(std::string_view text, const std::strin
   std::vector<size_t> longest;  // of each name, in order
   for (size_t at = 0; (at = text.find('{', at)) != std::string_view::npos;) {
     const size_t close = text.find('}', at);
-    if (close == std::string_view::npos) fail_data("a rule that does not end", path);
+    if (close == std::string_view::npos) fail_data("a rule does not end", path);
     size_t begin = text.find_last_of("}/", at);
     begin = begin == std::string_view::npos ? 0 : begin + 1;
     Rule rule;
@@ -100,7 +100,7 @@ std::vector<FileColormap> parse_css_maps(std::string_view text, const std::strin
     }
     at = close;
   }
-  if (r.empty()) fail_data("holds no rule like .YlGn .q0-3{fill:rgb(247,252,185)}", path);
+  if (r.empty()) fail_data("contains no rule like .YlGn .q0-3{fill:rgb(247,252,185)}", path);
   std::vector<FileColormap> all;
   for (size_t i = 0; i < r.size(); ++i) {
     FileColormap& f = r[i];
@@ -122,7 +122,7 @@ bool names_colormap_file(std::string_view name) { return split_name(name).has_va
 
 std::vector<FileColormap> read_colormaps(const std::string& path) {
   const MappedFile file(path);
-  if (file.size() > largest_file) fail_data(fmt::format("has {}; a colour map has less", human_bytes(file.size())), path);
+  if (file.size() > largest_file) fail_data(fmt::format("has {}; a colour map has fewer", human_bytes(file.size())), path);
   const std::string ext = extension_of(path);
   std::vector<FileColormap> maps;
   if (ext == "json") maps = parse_json_maps(file.text(), path);
@@ -140,7 +140,7 @@ std::vector<FileColormap> read_colormaps(const std::string& path) {
 
 FileColormap find_file_colormap(std::string_view name) {
   auto asked = split_name(name);
-  if (!asked) fail_usage(fmt::format("'{}' names no file of colour maps", name), "colour map", "like FILE.cpt or FILE.json:NAME");
+  if (!asked) fail_usage(fmt::format("'{}' does not name a file of colour maps", name), "colour map", "write FILE.cpt or FILE.json:NAME");
   std::vector<FileColormap> maps = read_colormaps(asked->path);
   auto find = [&](std::string_view wanted) -> FileColormap* {
     for (FileColormap& f : maps)
@@ -160,13 +160,13 @@ FileColormap find_file_colormap(std::string_view name) {
     std::vector<std::string> names;
     for (const FileColormap& f : maps) names.push_back(f.map.name);
     if (only)
-      fail_usage(fmt::format("'{}' holds {} maps", asked->path, maps.size()), "colour map",
-                 fmt::format("name one: {}:{} (all: sightglass colormap {})", asked->path, names[0], asked->path));
+      fail_usage(fmt::format("'{}' contains {} maps", asked->path, maps.size()), "colour map",
+                 fmt::format("name one, e.g. {}:{} (list all with: sightglass colormap {})", asked->path, names[0], asked->path));
     if (const std::string near = nearest_name(asked->map, names); names.size() > 20)
-      fail_usage(
-          fmt::format("'{}' holds no map '{}'", asked->path, asked->map), "colour map",
-          (near.empty() ? "" : "did you mean '" + near + "'? ") + fmt::format("all {}: sightglass colormap {}", names.size(), asked->path));
-    fail_usage(fmt::format("'{}' holds no map '{}'", asked->path, asked->map), "colour map", unknown_name_hint(asked->map, names));
+      fail_usage(fmt::format("'{}' contains no map '{}'", asked->path, asked->map), "colour map",
+                 (near.empty() ? "" : "did you mean '" + near + "'? ") +
+                     fmt::format("list all {} with: sightglass colormap {}", names.size(), asked->path));
+    fail_usage(fmt::format("'{}' contains no map '{}'", asked->path, asked->map), "colour map", unknown_name_hint(asked->map, names));
   }
   FileColormap r = std::move(*found);
   r.map.name = name;

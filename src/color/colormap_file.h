@@ -10,7 +10,7 @@
 
 namespace sg {
 
-/// A map of a file with what the file says about it beyond the colours.
+/// A map of a file with the file's other data about it.
 struct FileColormap {
   Colormap map;
   size_t entries = 0;                        ///< slices, control points or colours that the file lists
@@ -27,7 +27,7 @@ struct FileColormap {
 /// Whether the name of a map means a file: "FILE.cpt", "FILE.json:NAME", "FILE.css:NAME", each perhaps with "_r".
 bool names_colormap_file(std::string_view name);
 
-/// All maps of a file, in its order. Throws Error(data) with the line for what is no colour map.
+/// All maps of a file, in its order. Throws Error(data) with the line for what is not a colour map.
 std::vector<FileColormap> read_colormaps(const std::string& path);
 
 /// "FILE" (of one map) or "FILE:NAME"; "_r" behind it is the reverse. map.name is all of `name`. Throws Error(usage) with the names

@@ -25,9 +25,9 @@ struct JsonMaps {
     std::vector<double> r;
     const Json& list = o[key];
     if (list.is_null()) return r;
-    if (!list.is_list()) fail(map, fmt::format("'{}' is no list", key));
+    if (!list.is_list()) fail(map, fmt::format("'{}' is not a list", key));
     for (const Json& v : list.items()) {
-      if (!v.is_number() || !std::isfinite(v.number())) fail(map, fmt::format("'{}' holds something that is no number", key));
+      if (!v.is_number() || !std::isfinite(v.number())) fail(map, fmt::format("'{}' contains something that is not a number", key));
       r.push_back(v.number());
     }
     return r;
@@ -37,7 +37,8 @@ struct JsonMaps {
     Vec3f c;
     for (int k = 0; k < 3; ++k) {
       const double x = v[at + size_t(k)] / most;
-      if (!(x >= -1e-6 && x <= 1 + 1e-6)) fail(map, fmt::format("{} is no colour; they go from 0 to {}", v[at + size_t(k)], most));
+      if (!(x >= -1e-6 && x <= 1 + 1e-6))
+        fail(map, fmt::format("{} is not a colour value; they range from 0 to {}", v[at + size_t(k)], most));
       c[k] = float(std::clamp(x, 0.0, 1.0));
     }
     return c;
@@ -70,10 +71,10 @@ struct JsonMaps {
     if (f.space.empty()) f.space = "RGB";
     const auto points = numbers(o, "RGBPoints", name);
     if (!points.empty()) {
-      if (points.size() % 4) fail(name, fmt::format("'RGBPoints' has {} numbers, no multiple of 4", points.size()));
+      if (points.size() % 4) fail(name, fmt::format("'RGBPoints' has {} numbers, not a multiple of 4", points.size()));
       std::vector<ColorNode> nodes;
       for (size_t i = 0; i < points.size(); i += 4) {
-        if (!nodes.empty() && points[i] < nodes.back().position) fail(name, "the positions in 'RGBPoints' do not rise");
+        if (!nodes.empty() && points[i] < nodes.back().position) fail(name, "the positions in 'RGBPoints' do not increase");
         nodes.push_back({points[i], rgb(points, i + 1, 1, name)});
       }
       f.entries = nodes.size();
@@ -83,7 +84,7 @@ struct JsonMaps {
       return f;
     }
     const auto indexed = numbers(o, "IndexedColors", name);
-    if (indexed.empty() || indexed.size() % 3) fail(name, "has neither 'RGBPoints' nor 'IndexedColors' in threes");
+    if (indexed.empty() || indexed.size() % 3) fail(name, "has neither 'RGBPoints' nor 'IndexedColors' in groups of three");
     for (size_t i = 0; i < indexed.size(); i += 3) f.map.colors.push_back(rgb(indexed, i, 1, name));
     f.entries = f.map.colors.size();
     f.map.kind = MapKind::categorical;
@@ -110,13 +111,13 @@ struct JsonMaps {
     auto at = numbers(o, "I", "");
     const size_t n = r.size();
     if (n == 0 || g.size() != n || b.size() != n || (!a.empty() && a.size() != n) || (!at.empty() && at.size() != n))
-      fail("", "the lists R, G, B, A and I are not equally long");
+      fail("", "the lists R, G, B, A and I differ in length");
     const bool labels = o["labels"].is_list();
     for (size_t i = 0; at.size() < n; ++i) at.push_back(labels || n == 1 ? double(i) : 255 * double(i) / double(n - 1));
     std::vector<ColorNode> nodes;
     for (size_t i = 0; i < n; ++i) nodes.push_back({at[i], rgb({r[i], g[i], b[i]}, 0, 255, "")});
     for (size_t i = 1; i < n && !labels; ++i)
-      if (at[i] < at[i - 1]) fail("", "the positions in 'I' do not rise");
+      if (at[i] < at[i - 1]) fail("", "the positions in 'I' do not increase");
     f.entries = n;
     f.space = "RGB";
     f.lo = at.front(), f.hi = at.back();
@@ -147,10 +148,10 @@ std::vector<FileColormap> parse_json_maps(std::string_view text, const std::stri
   else if (root.contains("RGBPoints") || root.contains("IndexedColors")) r.push_back(maps.paraview(root));
   else if (root.is_list() && !root.empty())
     for (const Json& o : root.items()) {
-      if (!o.is_object()) fail_data("holds something that is no colour map", path);
+      if (!o.is_object()) fail_data("contains something that is not a colour map", path);
       r.push_back(maps.paraview(o));
     }
-  else fail_data("is JSON, but no colour map", path, "maps are a list of RGBPoints or IndexedColors, or the lists R, G, B, A, I");
+  else fail_data("is JSON, but not a colour map", path, "colour maps are a list of RGBPoints or IndexedColors, or the lists R, G, B, A, I");
   return r;
 }
 

@@ -10,7 +10,7 @@ namespace sg {
 
 namespace {
 
-constexpr double fine = 1024;  ///< samples of a path that is no straight line in RGB
+constexpr double fine = 1024;  ///< samples of a path that is not a straight line in RGB
 
 struct Hsv {
   double h, s, v;  ///< hue in turns
@@ -114,7 +114,7 @@ void set_nodes(Colormap& map, std::span<const ColorNode> given, NodeSpace space)
     }
   }
   map.positions.back() = 1;
-  // What lies evenly, but for rounding, need not say so.
+  // Evenly spaced positions (up to rounding) need not be stored.
   const size_t n = map.positions.size();
   for (size_t i = 0; i < n; ++i)
     if (std::abs(map.positions[i] * double(n - 1) - double(i)) > 1e-9) return;

@@ -26,7 +26,7 @@ Vec3f hsv_to_rgb(double hue, double saturation, double value);
 /// them the path in other spaces than RGB is sampled finely.
 void set_nodes(Colormap& map, std::span<const ColorNode> nodes, NodeSpace space);
 
-/// What the lightness says: rising or falling, with one extremum near the middle, closed, or none of these (unsafe).
+/// Result of the lightness analysis: rising or falling, with one extremum near the middle, closed, or none of these (unsafe).
 MapKind kind_of_colors(const Colormap& map);
 
 }  // namespace sg

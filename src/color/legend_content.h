@@ -16,14 +16,14 @@ struct VolumeLegend {
   std::string second_title;  ///< name of the second axis, for plane pictures
 };
 
-/// Glyphs whose size shows a value: one of them stands in the legend as long as it is in the middle of the picture.
+/// Glyphs whose size shows a value: one of them is drawn in the legend at the length it has in the middle of the picture.
 struct GlyphLegend {
   double length = 0;  ///< of a glyph of value 1: world length or pixels
   bool in_pixels = false;
   bool points = true;  ///< an arrow; false: a disc as wide as that
   double most = 0;     ///< the largest value that the glyphs show
   std::string unit;
-  double pixels = 0;  ///< of a glyph of value 1, set by who knows the camera; 0: not drawn
+  double pixels = 0;  ///< of a glyph of value 1, set by code that knows the camera; 0: not drawn
   friend bool operator==(const GlyphLegend&, const GlyphLegend&) = default;
 };
 

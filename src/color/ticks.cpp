@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// nice_ticks: round numbers, and texts that tell them apart.
+// nice_ticks: round numbers, and texts that distinguish them.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -55,7 +55,7 @@ std::vector<TickLabel> with_texts(const std::vector<double>& values, int step_ex
   return ticks;
 }
 
-/// The ends alone, for ranges that are too narrow or too wide for steps in double.
+/// Only the ends, for ranges too narrow or too wide for steps in double precision.
 std::vector<TickLabel> end_ticks(double lo, double hi) {
   std::vector<TickLabel> ticks{{lo + 0.0, exact_number(lo + 0.0)}};
   if (lo != hi) ticks.push_back({hi + 0.0, exact_number(hi + 0.0)});
@@ -85,7 +85,7 @@ std::vector<TickLabel> linear_ticks(double lo, double hi, int wanted) {
   for (int exponent = e + 1; exponent >= e - 1; --exponent)
     for (double digit : {5.0, 2.0, 1.0}) {
       std::vector<double> values = multiples(lo, hi, digit, exponent);
-      // One tick alone tells no scale.
+      // A single tick does not define a scale.
       const double miss = std::abs(double(values.size()) - wanted) + (values.size() < 2 ? 1000 : 0);
       if (!values.empty() && miss < best_miss) best = std::move(values), best_exponent = exponent, best_miss = miss;
     }

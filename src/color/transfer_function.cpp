@@ -155,7 +155,7 @@ TransferFunction::TransferFunction(const ColorScale& scale, const OpacityCurve& 
     : colors_(scale, base), curve_(opacity, base), factor_(detail.second_factor, 0) {
   color_by_second_ = detail.color_by_second;
   if (color_by_second_) {
-    if (detail.second == SecondAxis::none) fail_usage("colour follows the second axis, but there is none", "transfer function");
+    if (detail.second == SecondAxis::none) fail_usage("colour follows the second axis, but there is no second axis", "transfer function");
     second_colors_.emplace_back(detail.second_color, 0);
   }
   const auto& factors = detail.second_factor.points;

@@ -84,7 +84,7 @@ class FastCurve {
   float most(float lo, float hi) const;
   /// Length of the shortest line; infinite when there is none.
   float narrow() const;
-  /// Does a line shorter than this reach into [lo, hi]?
+  /// Whether a line shorter than this reaches into [lo, hi].
   bool shorter_line(float lo, float hi, float length) const;
   /// Where it jumps, or begins to be more than zero.
   struct Edge {
@@ -122,15 +122,16 @@ class TransferFunction {
     if (!widgets_.empty()) return of_widgets(value, second, {}, nullptr);
     return with_factor_ ? curve_.at(value) * factor_.at(second) : curve_.at(value);
   }
-  /// Opacity 0 for every value in [lo, hi] (stored) whatever the second axis says? Never true by mistake; false at times for
+  /// Whether opacity is 0 for every value in [lo, hi] (stored), whatever the second axis. Never wrongly true; false at times for
   /// intervals that only touch what is drawn.
   bool clear(float lo, float hi) const;
-  /// No opacity on [lo, hi] is larger than this, whatever the second axis says.
+  /// Upper bound on opacity over [lo, hi], whatever the second axis.
   float most_opacity(float lo, float hi) const;
   /// Samples nearer to each other than this, over the value and over the second axis, miss no line of a curve and no widget.
   float narrow() const { return narrow_; }
   float narrow_second() const { return narrow_second_; }
-  /// Can samples so far apart miss a line of the curve or a widget that reaches into [lo, hi]? Over the value, and over the second axis.
+  /// Whether samples this far apart can miss a line of the curve or a widget that reaches into [lo, hi]. Over the value, and over the
+  /// second axis.
   bool misses(float lo, float hi, float apart) const;
   bool misses_second(float lo, float hi, float apart) const;
   /// Where opacity jumps or begins to be more than zero, over the (stored) value and over the second axis; by how much at most.

@@ -15,7 +15,7 @@ namespace {
 const char* opacity_form = "write position:opacity pairs, e.g. 0:0,0.3:0.1,1:0.8, or @value:opacity, e.g. @-500:0,@200:0.4";
 const char* stops_form = "write position:colour pairs, e.g. 0:#000000,0.4:#aa3311,1:white, or @value:colour";
 
-// A place as a position on the axis; nothing for what is no number.
+// A place as a position on the axis; nothing for what is not a number.
 std::optional<double> place(std::string_view text, const ColorScale& axis) {
   const bool absolute = text.starts_with('@');
   const auto v = parse_double(trim(absolute ? text.substr(1) : text));
@@ -48,9 +48,9 @@ std::pair<std::string_view, std::string_view> halves(std::string_view part) {
 
 void check_ascends(double before, double now, std::string_view part, const ColorScale& axis, const std::string& word) {
   if (now < before)
-    fail_usage(fmt::format("'{}' lies below the point before it ({} after {})", part, short_number(axis.value_at(now)),
+    fail_usage(fmt::format("'{}' lies below the previous point ({} after {})", part, short_number(axis.value_at(now)),
                            short_number(axis.value_at(before))),
-               word, "write the points in ascending order; two at one place make a step");
+               word, "write the points in ascending order; two points at one position make a step");
 }
 
 }  // namespace
@@ -70,12 +70,13 @@ OpacityCurve parse_opacity(const std::string& text, const ColorScale& axis, cons
     const auto t = place(where, axis);
     const auto y = parse_double(how_much);
     if (!t || !y) fail_usage(fmt::format("'{}' is not a point of an opacity curve", part), word, opacity_form);
-    if (!std::isfinite(*t)) fail_usage(fmt::format("'{}' has no place on a log scale", where), word, "values there are above 0");
+    if (!std::isfinite(*t))
+      fail_usage(fmt::format("'{}' cannot be placed on a log scale", where), word, "values on a log scale are above 0");
     if (!(*y >= 0 && *y <= 1)) fail_usage(fmt::format("opacity {} is not between 0 and 1", how_much), word, opacity_form);
     check_position(where, *t, word);
     check_ascends(last, *t, part, axis, word);
     same = *t == last ? same + 1 : 0;
-    if (same == 2) fail_usage(fmt::format("'{}' is the third point at one place", part), word, "two points at one place make a step");
+    if (same == 2) fail_usage(fmt::format("'{}' is the third point at one position", part), word, "two points at one position make a step");
     const double x = value_of(where, axis);
     const bool is_value = where.starts_with('@');
     if (!curve.points.empty() && axis.kind != ScaleKind::linear && *t > last && !(is_value && last_is_value)) {
@@ -106,7 +107,7 @@ std::string opacity_text(const OpacityCurve& curve) {
 }
 
 void parse_color_stops(const std::string& text, ColorScale& scale, bool keep_range) {
-  // Commas also stand within "r,g,b": a part without a colon belongs to the one before it.
+  // Commas also occur within "r,g,b": a part without a colon belongs to the previous one.
   std::vector<std::string> parts;
   for (const std::string_view part : split(text, ',')) {
     if (part.find(':') == part.npos && !parts.empty()) parts.back() += "," + std::string(part);
@@ -118,16 +119,17 @@ void parse_color_stops(const std::string& text, ColorScale& scale, bool keep_ran
   for (const std::string& part : parts) {
     const auto [where, what] = halves(part);
     const auto t = place(where, scale);
-    if (!t || what.empty()) fail_usage(fmt::format("'{}' is not a colour at a place", part), "colors", stops_form);
-    if (!std::isfinite(*t)) fail_usage(fmt::format("'{}' has no place on a log scale", where), "colors", "values there are above 0");
+    if (!t || what.empty()) fail_usage(fmt::format("'{}' is not a colour at a position", part), "colors", stops_form);
+    if (!std::isfinite(*t))
+      fail_usage(fmt::format("'{}' cannot be placed on a log scale", where), "colors", "values on a log scale are above 0");
     check_position(where, *t, "colors");
     if (!nodes.empty()) check_ascends(nodes.back().position, *t, part, scale, "colors");
     if (nodes.size() > 1 && *t == nodes[nodes.size() - 2].position)
-      fail_usage(fmt::format("'{}' is the third colour at one place", part), "colors", "two colours at one place make a step");
+      fail_usage(fmt::format("'{}' is the third colour at one position", part), "colors", "two colours at one position make a step");
     nodes.push_back({*t, parse_color(what, "colors")});
     (nodes.size() == 1 ? first : last) = where;
   }
-  Colormap map{"stops", MapKind::sequential, "Colours as stated.", {}, {}};
+  Colormap map{"stops", MapKind::sequential, "Colours as given.", {}, {}};
   const bool flat = nodes.front().position == nodes.back().position;
   if (flat || keep_range) {
     // The end colours go on to the ends of the range; what lies beyond the range is cut off.
@@ -190,8 +192,8 @@ std::string color_stops_text(const ColorScale& scale) {
 
 std::vector<TransferWidget> parse_widgets(const std::string& text, const ColorScale& value, const ColorScale& second) {
   const char* form =
-      "write 'triangle LO HI BASE TOP OPACITY COLOR' or 'rectangle LO HI LOW HIGH OPACITY COLOR', several with ; between them; "
-      "LO and HI are positions (or @values), the next two are on the second axis";
+      "write 'triangle LO HI BASE TOP OPACITY COLOR' or 'rectangle LO HI LOW HIGH OPACITY COLOR', separated by ';'; LO and HI are "
+      "positions (or @values), the next two are on the second axis";
   std::vector<TransferWidget> widgets;
   for (const std::string_view part : split(text, ';')) {
     const auto w = words(part);
@@ -208,11 +210,11 @@ std::vector<TransferWidget> parse_widgets(const std::string& text, const ColorSc
     for (size_t i = 0; i < 4; ++i) {
       const ColorScale& axis = i < 2 ? value : second;
       const auto t = place(w[i + 1], axis);
-      if (!t) fail_usage(fmt::format("'{}' in '{}' is not a place", w[i + 1], part), "widgets", form);
+      if (!t) fail_usage(fmt::format("'{}' in '{}' is not a position", w[i + 1], part), "widgets", form);
       *ends[i] = value_of(w[i + 1], axis);
     }
     if (!(r.lo < r.hi) || !(r.second_lo < r.second_hi))
-      fail_usage(fmt::format("'{}' has no width or no height", part), "widgets", "write the lower end of each axis first");
+      fail_usage(fmt::format("'{}' has zero width or height", part), "widgets", "write the lower end of each axis first");
     if (w.size() > 5) {
       const auto y = parse_double(w[5]);
       if (!y || !(*y >= 0 && *y <= 1)) fail_usage(fmt::format("opacity {} is not between 0 and 1", w[5]), "widgets", form);

@@ -2,7 +2,7 @@
 // Transfer functions as text: points, colour stops and widgets, read and written.
 //
 // A place on an axis is a position (0 = its low end, 1 = its high end, along the scale: 0.5 of 1..100 on a log scale is 10) or, with @
-// before it, a value of the field: "0.3:0.1" and "@-500:0". Places must ascend; two points at one place make a step.
+// before it, a value of the field: "0.3:0.1" and "@-500:0". Places must ascend; two points at one position make a step.
 #pragma once
 #include <string>
 #include <vector>

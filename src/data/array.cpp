@@ -101,13 +101,13 @@ Array::Array(Buffer buffer, ElementType type, size_t count, int components, size
   const Wide lo = Wide(offset) + std::min<Wide>(a, 0) + std::min<Wide>(b, 0);
   const Wide hi = Wide(offset) + std::max<Wide>(a, 0) + std::max<Wide>(b, 0) + size;
   if (lo < 0 || hi > Wide(buffer_.size))
-    fail_data(fmt::format("{} tuples of {} {} need more than the {} bytes there are", count, components, element_name(type), buffer_.size));
+    fail_data(fmt::format("{} tuples of {} {} need more than the {} bytes available", count, components, element_name(type), buffer_.size));
 }
 
 Array Array::make_raw(ElementType type, size_t count, int components, std::byte** writable) {
   size_t n = 0;
   if (__builtin_mul_overflow(count, size_t(components), &n) || __builtin_mul_overflow(n, element_size(type), &n))
-    fail_data(fmt::format("an array of {} tuples of {} is larger than any memory", count, components));
+    fail_data(fmt::format("an array of {} tuples of {} exceeds any memory", count, components));
   return Array(Buffer::allocate(n, writable), type, count, components);
 }
 
@@ -121,7 +121,7 @@ double Array::get(size_t i, int c) const {
 }
 
 Array Array::component(int c) const {
-  if (c < 0 || c >= components_) fail_internal(fmt::format("array has {} components, not component {}", components_, c));
+  if (c < 0 || c >= components_) fail_internal(fmt::format("array has {} components; there is no component {}", components_, c));
   Array a = *this;
   if (a.data_) a.data_ += c * component_stride_;  // none of an empty array
   a.components_ = 1;
@@ -129,7 +129,7 @@ Array Array::component(int c) const {
 }
 
 Array Array::slice(size_t begin, size_t end) const {
-  if (begin > end || end > count_) fail_internal(fmt::format("array has {} tuples, not {} to {}", count_, begin, end));
+  if (begin > end || end > count_) fail_internal(fmt::format("array has {} tuples; there are no tuples {} to {}", count_, begin, end));
   Array a = *this;
   if (a.data_) a.data_ += ptrdiff_t(begin) * stride_;
   a.count_ = end - begin;
@@ -189,7 +189,7 @@ Array Array::converted(ElementType type) const {
 }
 
 void Array::wrong_type(ElementType asked) const {
-  fail_internal(fmt::format("array of {} seen as {}", element_name(type_), element_name(asked)));
+  fail_internal(fmt::format("array of {} accessed as {}", element_name(type_), element_name(asked)));
 }
 
 }  // namespace sg

@@ -39,14 +39,14 @@ constexpr ElementType element_type_of() {
   }
 }
 
-/// Bytes that somebody owns: our memory, a mapped file, NumPy, a running simulation.
+/// Bytes with an owner: our memory, a mapped file, NumPy, a running simulation.
 struct Buffer {
   std::shared_ptr<const void> owner;
   const std::byte* data = nullptr;
   size_t size = 0;
 
   /// Uninitialised memory, 64-byte aligned; above 4 MB on huge pages. Throws Error(data) when there is not enough.
-  /// `writable` receives the address for the one who fills it.
+  /// `writable` receives the address, for filling it.
   static Buffer allocate(size_t bytes, std::byte** writable);
 };
 

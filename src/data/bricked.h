@@ -11,7 +11,7 @@
 
 namespace sg {
 
-/// Made by a reader, never changed afterwards, used by any number of threads (docs/decisions/0004-bricked-volumes.md).
+/// Made by a reader, immutable afterwards, used by any number of threads (docs/decisions/0004-bricked-volumes.md).
 struct BrickedVolume {
   /// Samples lie at origin + direction * (spacing * (i,j,k)).
   struct Level {
@@ -24,14 +24,14 @@ struct BrickedVolume {
   struct Extremes {
     float lo, hi;
   };
-  static constexpr size_t block = 64;  ///< cells along each axis for which extremes are told
+  static constexpr size_t block = 64;  ///< cells along each axis per block of extremes
 
   std::string field, unit;
   ElementType type = ElementType::f32;
   Mat3 direction;             ///< columns: directions of the axes, orthonormal
   std::vector<Level> levels;  ///< 0 is the finest
   /// Of block (i,j,k) of level 0: samples 64i .. 64(i+1), both ends included, ...; x fastest, max(1, ceil((n-1)/64)) along an axis.
-  /// Empty when the file does not tell.
+  /// Empty when the file does not give them.
   std::vector<Extremes> extremes;
 
   /// Fills `out` with the samples lo .. lo+count-1 of a level, packed, x fastest. The box must lie in the level. Starts no parallel
@@ -41,7 +41,7 @@ struct BrickedVolume {
   std::function<void(size_t level, std::array<size_t, 3> lo, std::array<size_t, 3> count)> expect;
 
   std::array<size_t, 3> blocks() const;
-  /// Over all blocks; empty when the file does not tell.
+  /// Over all blocks; empty when the file does not give it.
   Range range() const;
   uint64_t bytes() const;  ///< of level 0
   /// Of the samples of level 0.

@@ -76,7 +76,7 @@ const Box3& Dataset::bounds() const {
   std::lock_guard lock(mutex_);
   if (!bounds_) {
     bounds_ = sg::bounds(parts_.mesh);
-    if (bricks_) bounds_ = bricks_->bounds();  // what the coarse level stands for
+    if (bricks_) bounds_ = bricks_->bounds();  // the volume that the coarse level represents
   }
   return *bounds_;
 }
@@ -88,7 +88,7 @@ const FieldStats& Dataset::stats(const Field& field) const {
     if (have == key && stats->range.size() == size_t(field.components())) return *stats;
   const Array& skip = field.association == Association::point ? parts_.point_ghost : parts_.cell_ghost;
   stats_.emplace_back(key, std::make_unique<FieldStats>(field_stats(field.array, true, skip)));
-  // Means hide the extremes of the volume that the dataset stands for.
+  // Averages hide the extremes of the volume that the dataset represents.
   if (bricks_ && field.association == Association::point && field.name == bricks_->field)
     if (const Range r = bricks_->range(); !r.empty() && field.components() == 1) stats_.back().second->range[0].add(r);
   return *stats_.back().second;
@@ -132,7 +132,7 @@ DatasetPtr single_dataset(const Data& data, std::string_view who) {
   size_t n = 0;
   for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { found = d, ++n; });
   if (n != 1)
-    fail_usage(n ? fmt::format("needs one mesh but got {} parts", n) : std::string("needs a mesh but got none"), std::string(who));
+    fail_usage(n ? fmt::format("needs a single mesh but got {} parts", n) : std::string("needs a mesh but got none"), std::string(who));
   return found;
 }
 

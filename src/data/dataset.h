@@ -76,13 +76,13 @@ class Dataset {
 /// Validates (mesh, field lengths) and freezes. Throws Error(data).
 DatasetPtr make_dataset(DatasetParts parts);
 /// `parts` are one level of a bricked volume: renderers may read finer values of it; bounds() and the range of its field are the volume's.
-/// What filters make of it is no level of the volume any more.
+/// What filters make of it is not a level of the volume any more.
 DatasetPtr make_dataset(DatasetParts parts, std::shared_ptr<const BrickedVolume> bricks);
 DatasetPtr make_dataset(Mesh mesh, FieldSet fields = {});
 
 struct Collection;
 using CollectionPtr = std::shared_ptr<const Collection>;
-/// Columns of equal length. A column of words holds i32 places in its list of labels, -1 where there is none.
+/// Columns of equal length. A column of words holds i32 indices into its list of labels, -1 where there is none.
 struct Table {
   std::vector<Field> columns;
   std::vector<std::vector<std::string>> labels;  ///< one list per column (empty for numbers), or none at all

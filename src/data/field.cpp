@@ -52,7 +52,7 @@ void FieldSet::add(Field f) {
     } else if (index_.use_count() > 1) {
       index_ = std::make_shared<Index>(*index_);
     }
-    std::atomic_thread_fence(std::memory_order_acquire);  // a copy elsewhere may just have let go of it
+    std::atomic_thread_fence(std::memory_order_acquire);  // another copy may just have released it
     index_->places[size_t(f.association)].emplace(f.name, fields_.size());
   }
   fields_.push_back(std::move(f));
@@ -62,7 +62,7 @@ void FieldSet::remove(std::string_view name, Association a) {
   const size_t at = place_of(name, a);
   if (at == nowhere) return;
   fields_.erase(fields_.begin() + ptrdiff_t(at));
-  index_.reset();  // made anew by the next add()
+  index_.reset();  // rebuilt by the next add()
 }
 
 const Field* FieldSet::find(std::string_view name, Association a) const {
@@ -84,7 +84,8 @@ const Field& FieldSet::require(std::string_view name) const {
 const Field& FieldSet::require(std::string_view name, Association a) const {
   if (const Field* f = find(name, a)) return *f;
   if (const Field* other = find(name))
-    fail_usage(fmt::format("field '{}' lies on the {}s, not on the {}s", name, association_name(other->association), association_name(a)));
+    fail_usage(
+        fmt::format("field '{}' is defined on the {}s, not on the {}s", name, association_name(other->association), association_name(a)));
   require(name);
   fail_internal("unreachable");
 }

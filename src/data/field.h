@@ -15,19 +15,19 @@ enum class Association : uint8_t { point, cell, whole };
 /// "point", "cell", "whole".
 std::string_view association_name(Association a);
 
-/// What the file said the array is for; a hint for defaults, never a type.
+/// What the file says the array is for; a hint for defaults, never a type.
 enum class Role : uint8_t { none, scalars, vectors, normals, tcoords, tensors, colors, global_ids, labels };
 
-/// How a field wants to be seen, told by the operation that made it: a hint for those who choose colours when nobody says.
+/// How a field should be shown, set by the operation that made it: a hint for choosing colours by default.
 struct FieldLook {
   /// Which values are to be seen in a volume; fibres: the few that are not zero, as solid strands.
   enum class Shows : uint8_t { any, high, low, fibres } shows = Shows::any;
-  bool one_sided = false;  ///< its negative values are no other kind: a sequential map
-  bool two_sided = false;  ///< its signs are two kinds, however unlike their reach
-  bool tailed = false;     ///< derivatives: single extreme values say little
+  bool one_sided = false;  ///< its negative values are not a separate kind: use a sequential map
+  bool two_sided = false;  ///< its signs are two kinds, however unequal their ranges
+  bool tailed = false;     ///< derivatives: isolated extremes mean little
   bool texture = false;    ///< dark and bright for the colours of another field, in [0, 1] or with both signs
   bool bands = false;      ///< numbers of bands, whose ends are the cell fields "band low" and "band high"
-  bool result = false;     ///< what the operation was asked for: coloured by, before all others
+  bool result = false;     ///< the result requested of the operation: preferred for colouring
 
   friend bool operator==(const FieldLook&, const FieldLook&) = default;
 };
@@ -71,7 +71,7 @@ class FieldSet {
   /// The field with look.result; null when there is none.
   const Field* result() const;
   /// The field an operation takes when none is named: role scalars, else the first point field with `components`
-  /// components (0 = any) that is no id, normal or texture coordinate, else the first such cell field; null when none.
+  /// components (0 = any) that is not an id, normal or texture coordinate, else the first such cell field; null when none.
   const Field* active(int components = 1) const;
 
   std::vector<std::string> names() const;

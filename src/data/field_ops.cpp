@@ -39,10 +39,10 @@ Array gather_any(const Array& a, std::span<const Id> ids) {
 template <class T>
 T blended(double v) {
   if constexpr (std::is_floating_point_v<T>) return T(v);
-  else return nearest_whole<T>(v);  // between two infinities there is no place
+  else return nearest_whole<T>(v);  // there is nothing between two infinities
 }
 
-// Directions between those at two points, as long as the lengths there say: blended as numbers alone they would be shorter.
+// Directions between those at two points, with interpolated length: blended component by component they would be shorter.
 Array interpolate_directions(const Array& a, std::span<const EdgePoint> points) {
   std::byte* out = nullptr;
   Array r = Array::make_raw(a.type(), points.size(), 3, &out);

@@ -28,7 +28,7 @@ size_t LatticeView::cells() const {
 }
 
 Lattice::Lattice(const Mesh& mesh) {
-  if (!is_lattice(mesh)) fail_internal("a lattice was expected");
+  if (!is_lattice(mesh)) fail_internal("expected a lattice");
   view_.dims = lattice_dims(mesh);
   if (auto* u = std::get_if<UniformGrid>(&mesh)) {
     view_.mode = LatticeView::Mode::affine;

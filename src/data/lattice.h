@@ -39,7 +39,7 @@ struct LatticeView {
 /// A LatticeView and what it points to; keeps the arrays alive.
 class Lattice {
  public:
-  /// Throws an internal Error for a mesh that is no lattice.
+  /// Throws an internal Error for a mesh that is not a lattice.
   explicit Lattice(const Mesh& mesh);
   const LatticeView& view() const { return view_; }
 

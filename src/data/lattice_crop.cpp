@@ -88,14 +88,14 @@ Array crop_block(const Array& values, std::array<size_t, 3> dims, std::array<siz
 }
 
 DatasetPtr crop_lattice(const Dataset& d, std::array<size_t, 3> lo, std::array<size_t, 3> hi, std::array<size_t, 3> stride) {
-  if (!is_lattice(d.mesh())) fail_usage(fmt::format("a part by indices needs a grid, not a mesh of kind {}", d.kind()), "crop");
+  if (!is_lattice(d.mesh())) fail_usage(fmt::format("cropping by indices needs a grid, not a mesh of kind {}", d.kind()), "crop");
   Crop c{lattice_dims(d.mesh()), lo, {}, stride};
   for (size_t i = 0; i < 3; ++i) {
-    if (stride[i] == 0) fail_usage("a stride of 0", "crop", "1 keeps every point");
+    if (stride[i] == 0) fail_usage("the stride is 0", "crop", "use 1 to keep every point");
     const size_t last = std::min(hi[i], c.dims[i] - 1);
     if (lo[i] > last)
-      fail_usage(fmt::format("points {} to {} along axis {} of a grid with {} points", lo[i], hi[i], "xyz"[i], c.dims[i]), "crop",
-                 fmt::format("0 to {}", c.dims[i] - 1));
+      fail_usage(fmt::format("points {} to {} along axis {} do not exist: the grid has {} points there", lo[i], hi[i], "xyz"[i], c.dims[i]),
+                 "crop", fmt::format("0 to {}", c.dims[i] - 1));
     c.count[i] = (last - lo[i]) / stride[i] + 1;
   }
   DatasetParts parts;
@@ -118,7 +118,7 @@ DatasetPtr crop_lattice(const Dataset& d, std::array<size_t, 3> lo, std::array<s
   if (!d.point_ghost().empty()) parts.point_ghost = c.points(d.point_ghost());
   if (!d.cell_ghost().empty() && keep_cells) parts.cell_ghost = c.cells(d.cell_ghost());
   parts.notes = d.notes();
-  if (dropped) parts.notes.emplace_back("crop", fmt::format("{} cell fields were left out: cells do not survive a stride", dropped));
+  if (dropped) parts.notes.emplace_back("crop", fmt::format("{} cell fields were left out: a stride keeps points, not cells", dropped));
   parts.time = d.time();
   return make_dataset(std::move(parts));
 }

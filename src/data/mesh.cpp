@@ -18,7 +18,7 @@ Mesh::~Mesh() = default;
 IndexView index_view(const Array& a) {
   if (a.empty()) return {};
   if (a.type() != ElementType::i64 && a.type() != ElementType::i32) fail_internal("cell indices must be i32 or i64");
-  if (!a.packed()) fail_internal("cell indices must be packed");
+  if (!a.packed()) fail_internal("cell indices must be contiguous");
   return {a.raw(), a.type() == ElementType::i64};
 }
 

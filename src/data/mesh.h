@@ -134,7 +134,7 @@ Box3 bounds(const Mesh& mesh);
 /// (Pixel and Voxel for uniform and rectilinear ones).
 std::vector<std::pair<std::string_view, size_t>> cell_type_counts(const Mesh& mesh);
 
-/// Checks sizes, index ranges, types and order; throws Error(data) that says which cell or coordinate is wrong.
+/// Checks sizes, index ranges, types and order; throws Error(data) naming the invalid cell or coordinate.
 void validate(const Mesh& mesh);
 
 }  // namespace sg

@@ -10,7 +10,7 @@ namespace sg {
 DatasetPtr make_trusted_dataset(DatasetParts parts, std::shared_ptr<const BrickedVolume> bricks = {});
 
 namespace detail {
-/// Is make_trusted_dataset() at work in this thread?
+/// Whether make_trusted_dataset() is running in this thread.
 bool mesh_is_trusted();
 }  // namespace detail
 

@@ -24,8 +24,7 @@ void check_points(const Points& p) {
 void check_dims(const std::array<size_t, 3>& d) {
   size_t n = 1;
   for (size_t a : d)
-    if (__builtin_mul_overflow(n, std::max<size_t>(a, 1), &n) || n > (size_t(1) << 62))
-      fail_data("the grid has more points than can be counted");
+    if (__builtin_mul_overflow(n, std::max<size_t>(a, 1), &n) || n > (size_t(1) << 62)) fail_data("the grid has too many points to count");
 }
 
 constexpr size_t none = SIZE_MAX;
@@ -72,7 +71,7 @@ void check_cells(const CellArray& a, size_t limit, const char* what) {
     const size_t n = a.offsets.count();
     if (at[0] != 0) fail_data(fmt::format("{}: the first offset is {}, not 0", what, at[0]));
     if (const size_t i = first_bad(n - 1, [&](size_t k) { return at[k + 1] < at[k]; }); i != none)
-      fail_data(fmt::format("{}: offsets fall from {} to {} at cell {}", what, at[i], at[i + 1], i));
+      fail_data(fmt::format("{}: offsets decrease from {} to {} at cell {}", what, at[i], at[i + 1], i));
     if (size_t(at[n - 1]) > ids.count())
       fail_data(fmt::format("{}: offsets end at {} but there are {} indices", what, at[n - 1], ids.count()));
   }
@@ -81,7 +80,7 @@ void check_cells(const CellArray& a, size_t limit, const char* what) {
   const size_t bad = ids.type() == ElementType::i64 ? first_outside(ids.view<int64_t>().data, ids.count(), limit)
                                                     : first_outside(ids.view<int32_t>().data, ids.count(), limit);
   if (bad != none)
-    fail_data(fmt::format("{}: point id {} at place {} is not in 0..{}", what, index_view(ids)[bad], bad, int64_t(limit) - 1));
+    fail_data(fmt::format("{}: point id {} at index {} is not in 0..{}", what, index_view(ids)[bad], bad, int64_t(limit) - 1));
 }
 
 void check_axis(const Array& a, char name) {
@@ -102,7 +101,7 @@ void check_orders(const UnstructuredMesh& m) {
   if (m.degrees.type() != ElementType::u8 || m.degrees.components() != 3 || m.degrees.count() != n)
     fail_data(fmt::format("orders of cells: {} tuples of {} {} for {} cells", m.degrees.count(), m.degrees.components(),
                           element_name(m.degrees.type()), n),
-              {}, "they must be 3 u8 a cell");
+              {}, "they must be 3 u8 per cell");
   const auto order = m.degrees.view<uint8_t>();
   const CellsView cells = cells_view(m.cells);
   auto fits = [&](size_t c) {
@@ -128,7 +127,7 @@ void check_weights(const UnstructuredMesh& m) {
   if (m.weights.type() != ElementType::f64 || m.weights.components() != 1 || m.weights.count() != m.points.count())
     fail_data(fmt::format("rational weights: {} tuples of {} {} for {} points", m.weights.count(), m.weights.components(),
                           element_name(m.weights.type()), m.points.count()),
-              {}, "they must be one f64 a point");
+              {}, "they must be one f64 per point");
   const auto weight = m.weights.view<double>();
   if (const size_t p = first_bad(weight.count, [&](size_t i) { return !std::isfinite(weight[i]); }); p != none)
     fail_data(fmt::format("the rational weight of point {} is {}", p, weight[p]));
@@ -189,15 +188,15 @@ struct Checker {
       if (bad != none) check_type(bad, types[bad]);
       polyhedra = first_bad(n, [&](size_t c) { return types[c] == uint8_t(CellType::polyhedron); }) != none;
     }
-    if (polyhedra && m.polyhedron_faces.count() != n + 1) fail_data("polyhedra without their faces");
+    if (polyhedra && m.polyhedron_faces.count() != n + 1) fail_data("the polyhedra have no faces");
     if (m.polyhedron_faces.count() > 0) {
       check_cells(m.faces, m.points.count(), "faces of polyhedra");
       if (m.polyhedron_faces.type() != ElementType::i64 || m.polyhedron_faces.count() != n + 1)
         fail_data("face lists of polyhedra do not fit the cells");
       const auto at = m.polyhedron_faces.view<int64_t>();
-      if (at[0] != 0 || size_t(at[n]) > m.faces.size()) fail_data("face lists of polyhedra run out of the faces");
+      if (at[0] != 0 || size_t(at[n]) > m.faces.size()) fail_data("face lists of polyhedra extend beyond the faces");
       if (const size_t c = first_bad(n, [&](size_t i) { return at[i + 1] < at[i]; }); c != none)
-        fail_data(fmt::format("face lists of polyhedra fall at cell {}", c));
+        fail_data(fmt::format("offsets of polyhedron faces decrease at cell {}", c));
     }
     check_orders(m);
     check_weights(m);

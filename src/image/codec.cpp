@@ -50,18 +50,18 @@ std::string jpeg_bytes(const Image& image, const std::string& path) {
   std::string bytes(reinterpret_cast<const char*>(data), good ? size : 0);
   tjFree(data);
   if (tj) tjDestroy(tj);
-  if (!good) fail_data("JPEG cannot be made: " + problem, path);
+  if (!good) fail_data("cannot encode JPEG: " + problem, path);
   return bytes;
 }
 
 std::string webp_bytes(const Image& image, const std::string& path) {
   if (image.width > WEBP_MAX_DIMENSION || image.height > WEBP_MAX_DIMENSION)
     fail_usage(fmt::format("{} x {} pixels are too many for WebP", image.width, image.height), path,
-               fmt::format("at most {} each way; PNG has no such limit", WEBP_MAX_DIMENSION));
+               fmt::format("at most {} along each side; PNG has no such limit", WEBP_MAX_DIMENSION));
   WebPConfig config;
   WebPPicture picture;
   if (!WebPConfigInit(&config) || !WebPPictureInit(&picture) || !WebPConfigLosslessPreset(&config, 2))
-    fail_internal("libwebp could not start", path);
+    fail_internal("cannot start libwebp", path);
   config.exact = 1;
   picture.use_argb = 1;
   picture.width = image.width, picture.height = image.height;
@@ -78,7 +78,7 @@ std::string webp_bytes(const Image& image, const std::string& path) {
   const int problem = picture.error_code;
   WebPPictureFree(&picture);
   WebPMemoryWriterClear(&writer);
-  if (!good) fail_data(fmt::format("WebP cannot be made (libwebp error {})", problem), path);
+  if (!good) fail_data(fmt::format("cannot encode WebP (libwebp error {})", problem), path);
   return bytes;
 }
 
@@ -93,8 +93,8 @@ void write_image(const std::string& path, const Image& image) {
   const std::string extension = extension_of(path);
   const auto& known = image_extensions();
   if (std::find(known.begin(), known.end(), extension) == known.end())
-    fail_usage(extension.empty() ? "the picture's name has no extension" : fmt::format("pictures cannot be written as '.{}'", extension),
-               path, "use .png, .jpg or .webp");
+    fail_usage(extension.empty() ? "the picture's name has no extension" : fmt::format("cannot write pictures as '.{}'", extension), path,
+               "use .png, .jpg or .webp");
   if (image.width < 1 || image.height < 1) fail_usage("the picture has no pixels", path);
   if (extension == "png") {
     const std::vector<uint8_t> bytes = encode_png(image);

@@ -9,8 +9,8 @@
 
 namespace sg {
 
-/// The encoder is chosen by the extension: png, jpg/jpeg, webp. Written beside and renamed. Throws Error(usage) for an
-/// extension that is none of these, Error(data) when the file cannot be written.
+/// The encoder is chosen by the extension: png, jpg/jpeg, webp. Written to a temporary file and renamed. Throws Error(usage) for any other
+/// extension, Error(data) when the file cannot be written.
 void write_image(const std::string& path, const Image& image);
 /// Extensions that write_image knows.
 const std::vector<std::string>& image_extensions();

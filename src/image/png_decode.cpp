@@ -102,17 +102,17 @@ Image decode_png(std::span<const std::byte> bytes, const std::string& name) {
   r.source.bytes = bytes;
   r.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &r.source, on_error, on_warning);
   r.info = r.png ? png_create_info_struct(r.png) : nullptr;
-  if (!r.info) fail_internal("libpng could not start", name);
+  if (!r.info) fail_internal("cannot start libpng", name);
   if (!r.read_head()) fail_data("damaged PNG: " + r.source.problem, name);
 
   // Deflate packs at most 1032 to 1: a larger picture cannot be in this file.
   const size_t row = png_get_rowbytes(r.png, r.info);
   uint64_t size = 0, packed = 0;
   if (!multiply(row, uint64_t(r.image.height), size) || !multiply(bytes.size(), 8 * 1040, packed) || size > packed)
-    fail_data(fmt::format("damaged PNG: {} x {} pixels cannot be in {} bytes", r.image.width, r.image.height, bytes.size()), name);
+    fail_data(fmt::format("damaged PNG: {} x {} pixels do not fit into {} bytes", r.image.width, r.image.height, bytes.size()), name);
   if (size > (uint64_t(256) << 20) + 100 * uint64_t(bytes.size()))
     fail_data(
-        fmt::format("{} x {} pixels of a file of {} bytes would fill {} MiB", r.image.width, r.image.height, bytes.size(), size >> 20),
+        fmt::format("{} x {} pixels from a file of {} bytes would fill {} MiB", r.image.width, r.image.height, bytes.size(), size >> 20),
         name);
   r.image.pixels.resize(size_t(size));
   for (int y = 0; y < r.image.height; ++y) r.rows.push_back(r.image.pixels.data() + size_t(y) * row);

@@ -40,7 +40,7 @@ std::string zlib_packed(std::string_view text) {
   uLongf size = compressBound(uLong(text.size()));
   std::string packed(size, 0);
   if (compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(text.data()), uLong(text.size()), 9) != Z_OK)
-    fail_internal("zlib could not compress a text", "PNG");
+    fail_internal("zlib could not compress a text entry", "PNG");
   packed.resize(size);
   return packed;
 }
@@ -63,11 +63,11 @@ bool is_utf8(std::string_view s) {
 
 void add_text(std::vector<uint8_t>& out, const std::string& key, const std::string& text) {
   if (key.empty() || key.size() > 79 || !is_ascii(key))
-    fail_usage(fmt::format("'{}' cannot name a text in a PNG", key), "PNG", "1 to 79 ASCII characters");
-  if (text.find('\0') != std::string::npos) fail_usage(fmt::format("text '{}' holds a zero byte", key), "PNG");
+    fail_usage(fmt::format("'{}' is not a valid name for a text entry in a PNG", key), "PNG", "use 1 to 79 ASCII characters");
+  if (text.find('\0') != std::string::npos) fail_usage(fmt::format("text entry '{}' contains a zero byte", key), "PNG");
   const bool packed = text.size() > compress_text_above;
   const std::string name = key + '\0', body = packed ? zlib_packed(text) : text;
-  // Bytes that are no UTF-8 can only be Latin-1.
+  // Bytes that are not UTF-8 can only be Latin-1.
   const bool latin1 = is_ascii(text) || !is_utf8(text);
   if (!latin1) add_chunk(out, "iTXt", name + char(packed) + '\0' + '\0' + '\0' + body);
   else if (packed) add_chunk(out, "zTXt", name + '\0' + body);
@@ -146,7 +146,7 @@ Stripe packed_stripe(const Image& image, size_t begin, size_t end, bool last) {
   s.bytes = rows.size();
   s.adler = uint32_t(adler32_z(1, rows.data(), rows.size()));
   z_stream z{};
-  if (deflateInit2(&z, 1, Z_DEFLATED, -15, 9, Z_DEFAULT_STRATEGY) != Z_OK) fail_internal("zlib could not start", "PNG");
+  if (deflateInit2(&z, 1, Z_DEFLATED, -15, 9, Z_DEFAULT_STRATEGY) != Z_OK) fail_internal("cannot start zlib", "PNG");
   const size_t head = 8 + (begin == 0 ? 2 : 0);
   s.chunk.resize(head + deflateBound(&z, uLong(rows.size())) + 16);
   if (begin == 0) s.chunk[8] = 0x78, s.chunk[9] = 0x01;  // zlib header: window of 32 KiB, fast
@@ -168,7 +168,9 @@ Stripe packed_stripe(const Image& image, size_t begin, size_t end, bool last) {
 std::vector<uint8_t> encode_png(const Image& image) {
   if (image.width < 1 || image.height < 1 || image.channels < 1 || image.channels > 4 ||
       image.pixels.size() != size_t(image.width) * size_t(image.height) * size_t(image.channels))
-    fail_usage(fmt::format("an image of {} x {} pixels and {} channels cannot be a PNG", image.width, image.height, image.channels), "PNG");
+    fail_usage(
+        fmt::format("an image of {} x {} pixels and {} channels cannot be written as PNG", image.width, image.height, image.channels),
+        "PNG");
   const size_t row = size_t(image.width) * size_t(image.channels) + 1, height = size_t(image.height);
   const size_t rows = std::max<size_t>(1, stripe_bytes / row), count = (height + rows - 1) / rows;
   std::vector<Stripe> stripes(count);

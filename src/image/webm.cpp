@@ -14,7 +14,7 @@ namespace sg {
 
 namespace {
 
-// Element ids, as they stand in the file (RFC 9559, section 5).
+// Element ids, as stored in the file (RFC 9559, section 5).
 enum Id : uint32_t {
   ebml = 0x1A45DFA3,
   ebml_version = 0x4286,
@@ -90,11 +90,11 @@ std::string track_text(const WebmTrack& t) {
 }  // namespace
 
 std::string webm_file(const WebmTrack& track, std::span<const VideoFrame> frames) {
-  if (frames.empty()) fail_usage("a film needs a picture at least", "webm");
-  if (!frames[0].key) fail_internal("the first picture of a film stands alone", "webm");
+  if (frames.empty()) fail_usage("a film needs at least one picture", "webm");
+  if (!frames[0].key) fail_internal("the first picture of a film must be a key frame", "webm");
   if (track.width < 1 || track.height < 1 || track.width > 16384 || track.height > 16384)
-    fail_usage(fmt::format("{} x {} pixels are no size of a film", track.width, track.height), "webm", "1 to 16384");
-  if (!(track.fps >= 0.01 && track.fps <= 1000)) fail_usage(fmt::format("{} pictures a second", track.fps), "webm", "0.01 to 1000");
+    fail_usage(fmt::format("{} x {} pixels is not a valid film size", track.width, track.height), "webm", "1 to 16384");
+  if (!(track.fps >= 0.01 && track.fps <= 1000)) fail_usage(fmt::format("{} pictures per second", track.fps), "webm", "0.01 to 1000");
   const auto ms = [&](size_t n) { return std::llround(double(n) * 1000 / track.fps); };
 
   const std::string begin =

@@ -9,7 +9,7 @@ namespace sg {
 /// One encoded picture.
 struct VideoFrame {
   std::string bytes;
-  bool key = false;  ///< can be shown without those before it
+  bool key = false;  ///< can be shown without the preceding ones
 };
 
 struct WebmTrack {

@@ -47,7 +47,7 @@ void brick_row(const T* values, const std::array<size_t, 3>& dims, size_t y0, si
     const size_t x0 = b * edge, x1 = std::min(x0 + edge, nx - 1);
     T bl = top, bh = bottom;
     for (size_t x = x0; x <= x1; ++x) bl = std::min(bl, l[x]), bh = std::max(bh, h[x]);
-    // Only a cube of NaN alone leaves bl > bh.
+    // Only a cube with nothing but NaN leaves bl > bh.
     if (bl > bh) out[b] = {HUGE_VALF, -HUGE_VALF};
     else out[b] = {round_down(bl), round_up(bh)};
   }

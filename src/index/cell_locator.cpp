@@ -9,7 +9,7 @@ namespace sg {
 
 namespace {
 
-// Has the mesh cells that are no solids?
+// Whether the mesh has cells that are not solids.
 bool has_low_cells(const Dataset& d) {
   if (const auto* u = d.as<UnstructuredMesh>()) {
     if (u->types.empty()) return cell_type_info(u->single_type).dimension < 3;

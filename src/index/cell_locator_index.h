@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a CellLocator holds; for the files cell_locator*.cpp alone.
+// What a CellLocator holds; only for the files cell_locator*.cpp.
 #pragma once
 #include <mutex>
 

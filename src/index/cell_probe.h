@@ -71,7 +71,7 @@ class CellProbe {
   /// `simplices` must outlive it; `map` is copied.
   CellProbe(const CellMap& map, const SimplexArrays& simplices, double slack) : map_(map), fast_(&simplices), slack_(slack) {}
 
-  /// Does the cell hold x, and where?
+  /// Whether the cell contains x, and where.
   bool holds(size_t cell, Vec3 x, CellPlace& place);
   /// The nearest point of the cell and its squared distance: 0 for a solid that holds x, else of its faces; of curves and
   /// surfaces by their map.

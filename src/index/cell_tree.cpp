@@ -76,7 +76,7 @@ void boxes_by_reader(const DatasetPtr& d, Vec3 center, Plane<TreeRecord>& out, C
       &context);
 }
 
-// Do all cells lie in the box of their points?
+// Whether all cells lie in the box of their points.
 bool flat_cells(const UnstructuredMesh& m) {
   if (m.types.empty()) return !is_high_order(m.single_type);
   const auto types = m.types.view<uint8_t>();

@@ -34,8 +34,8 @@ class CellTree {
   static constexpr int max_depth = 88;
 
   /// Over all cells that are not hidden, refined or duplicate and have a finite box. Each box is grown by 1e-7 of its size, so that a
-  /// cell is found from a place that is outside by less than a locator's tolerance. O(n log n); under 60 bytes a cell at its peak
-  /// beside the mesh. Throws Error(usage) from 2^31 cells on.
+  /// cell is found from a place that is outside by less than a locator's tolerance. O(n log n); under 60 bytes per cell at its peak,
+  /// besides the mesh. Throws Error(usage) from 2^31 cells on.
   CellTree(DatasetPtr dataset, Context& context);
   /// Over boxes given by the caller; empty ones are left out.
   CellTree(std::span<const Box3> boxes, Context& context);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tree from boxes. Large nodes are split one after the other by all threads; what is left becomes one task per subtree. Every choice
-// depends on the boxes alone, so the tree is the same for any number of threads.
+// depends only on the boxes, so the tree is the same for any number of threads.
 #include <cstring>
 
 #include "base/parallel.h"
@@ -188,7 +188,7 @@ void build_subtree(TreeRecord* records, NodeRange root, std::vector<TreeNode>& n
 }
 
 // std::partition by all threads, in place: each chunk by itself, then the cells on the wrong side change places pairwise. The result
-// depends on chunk borders alone.
+// depends only on chunk borders.
 template <class Left>
 size_t partition_parallel(TreeRecord* r, size_t n, Left&& is_left) {
   const size_t chunks = (n + grain - 1) / grain;

@@ -72,7 +72,7 @@ class GridIndex {
         }
     return -1;
   }
-  /// Is a cell of points, lines or pixels within `slack` of q? Clamps r to it.
+  /// Whether a cell of points, lines or pixels is within `slack` of q. Clamps r to it.
   bool close(Vec3 q, const std::array<size_t, 3>& cell, double r[3], double slack) const;
   double width(int a, size_t i) const { return std::abs(axis_[a] ? axis_[a][i + 1] - axis_[a][i] : length(step_[a])); }
   Hit hit_plane(double t, int a, size_t plane_number, Vec3 o, Vec3 d, double slack) const;

@@ -28,7 +28,7 @@ MinMaxBricks minmax_bricks(const Array& values, std::array<size_t, 3> dims) {
 // One sweep forth and one back over the 26 neighbours, each at distance one: exact for the Chebyshev distance.
 std::vector<uint8_t> empty_distance(const std::vector<uint8_t>& empty, std::array<size_t, 3> dims) {
   const size_t n = dims[0] * dims[1] * dims[2];
-  if (empty.size() != n) fail_internal("empty_distance: one flag per cube was expected");
+  if (empty.size() != n) fail_internal("empty_distance: expected one flag per cube");
   std::vector<uint8_t> d(n);
   for (size_t i = 0; i < n; ++i) d[i] = empty[i] ? 255 : 0;
   const ptrdiff_t nx = ptrdiff_t(dims[0]), ny = ptrdiff_t(dims[1]), nz = ptrdiff_t(dims[2]);

@@ -12,7 +12,7 @@
 namespace sg {
 
 /// Level 0 are the cubes of MinMaxBricks; a node of level l+1 joins up to 2x2x2 nodes of level l. The last level is one node. Ranges know
-/// no NaN; cubes of NaN alone are empty and never found.
+/// no NaN; cubes with only NaN are empty and never found.
 struct MinMaxOctree {
   using Range = MinMaxBricks::Range;
   struct Level {

@@ -32,7 +32,7 @@ inline Vec2 nearest_in_triangle(Vec3 x, Vec3 a, Vec3 b, Vec3 c) {
 }
 
 /// A ray against triangles that never slips between two that share an edge: the sides of a shared edge are computed from the same two
-/// projected points and differ in sign alone (Woop, Benthin, Wald 2013).
+/// projected points and differ only in sign (Woop, Benthin, Wald 2013).
 class TriangleRay {
  public:
   TriangleRay(Vec3 x, Vec3 d) : x_(x) {

@@ -8,9 +8,9 @@
 
 namespace sg {
 
-/// Each goes into a new file under a name of its own beside its place. commit() brings all to the disk first; then they are renamed in
-/// their order, the one that names the others last. When anything fails, what was there under these names stays, all of it, and nothing
-/// lies beside it. Throws Error(data) naming the path.
+/// Each is written to a new file with a temporary name next to its destination. commit() first flushes all to disk; then they are renamed
+/// in their order, the one that names the others last. If anything fails, all previous files under these names remain and no temporary
+/// files are left. Throws Error(data) naming the path.
 class AtomicFiles {
  public:
   explicit AtomicFiles(const std::vector<std::string>& paths);

@@ -39,7 +39,7 @@ std::string escaped(const std::string& name) {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// Does `name` have the form of `pattern`? reach[i]: the pattern so far can end before letter i; never more than letters times marks.
+// Whether `name` has the form of `pattern`. reach[i]: the pattern so far can end before letter i; never more than letters times marks.
 bool matches(std::string_view pattern, std::string_view name) {
   if (!name.empty() && name[0] == '.' && (pattern.empty() || pattern[0] != '.')) return false;
   std::vector<char> reach(name.size() + 1, 0);
@@ -83,7 +83,7 @@ void expand(const std::string& base, std::string_view rest, std::vector<std::str
 [[noreturn]] void fail_no_match(const std::string& pattern) {
   const std::string name = file_name_of(pattern), folder = folder_of(pattern);
   if (is_pattern(folder)) fail_data(fmt::format("no file matches '{}'", pattern), {}, "{n} is a number, * any text, ? one letter");
-  if (!folder.empty() && !is_folder(folder)) fail_data("no such folder", folder, fmt::format("'{}' was looked for there", name));
+  if (!folder.empty() && !is_folder(folder)) fail_data("no such folder", folder, fmt::format("looked for '{}' there", name));
   const std::vector<std::string> have = folder_entries(folder.empty() ? "." : folder);
   std::string plain = name;
   if (const size_t at = plain.find(number_mark); at != plain.npos) plain.replace(at, number_mark.size(), "0");
@@ -93,9 +93,9 @@ void expand(const std::string& base, std::string_view rest, std::vector<std::str
   for (size_t i = 0; i < std::min<size_t>(have.size(), 4); ++i) few += (i ? ", " : "") + have[i];
   if (have.size() > 4) few += fmt::format(", ... ({} in all)", have.size());
   fail_data(fmt::format("no file matches '{}'", name), folder.empty() ? "the current folder" : folder,
-            !near.empty()  ? fmt::format("near is '{}'", near)
+            !near.empty()  ? fmt::format("the nearest name is '{}'", near)
             : have.empty() ? "it is empty"
-                           : "it has: " + few);
+                           : "it contains: " + few);
 }
 
 struct Stamp {
@@ -131,25 +131,25 @@ std::optional<double> time_inside(const std::string& file, ReadOptions options, 
 }
 
 std::vector<double> stated_times(const std::string& text, size_t steps) {
-  const char* hint = "START:STEP, like 0:0.5, or as many times as there are steps";
+  const char* hint = "give START:STEP, e.g. 0:0.5, or as many times as there are steps";
   std::vector<double> times;
   if (const auto ends = split(text, ':'); ends.size() == 2) {
     const auto start = parse_double(ends[0]), step = parse_double(ends[1]);
     if (!start || !step || !std::isfinite(*start) || !std::isfinite(*step) || !(*step > 0))
-      fail_usage(fmt::format("'{}' says no times of files", text), "times", hint);
+      fail_usage(fmt::format("'{}' does not give the times of the files", text), "times", hint);
     for (size_t i = 0; i < steps; ++i) times.push_back(*start + *step * double(i));
     return times;
   }
   for (const std::string_view part : split(text, ',')) {
     const auto t = parse_double(part);
-    if (!t || !std::isfinite(*t)) fail_usage(fmt::format("'{}' says no times of files", text), "times", hint);
+    if (!t || !std::isfinite(*t)) fail_usage(fmt::format("'{}' does not give the times of the files", text), "times", hint);
     times.push_back(*t);
   }
   if (times.size() != steps) fail_usage(fmt::format("{} times for {} steps", times.size(), steps), "times", hint);
   return times;
 }
 
-// Finds the steps, and what the files themselves say of their times; false when these are to be counted. `order`: they have to grow.
+// Finds the steps, and the times given in the files themselves; false when these are to be counted. `order`: they have to grow.
 bool own_times(Steps& s, bool order, const ReadOptions& options, Context& context) {
   bool known = true, inside = false;
   for (size_t i = 0; i < s.files.size(); ++i) {
@@ -169,9 +169,9 @@ bool own_times(Steps& s, bool order, const ReadOptions& options, Context& contex
   if (all_same) return false;
   for (size_t k = 1; k < s.times.size(); ++k) {
     if (s.places[k].first == s.places[k - 1].first || s.times[k] > s.times[k - 1]) continue;
-    fail_data(fmt::format("begins at the time {}, and '{}' before it ends at {}", exact_number(s.times[k]),
+    fail_data(fmt::format("begins at the time {}, but the previous file, '{}', ends at {}", exact_number(s.times[k]),
                           file_name_of(s.files[s.places[k - 1].first]), exact_number(s.times[k - 1])),
-              s.files[s.places[k].first], "list the files in the order of time, or say the times: times=START:STEP");
+              s.files[s.places[k].first], "list the files in order of time, or give the times: times=START:STEP");
   }
   return true;
 }
@@ -207,7 +207,7 @@ std::vector<std::string> series_files(const std::string& path) {
   std::vector<std::string> files;
   for (const std::string& part : list_parts(path)) {
     if (!is_pattern(part) || file_exists(part)) {
-      if (!file_exists(part)) fail_data("no such file", part.empty() ? "''" : part, fmt::format("it stands in the list '{}'", path));
+      if (!file_exists(part)) fail_data("no such file", part.empty() ? "''" : part, fmt::format("it is in the list '{}'", path));
       files.push_back(part);
       continue;
     }

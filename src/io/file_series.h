@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several files as one time series. A path that is no file itself names them:
+// Several files as one time series. A path that is not a file itself names them:
 //   flow_{n}.vtk   {n} stands for a whole number        flow_*.vtk, run_?/flow.vtk   * for any text, ? for one letter
 //   a.vtu,b.vtu    a list (a comma inside a name is written "\,"), or a list of patterns
 // read_data() and file_times() take such paths, so everything that reads files does; one step is read at a time.
@@ -13,7 +13,7 @@
 
 namespace sg {
 
-/// Is it a pattern or a list, and not a file that is there?
+/// Whether it is a pattern or a list, and not an existing file.
 bool names_series(const std::string& path);
 /// The files: those of a pattern so that numbers in names count ("s2" before "s10"), those of a list in its order. Throws Error(data) when
 /// there is none: what was looked for, where, and what is there that is near.
@@ -29,7 +29,7 @@ std::string map_series(const std::string& path, const std::function<std::string(
 /// have, else (or when all files have the same) 0, 1, 2, ... Throws Error(data) naming the two files when times do not grow from file to
 /// file. Files are looked into once, as long as they do not change.
 std::vector<double> times_of_series(const std::string& path, const ReadOptions& options, Context& context);
-/// The step that `options` ask for. Its time is that of the series; a note "file" names where it comes from.
+/// The step that `options` request. Its time is that of the series; a note "file" names where it comes from.
 Data read_of_series(const std::string& path, const ReadOptions& options, Context& context);
 
 }  // namespace sg

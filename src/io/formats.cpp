@@ -70,8 +70,8 @@ const Format* raw_format() {
 const Format& format_of_folder(const std::string& path) {
   for (const Format& f : formats())
     if (f.sniff_folder && f.sniff_folder(path)) return f;
-  fail_data("is a folder of no known kind", path,
-            "folders that are read: DICOM slices, OpenFOAM cases, AMReX plotfiles, Zarr images, stacks of pictures");
+  fail_data("is a folder of unknown kind", path,
+            "supported folders: DICOM slices, OpenFOAM cases, AMReX plotfiles, Zarr images, stacks of pictures");
 }
 
 const Format& format_of_file(const std::string& path, const ReadOptions& options) {
@@ -94,8 +94,8 @@ const Format& format_of_file(const std::string& path, const ReadOptions& options
   for (const Format& f : formats())
     if (f.read && !f.sniff && !f.sniff_file && has_extension(f, path)) return f;
   for (const Format& f : formats())
-    if (f.read && has_extension(f, path)) fail_data(fmt::format("is named like {} but its content is none", f.name), path);
-  fail_data("is in no known format", path, "known are: " + known_extensions(false) + "; for a raw brick give --dims and --type");
+    if (f.read && has_extension(f, path)) fail_data(fmt::format("is named like {}, but its content is not", f.name), path);
+  fail_data("has an unknown format", path, "supported: " + known_extensions(false) + "; for a raw brick give --dims and --type");
 }
 
 const Format& format_of(std::string& path, const ReadOptions& options) {
@@ -104,13 +104,13 @@ const Format& format_of(std::string& path, const ReadOptions& options) {
   return is_folder(path) ? format_of_folder(path) : format_of_file(path, options);
 }
 
-/// Runs f(format, path); errors that do not say where get the path.
+/// Runs f(format, path); errors without a location get the path.
 template <class F>
 auto with_format(std::string path, const ReadOptions& options, F&& f) {
   trust_folder_of(path);
   try {
     return f(format_of(path, options), path);
-  } catch (Error& e) {  // most say where; those found when the dataset is made cannot
+  } catch (Error& e) {  // most have a location; those found when the dataset is made cannot
     if (e.where().find(path) == std::string::npos) e.add_context(fmt::format("reading '{}'", path));
     throw;
   }
@@ -172,7 +172,7 @@ Series open_series(const std::string& path, const ReadOptions& options, Context&
 size_t chosen_step(const std::vector<double>& times, const ReadOptions& options, const std::string& path, size_t otherwise) {
   if (options.step >= 0) {
     if (size_t(options.step) >= times.size())
-      fail_usage(fmt::format("there is no time step {}", options.step), path, fmt::format("it has {}, counted from 0", times.size()));
+      fail_usage(fmt::format("there is no time step {}", options.step), path, fmt::format("it has {} steps, counted from 0", times.size()));
     return size_t(options.step);
   }
   if (!options.time) return otherwise;
@@ -186,9 +186,9 @@ const Format& format_to_write(const std::string& path) {
   const Format* known = nullptr;
   for (const Format& f : formats())
     if (has_extension(f, path) && (!known || !known->write)) known = &f;
-  if (!known) fail_usage(fmt::format("unknown extension '{}'", extension_of(path)), path, "can write: " + known_extensions(true));
+  if (!known) fail_usage(fmt::format("unknown extension '{}'", extension_of(path)), path, "supported: " + known_extensions(true));
   if (!known->write)
-    fail_usage(fmt::format("{} files are read but not written", known->name), path, "can write: " + known_extensions(true));
+    fail_usage(fmt::format("{} files can be read but not written", known->name), path, "supported: " + known_extensions(true));
   return *known;
 }
 
@@ -201,7 +201,7 @@ void write_data(const std::string& given, const Data& data, const WriteOptions& 
     Schema schema;
     if (f.describe_write) f.describe_write(schema, taken);
     if (!schema.find("pieces"))
-      fail_usage(fmt::format("{} files do not hold pieces", f.name), path, "write .pvti .pvtr .pvts .pvtu .pvtp or .vtm");
+      fail_usage(fmt::format("{} files cannot hold pieces", f.name), path, "write .pvti, .pvtr, .pvts, .pvtu, .pvtp or .vtm");
   }
   with_context(fmt::format("writing '{}'", path), [&] { f.write(path, data, options, context); });
 }

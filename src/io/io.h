@@ -34,7 +34,7 @@ constexpr auto enum_words(HeaderLine) {
   return std::array{Word{"auto", HeaderLine::automatic}, Word{"yes", HeaderLine::yes}, Word{"no", HeaderLine::no}};
 }
 
-/// What a reader may leave out. It may always give more than was asked for; read_data() then cuts what it can (see Format::honours).
+/// What a reader may leave out. It may always return more than requested; read_data() then cuts what it can (see Format::honours).
 struct ReadOptions {
   std::vector<std::string> fields;          ///< names to load; empty = all. Readers may skip the bytes of the others.
   bool header_only = false;                 ///< no field values needed: readers may leave fields out that cost reading
@@ -50,7 +50,7 @@ struct ReadOptions {
   int raw_components = 1;                   ///< ... numbers per voxel,
   Vec3 raw_spacing{1, 1, 1};                ///< ... distance of voxels
   HeaderLine csv_header = HeaderLine::automatic;
-  std::string times;  ///< several files as a series (io/file_series.h): START:STEP or a list; "" = what they say
+  std::string times;  ///< several files as a series (io/file_series.h): START:STEP or a list; "" = those in the files
 };
 
 /// How VTK XML holds the bytes of arrays.
@@ -86,9 +86,9 @@ void write_data(const std::string& path, const Data& data, const WriteOptions& o
 
 /// Time values of a series, ascending; empty for a file without time.
 std::vector<double> file_times(const std::string& path, const ReadOptions& options, Context& context);
-/// A series that reads a step when it is asked for; a file without time is a series of one step at 0.
+/// A series that reads a step on demand; a file without time is a series of one step at 0.
 Series open_series(const std::string& path, const ReadOptions& options, Context& context);
-/// The step that `options` ask for among `times` (not empty): by number, else the nearest time, else `otherwise`. Throws
+/// The step among `times` (not empty) that `options` request: by number, else the nearest time, else `otherwise`. Throws
 /// Error(usage) for a step that is not there.
 size_t chosen_step(const std::vector<double>& times, const ReadOptions& options, const std::string& path, size_t otherwise = 0);
 
@@ -96,7 +96,7 @@ size_t chosen_step(const std::vector<double>& times, const ReadOptions& options,
 /// `may_be_empty`: an empty file is right, because it only marks its folder. `names_others`: a file refers to further files.
 enum Honours : unsigned { honours_region = 1, honours_pieces = 2, may_be_empty = 4, names_others = 8 };
 
-/// One format: what it is called, how to know it, how to read and write it. The table stands in formats.def.
+/// One format: what it is called, how to know it, how to read and write it. The table is in formats.def.
 struct Format {
   std::string_view name;
   std::string_view extensions;  ///< blank-separated, lower case; may hold two parts ("nii.gz")
@@ -112,7 +112,7 @@ struct Format {
   /// For formats without a magic number, known by the length and all of the content; asked when no sniff accepts the content and the
   /// extension is one of the format's. `whole` is mapped: touch little of it.
   bool (*sniff_file)(std::span<const std::byte> whole) = nullptr;
-  /// Declare the options that this format takes beside those of all (io/options.h); null = none.
+  /// Declare the options of this format besides the common ones (io/options.h); null = none.
   void (*describe_read)(Schema& s, ReadOptions& options) = nullptr;
   void (*describe_write)(Schema& s, WriteOptions& options) = nullptr;
 };

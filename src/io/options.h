@@ -10,11 +10,11 @@ namespace sg {
 /// A step that reads.
 struct ReadParams {
   std::string path;
-  ReadOptions options;  ///< header_only is none of the parameters
+  ReadOptions options;  ///< header_only is not a parameter
 };
 void describe(Schema& s, ReadParams& p);
 void describe(Schema& s, ReadOptions& p);
-/// The same for one format: path, what all formats take, and what this one takes beside.
+/// The same for one format: the path, the common options, and those of this format.
 void describe(Schema& s, ReadParams& p, const Format& format);
 
 /// Throws Error(usage) for options that do not go together: a size without a type, a region that ends before it begins, ...

@@ -23,8 +23,8 @@ uint64_t plausible_memory(uint64_t file_bytes) {
 
 void check_plausible(uint64_t need, uint64_t file_bytes, const std::string& path) {
   if (need <= plausible_memory(file_bytes)) return;
-  fail_data(fmt::format("a file of {} would fill {} of memory", human_bytes(file_bytes), human_bytes(need)), path,
-            fmt::format("if it is to be trusted, allow that much: --memory {}G", need / 1000000000 + 1));
+  fail_data(fmt::format("a file of {} would need {} of memory", human_bytes(file_bytes), human_bytes(need)), path,
+            fmt::format("if you trust the file, allow that much: --memory {}G", need / 1000000000 + 1));
 }
 
 void check_plausible(uint64_t count, uint64_t size, uint64_t file_bytes, const std::string& path) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much memory a file may ask for: a few hundred bytes can name terabytes, and compressed ones unpack to a thousand times their size.
+// How much memory a file may require: a few hundred bytes can name terabytes, and compressed ones unpack to a thousand times their size.
 #pragma once
 #include <cstdint>
 #include <string>
 
 namespace sg {
 
-/// Bytes that the numbers of a file of that size may fill without a word of the user: 256 MiB, and 100 times the file. What the user
-/// states with --memory (set_memory_limit()) stands instead, where it is more.
+/// Bytes that the numbers of a file of that size may fill without a word of the user: 256 MiB, and 100 times the file. A larger limit given
+/// with --memory (set_memory_limit()) applies instead.
 uint64_t plausible_memory(uint64_t file_bytes);
 
 /// Throws Error(data) naming `path` when `need` bytes are more than plausible_memory(file_bytes): it says how much is needed and how to

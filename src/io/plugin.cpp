@@ -38,7 +38,7 @@ const Package& package_of(std::string_view plugin) {
   fail_internal(fmt::format("plug-in '{}' has no package", plugin));
 }
 
-// The file that this code runs from: the program, or the library that a program of somebody else's loaded.
+// The file that this code runs from: the program, or the library loaded by another program.
 struct OwnFile {
   std::string path;  // "" when it is not known
   bool library = false;
@@ -58,9 +58,9 @@ OwnFile own_file() {
   return {::realpath(ours.dli_fname, path) ? path : "", true};
 }
 
-// Where plug-ins are looked for: the environment's folder alone; else beside the program, in the installation's lib (from bin/), and beside
-// the installed library (lib/, or one folder below: lib/x86_64-linux-gnu). A folder or file that anybody may write, or that belongs to
-// somebody who neither runs nor owns the program or library, is passed over with a word: what lies there would run as this user.
+// Where plug-ins are looked for: only the environment's folder; else next to the program, in the installation's lib (from bin/), and next
+// to the installed library (lib/, or one folder below: lib/x86_64-linux-gnu). A folder or file that anyone may write, or whose owner
+// neither runs nor owns the program or library, is skipped with a note: what lies there would run as this user.
 std::vector<std::string> plugin_folders(const OwnFile& own) {
   if (const char* set = std::getenv("SIGHTGLASS_PLUGINS")) return {std::string(set) + "/"};
   if (own.path.empty()) return {};
@@ -93,15 +93,15 @@ Loaded load(std::string_view name) {
     tried += (tried.empty() ? "" : ", ") + folder;
     if (!file_exists(folder + file)) continue;
     if (!may_be_trusted(folder, own.path) || !may_be_trusted(folder + file, own.path)) {
-      tried += " (passed over: others may write there)";
+      tried += " (skipped: other users may write there)";
       continue;
     }
     void* handle = ::dlopen((folder + file).c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!handle)
-      fail_data(fmt::format("the reader for {} cannot be loaded: {}", package.what, ::dlerror()), folder + file,
+      fail_data(fmt::format("cannot load the reader for {}: {}", package.what, ::dlerror()), folder + file,
                 fmt::format("install its library: apt-get install {}", package.packages));
     const auto entry = reinterpret_cast<EntryPoint>(::dlsym(handle, "sightglass_plugin"));
-    if (!entry) fail_data("is no Sightglass plug-in", folder + file, "remove it, or build it again");
+    if (!entry) fail_data("is not a Sightglass plug-in", folder + file, "remove or rebuild it");
     if (const auto watch = reinterpret_cast<void (*)(MappedWatch*)>(::dlsym(handle, "sightglass_watch"))) watch(&mapped_watch());
     Loaded l{std::string(name), nullptr, 0};
     l.formats = entry(&l.count, thread_count(), plugin_memory);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Readers that need a heavy library live in plug-ins, shared objects beside the program or the library, loaded when a file asks for them. A
+// Readers that need a heavy library live in plug-ins, shared objects next to the program or the library, loaded when a file needs them. A
 // missing plug-in, or one whose library is missing, gives an error that names the package to install.
 //
 // A plug-in is a folder src/io/plugins/NAME, built by sg_plugin(NAME ...). It exports one function:
@@ -37,7 +37,7 @@ struct PluginFormat {
   MovieEncoder (*movie)(const MovieSettings&) = nullptr;
 };
 
-/// What plug-ins are told of set_memory_limit() when they are loaded.
+/// How plug-ins learn of set_memory_limit() when they are loaded.
 void set_plugin_memory(size_t bytes);
 /// Loads a plug-in (once) and finds a format in it. Throws Error(data) that names what to install.
 const PluginFormat& plugin_format(std::string_view plugin, std::string_view format);

@@ -45,48 +45,48 @@ struct StrideView : IntegersView {
     r.stride = LatticeRegion().stride;
     if (is_open(v)) return;
     const auto& n = std::get<std::vector<int64_t>>(v);
-    if (n.size() == 2) fail_usage("needs one or three numbers, not 2", "stride", "like 2 or 2,2,1");
+    if (n.size() == 2) fail_usage("needs one or three numbers, not 2", "stride", "write e.g. 2 or 2,2,1");
     for (size_t a = 0; a < 3; ++a) r.stride[a] = size_t(n[n.size() == 3 ? a : 0]);
   }
 };
 
 void describe_path(Schema& s, ReadParams& p) {
   s("path", p.path,
-    "File to read; its format is found from its content. Several files as one series in time: flow_{n}.vtk ({n}: a number), flow_*.vtk, "
+    "File to read; its format is detected from its content. Several files form one time series: flow_{n}.vtk ({n}: a number), flow_*.vtk, "
     "or a list.")
       .unit("file")
       .required();
 }
 
-void describe_fields(Schema& s, ReadOptions& p) { s("fields", p.fields, "Fields to load; default: those that are needed."); }
+void describe_fields(Schema& s, ReadOptions& p) { s("fields", p.fields, "Fields to load; default: those needed."); }
 
 void describe_parts(Schema& s, ReadOptions& p) {
-  s("time", p.time, "Of a series: the step nearest to this time.");
-  s("step", p.step, "Of a series: this step, 0 is the first; -1: by time, else the format's default.").at_least(-1);
-  s("times", p.times, "Of several files as a series: their times, START:STEP or a list; default: those in the files, else 0, 1, 2, ...")
+  s("time", p.time, "Of a series: read the step nearest to this time.");
+  s("step", p.step, "Of a series: read this step, counted from 0; -1: by time, else the format's default.").at_least(-1);
+  s("times", p.times, "Of several files as a series: their times, as START:STEP or a list; default: those in the files, else 0, 1, 2, ...")
       .unit("time");
-  s.view<BoxView>("region", p.region, "Of a grid: first and last point along x, y, z: i0,i1,j0,j1,k0,k1, counted from 0.")
+  s.view<BoxView>("region", p.region, "Of a grid: first and last point to read along x, y, z: i0,i1,j0,j1,k0,k1, counted from 0.")
       .at_least(0)
       .items(6);
-  s.view<StrideView>("stride", p.region, "Of a grid: every n-th point, one number or one per axis.").at_least(1).items(1, 3);
-  s("piece", p.piece, "Which of the pieces, counted from 0.").at_least(0);
-  s("pieces", p.pieces, "In how many pieces the data is cut.").range(1, 1000000);
-  s("ghost_levels", p.ghost_levels, "Layers of cells of neighbouring pieces, marked as ghosts.").range(0, 1000);
+  s.view<StrideView>("stride", p.region, "Of a grid: read every n-th point, one number or one per axis.").at_least(1).items(1, 3);
+  s("piece", p.piece, "Piece to read, counted from 0.").at_least(0);
+  s("pieces", p.pieces, "Number of pieces into which the data is split.").range(1, 1000000);
+  s("ghost_levels", p.ghost_levels, "Layers of neighbouring cells to add, marked as ghosts.").range(0, 1000);
 }
 
 }  // namespace
 
 void describe_raw(Schema& s, ReadOptions& p) {
-  s.view<DimsView>("dims", p.raw_dims, "Raw bricks: points along x, y, z.").at_least(1).items(3);
-  s("type", p.raw_type, "Raw bricks: type of the numbers: u8 i8 u16 i16 u32 i32 u64 i64 f32 f64.");
-  s("big_endian", p.raw_big_endian, "Raw bricks: the numbers have their high byte first.");
+  s.view<DimsView>("dims", p.raw_dims, "Raw bricks: number of points along x, y, z.").at_least(1).items(3);
+  s("type", p.raw_type, "Raw bricks: number type: u8 i8 u16 i16 u32 i32 u64 i64 f32 f64.");
+  s("big_endian", p.raw_big_endian, "Raw bricks: numbers are big-endian.");
   s("header", p.raw_header, "Raw bricks: bytes to skip before the numbers.").at_least(0);
-  s("components", p.raw_components, "Raw bricks: numbers per point.").at_least(1);
-  s("spacing", p.raw_spacing, "Raw bricks: distance of the points along x, y, z.").positive();
+  s("components", p.raw_components, "Raw bricks: components per point.").at_least(1);
+  s("spacing", p.raw_spacing, "Raw bricks: spacing of the points along x, y, z.").positive();
 }
 
 void describe_csv(Schema& s, ReadOptions& p) {
-  s("csv_header", p.csv_header, "Delimited text: whether the first line names the columns; auto: by its cells.");
+  s("csv_header", p.csv_header, "Delimited text: whether the first line names the columns; auto: judged by its cells.");
 }
 
 void describe(Schema& s, ReadOptions& p) {
@@ -108,12 +108,13 @@ void describe(Schema& s, ReadParams& p, const Format& format) {
 void check(const ReadOptions& o) {
   ElementType ignored;
   if (!o.raw_type.empty() && !parse_element_type(o.raw_type, ignored))
-    fail_usage(fmt::format("'{}' is not a type of numbers", o.raw_type), "read type", "has: u8 i8 u16 i16 u32 i32 u64 i64 f32 f64");
+    fail_usage(fmt::format("'{}' is not a number type", o.raw_type), "read type", "available: u8 i8 u16 i16 u32 i32 u64 i64 f32 f64");
   if (o.raw_dims[0] > 0 && o.raw_type.empty())
-    fail_usage("a raw brick needs the type of its numbers", "read type", "one of u8 i8 u16 i16 u32 i32 u64 i64 f32 f64");
+    fail_usage("a raw brick needs a number type", "read type", "give one of u8 i8 u16 i16 u32 i32 u64 i64 f32 f64");
   for (size_t a = 0; a < 3; ++a)
     if (o.region.lo[a] > o.region.hi[a])
-      fail_usage(fmt::format("begins at {} and ends at {}", o.region.lo[a], o.region.hi[a]), "read region", "first,last along x, y, z");
+      fail_usage(fmt::format("begins at {} and ends at {}", o.region.lo[a], o.region.hi[a]), "read region",
+                 "give first,last along x, y, z");
   if (o.piece >= o.pieces) fail_usage(fmt::format("there is no piece {} of {}", o.piece, o.pieces), "read piece", "pieces count from 0");
 }
 

@@ -9,11 +9,11 @@
 namespace sg {
 
 /// While it lives, the arrays that this thread allocates are those of the file (or folder) at `path`. More of them than
-/// plausible_memory() of the files that were mapped meanwhile give Error(data) naming `path`, before memory is asked for: whatever
+/// plausible_memory() of the files that were mapped meanwhile give Error(data) naming `path`, before memory is allocated: whatever
 /// the reader, and however often one small part of the file is named. A reading inside counts for itself.
 class ReadingBudget final : public detail::ClaimWatch {
  public:
-  /// `names_others`: the numbers may stand in files that are opened later; those beside `path` count too.
+  /// `names_others`: the numbers may be in files that are opened later; those next to `path` count too.
   ReadingBudget(std::string path, bool names_others);
   void on_claim(size_t bytes) override;
 

@@ -22,7 +22,7 @@ bool same_after(From x) {
     if constexpr (std::is_floating_point_v<To>) return From(To(x)) == x;
     else return x >= From(std::numeric_limits<To>::lowest()) && x < From(std::numeric_limits<To>::max()) && From(To(x)) == x;
   } else if constexpr (std::is_floating_point_v<To>) {
-    // Beyond the largest integer after rounding there is no way back.
+    // Beyond the largest integer, rounding cannot be undone.
     const To y = To(x);
     constexpr To end = To(2) * To(From(1) << (sizeof(From) * 8 - (std::is_signed_v<From> ? 2 : 1)));
     return y < end && From(y) == x;
@@ -110,7 +110,7 @@ void WriteLosses::renames(const Field& f, std::string_view name) {
   if (f.name != name) add("renames", fmt::format("{} to '{}'", quoted_name(f), name));
 }
 
-void WriteLosses::splits(const Field& f) { add("parts into components", quoted_name(f)); }
+void WriteLosses::splits(const Field& f) { add("split into components", quoted_name(f)); }
 
 void WriteLosses::drops_unit(const Field& f) {
   if (!f.unit.empty()) add("drops the units of", quoted_name(f));

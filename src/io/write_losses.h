@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a file cannot hold of the data written into it, said in one warning.
+// What a file cannot hold of the data written to it, reported in one warning.
 #pragma once
 #include <string>
 #include <string_view>

@@ -10,15 +10,14 @@ namespace sg {
 struct RenderOptions {
   int width = 1280, height = 720;
   int samples = 0;  ///< per pixel and axis (1, 2, 3, 4); 0 = 2 for surfaces, 1 for volumes alone
-  /// Above 0: all the samples are taken only where neighbouring pixels of one sample differ by more than this share of full scale in a
-  /// channel (as displayed), or show different items; in squares of 16/samples pixels.
+  /// Above 0: take all samples only where neighbouring pixels, at one sample each, differ by more than this share of full scale in a
+  /// channel (as displayed) or show different items; decided for squares of 16/samples pixels.
   double adaptive = 0;
-  /// Volumes that memory does not hold: a voxel may cover so many pixels (data/bricked.h). 0: they are drawn from the level in memory
-  /// alone.
+  /// Volumes larger than memory: largest number of pixels that a voxel may cover (data/bricked.h). 0: draw only from the level in memory.
   double coarser = 1;
 };
 
-/// Throws Error(usage) when the frames of a picture of that size, and the image that is made of them, are more than may be taken
+/// Throws Error(usage) when the frames of a picture of that size, and the image made from them, exceed the memory allowed
 /// (data/memory/memory_budget.h).
 void check_picture_memory(int width, int height, int frames);
 

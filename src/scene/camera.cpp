@@ -61,7 +61,7 @@ Projection make_projection(const Camera& c, int width, int height) {
   if (!c.parallel && !(c.view_angle > 0 && c.view_angle < 180))
     fail_usage(fmt::format("view angle {} is out of range", c.view_angle), "camera", "it must lie between 0 and 180 degrees");
   if (c.parallel && !(c.parallel_height > 0 && std::isfinite(c.parallel_height)))
-    fail_usage(fmt::format("parallel height {} is no length", c.parallel_height), "camera", "it must be above 0");
+    fail_usage(fmt::format("parallel height {} is not a valid length", c.parallel_height), "camera", "it must be above 0");
   if (!(c.far_plane > c.near_plane) || !(c.far_plane > 0))
     fail_usage(fmt::format("near plane {} and far plane {} leave nothing between them", c.near_plane, c.far_plane), "camera",
                "far must be above near and above 0");
@@ -96,7 +96,7 @@ Projection window_of(const Projection& whole, int x, int y, int width, int heigh
 
 Camera fit_camera(const Box3& given, Vec3 direction, Vec3 up, double aspect, double margin, double view_angle, bool parallel) {
   if (!finite(direction) || !(length(direction) > 0))
-    fail_usage("the direction to look from is no direction", "camera", "give three numbers, not all zero");
+    fail_usage("the viewing direction is zero or not finite", "camera", "give three numbers, not all zero");
   if (!(aspect > 0) || !(margin >= 0 && margin < 0.5))
     fail_usage(fmt::format("aspect {} and margin {} leave no room for the picture", aspect, margin), "camera");
   const Box3 box = usable(given);

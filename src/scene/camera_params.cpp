@@ -34,17 +34,17 @@ Vec3 turned(Vec3 v, Vec3 axis, double degrees) {
 }  // namespace
 
 void describe(Schema& s, CameraParams& p) {
-  s("view", p.view, "A named view; default: chosen from the data.");
-  s("position", p.position, "Where the camera stands; default: far enough to see everything.");
-  s("target", p.target, "What it looks at; default: the centre of the data.");
-  s("direction", p.direction, "From the data towards the camera.");
-  s("up", p.up, "What is up in the picture.");
-  s("azimuth", p.azimuth, "Turn about up.").unit("deg");
-  s("elevation", p.elevation, "Raise the camera.").unit("deg").range(-180, 180);
-  s("roll", p.roll, "Turn about the line of sight.").unit("deg");
-  s("zoom", p.zoom, "Above 1 comes closer.").positive();
+  s("view", p.view, "Named view; default: chosen from the data.");
+  s("position", p.position, "Position of the camera; default: far enough away to see everything.");
+  s("target", p.target, "Point to look at; default: the centre of the data.");
+  s("direction", p.direction, "Direction from the data towards the camera.");
+  s("up", p.up, "Direction that points up in the picture.");
+  s("azimuth", p.azimuth, "Rotation about the up direction.").unit("deg");
+  s("elevation", p.elevation, "Angle by which the camera is raised.").unit("deg").range(-180, 180);
+  s("roll", p.roll, "Rotation about the line of sight.").unit("deg");
+  s("zoom", p.zoom, "Magnification; above 1 is closer.").positive();
   s("view_angle", p.view_angle, "Vertical angle of view.").unit("deg").range(1, 170);
-  s("projection", p.projection, "With or without foreshortening; default: parallel for flat data.");
+  s("projection", p.projection, "Perspective or parallel projection; default: parallel for flat data.");
 }
 
 std::vector<std::string> camera_words(const std::vector<std::string>& words) {
@@ -67,7 +67,7 @@ Camera make_camera(const CameraParams& p, const Box3& box, double aspect, Vec3 d
     fail_usage("the camera has no direction to look along", "camera", "position and target must differ; direction must not be 0,0,0");
   if (!(length(up) > 0)) fail_usage("up must not be 0,0,0", "camera up");
   if (length(cross(normalize(direction), normalize(up))) < 1e-9) {
-    if (p.up) fail_usage("up lies along the line of sight", "camera up", "choose another up");
+    if (p.up) fail_usage("up is parallel to the line of sight", "camera up", "choose another up");
     up = std::abs(normalize(direction).z) < 0.9 ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
   }
   up = normalize(up);

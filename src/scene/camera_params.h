@@ -8,7 +8,7 @@
 
 namespace sg {
 
-/// Named as an observer says it: "front" looks along +y, z is up.
+/// Named as an observer would: "front" looks along +y, z is up.
 enum class NamedView { front, back, left, right, top, bottom, iso };
 constexpr auto enum_words(NamedView) {
   using enum NamedView;

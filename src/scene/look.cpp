@@ -76,14 +76,15 @@ void look_at_grid(const Dataset& d, const Field& f, Look& look) {
     SurfaceShow surface;
     surface.coloring.field.name = f.name, surface.coloring.map = "labels";
     add_show(look, surface, false);
-    look.reason = fmt::format("'{}' holds few integer values in pieces: labels, shown as surfaces with one colour each", f.name);
+    look.reason =
+        fmt::format("'{}' has few integer values in connected regions: taken as labels, shown as surfaces with one colour each", f.name);
     return;
   }
   VolumeShow volume;
   volume.coloring.field.name = f.name;
   if (f.look.shows == FieldLook::Shows::fibres)
     if (const Field* speed = d.fields().find("speed", f.association); speed && speed->components() == 1)
-      volume.color_by.name = speed->name, volume.sampling.tolerance = 0.01;  // one colour says less
+      volume.color_by.name = speed->name, volume.sampling.tolerance = 0.01;  // a single colour would show less
   add_show(look, volume, true);
   if (is_turned(d)) add_show(look, OutlineShow(), true);
   ColoringParams params;
@@ -91,7 +92,7 @@ void look_at_grid(const Dataset& d, const Field& f, Look& look) {
   VolumeItem item;
   item.color = choose_scale(d, f, params, quiet);
   const std::string why = choose_volume_look(d, f, params, item);
-  look.reason = fmt::format("scalar field '{}' on a 3D grid: volume; {}", f.name, why);
+  look.reason = fmt::format("scalar field '{}' on a 3D grid: shown as a volume; {}", f.name, why);
 }
 
 }  // namespace
@@ -120,7 +121,7 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
   if (!flat)
     if (const auto normal = plane_normal(d, look.direction)) look.direction = *normal, flat = true;
   if (d.point_count() == 0) {
-    look.reason = "there are no points: an empty picture";
+    look.reason = "no points: the picture is empty";
     return look;
   }
   const auto dims = lattice_dims(d.mesh());
@@ -140,7 +141,7 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
   }
   if (is_line_labels(d)) {
     add_show(look, LabelsShow(), true);
-    look.reason = "places along lines: their values as text";
+    look.reason = "label positions along lines: their values as text";
     return look;
   }
   if (d.as<PointCloud>() || (d.cell_count() == 0 && !is_lattice(d.mesh()))) {
@@ -148,7 +149,7 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
     points.size = d.point_count() > 200000 ? 1.5 : d.point_count() > 5000 ? 3 : 7;
     if (d.fields().with_role(Role::normals) && field.empty() && !automatic_field(d)) points.coloring.color = "#c8c8cc";  // lit
     add_show(look, points, true);
-    look.reason = fmt::format("points only: dots, {}", field_reason(d, field));
+    look.reason = fmt::format("points only: shown as dots, {}", field_reason(d, field));
     return look;
   }
   if (!has_polygons(d)) {
@@ -163,12 +164,12 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
       VolumeShow volume;
       volume.coloring.field.name = scalar->name;
       add_show(look, volume, true);
-      look.reason = fmt::format("'{}' in a solid mesh: volume", scalar->name);
+      look.reason = fmt::format("'{}' in a solid mesh: shown as a volume", scalar->name);
       return look;
     }
   SurfaceShow surface;
   const bool simulation = !d.as<SurfaceMesh>() && !is_lattice(d.mesh());
-  const bool bare_map = look.parallel && d.fields().empty() && d.as<SurfaceMesh>();  // nothing but its edges tells its parts apart
+  const bool bare_map = look.parallel && d.fields().empty() && d.as<SurfaceMesh>();  // only edges distinguish its parts
   const bool show_edges = (simulation && d.cell_count() <= 12000) || (bare_map && d.cell_count() <= 2000);
   surface.edges = show_edges;
   const Field* colored = field.empty() ? automatic_field(d) : d.fields().find(field);

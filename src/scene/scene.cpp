@@ -11,7 +11,7 @@ void add_bounds(const auto& item, Box3& box) {
 
 void add_bounds(const GlyphsItem& item, Box3& box) {
   if (!item.data) return;
-  if (item.in_pixels) {  // how large they are is known on the picture alone: leave room for one of usual size
+  if (item.in_pixels) {  // their size is known only in the picture: leave room for one of usual size
     const Box3 places = item.data->bounds();
     const Vec3 room = Vec3{1, 1, 1} * (0.05 * places.diagonal());
     if (!places.empty()) box.add(places.lo - room), box.add(places.hi + room);

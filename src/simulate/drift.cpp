@@ -12,7 +12,7 @@ constexpr double degree = 0.017453292519943295;
 
 void describe(Schema& s, DriftParams& p) {
   describe_grid(s, p.grid);
-  s("speed", p.speed, "Speed of the jet at the equator and the surface, degrees per time.");
+  s("speed", p.speed, "Speed of the jet at the equator and the surface, in degrees per unit of time.");
   s("time", p.time, "When.");
 }
 

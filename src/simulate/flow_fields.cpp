@@ -44,9 +44,9 @@ DatasetPtr abc(const AbcParams& p, Context& context) {
 void describe(Schema& s, DoubleGyreParams& p) {
   describe_grid(s, p.grid);
   s("amplitude", p.amplitude, "Strength of the gyres (A).");
-  s("epsilon", p.epsilon, "How far the middle line swings.");
-  s("period", p.period, "Time of one swing.").positive();
-  s("time", p.time, "The moment to compute.");
+  s("epsilon", p.epsilon, "Amplitude of the middle line's swing.");
+  s("period", p.period, "Period of the swing.").positive();
+  s("time", p.time, "Time to compute.");
 }
 Vec3 double_gyre_velocity(const DoubleGyreParams& p, Vec3 x, double time) {
   const double swing = p.epsilon * std::sin(2 * M_PI * time / p.period);
@@ -71,7 +71,7 @@ DatasetPtr double_gyre(const DoubleGyreParams& p, Context& context) {
 void describe(Schema& s, TaylorGreenParams& p) {
   describe_grid(s, p.grid);
   s("viscosity", p.viscosity, "Kinematic viscosity.").at_least(0);
-  s("time", p.time, "The moment to compute.");
+  s("time", p.time, "Time to compute.");
 }
 DatasetPtr taylor_green(const TaylorGreenParams& p, Context& context) {
   const UniformGrid g = analytic_grid(p.grid, box_to({2 * M_PI, 2 * M_PI, 0}), "taylor_green", context);

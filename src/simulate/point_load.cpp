@@ -8,7 +8,7 @@ namespace sg {
 
 void describe(Schema& s, PointLoadParams& p) {
   describe_grid(s, p.grid);
-  s("load", p.load, "The force along +z.");
+  s("load", p.load, "Force along +z.");
   s("poisson", p.poisson, "Poisson's ratio.").range(0, 0.5);
 }
 

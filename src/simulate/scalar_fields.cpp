@@ -29,8 +29,8 @@ DatasetPtr scalar_source(const GridParams& grid, const Box3& own, const char* so
 
 void describe(Schema& s, MarschnerLobbParams& p) {
   describe_grid(s, p.grid);
-  s("frequency", p.frequency, "Waves across the signal (f_M).").positive();
-  s("alpha", p.alpha, "Strength of the waves against the slope along z.").positive();
+  s("frequency", p.frequency, "Number of waves across the signal (f_M).").positive();
+  s("alpha", p.alpha, "Amplitude of the waves relative to the slope along z.").positive();
 }
 DatasetPtr marschner_lobb(const MarschnerLobbParams& p, Context& context) {
   return scalar_source(p.grid, around({}, 1), "marschner_lobb", "density", "", context, [&](Vec3 x) {
@@ -41,7 +41,7 @@ DatasetPtr marschner_lobb(const MarschnerLobbParams& p, Context& context) {
 
 void describe(Schema& s, TangleParams& p) {
   describe_grid(s, p.grid);
-  s("constant", p.constant, "Added constant.");
+  s("constant", p.constant, "Constant added to the function.");
 }
 DatasetPtr tangle(const TangleParams& p, Context& context) {
   return scalar_source(p.grid, around({}, 3), "tangle", "tangle", "", context, [&](Vec3 x) {
@@ -75,8 +75,8 @@ DatasetPtr sphere(const SphereParams& p, Context& context) {
 void describe(Schema& s, TorusParams& p) {
   describe_grid(s, p.grid);
   s("center", p.center, "Centre of the torus.");
-  s("major_radius", p.major_radius, "From the centre to the middle of the tube.").positive();
-  s("minor_radius", p.minor_radius, "Of the tube.").positive();
+  s("major_radius", p.major_radius, "Distance from the centre to the middle of the tube.").positive();
+  s("minor_radius", p.minor_radius, "Radius of the tube.").positive();
 }
 DatasetPtr torus(const TorusParams& p, Context& context) {
   return scalar_source(p.grid, around(p.center, p.major_radius + 1.5 * p.minor_radius), "torus", "distance", "", context, [&](Vec3 x) {
@@ -89,7 +89,7 @@ void describe(Schema& s, HydrogenParams& p) {
   describe_grid(s, p.grid);
   s("n", p.n, "Principal quantum number.").range(1, 12);
   s("l", p.l, "Angular momentum, below n.").range(0, 11);
-  s("m", p.m, "Magnetic quantum number, from -l to l; the sign chooses sine or cosine.").range(-11, 11);
+  s("m", p.m, "Magnetic quantum number, from -l to l; its sign selects sine or cosine.").range(-11, 11);
 }
 
 double hydrogen_orbital(int n, int l, int m, Vec3 p) {

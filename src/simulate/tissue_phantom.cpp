@@ -13,11 +13,11 @@ namespace sg {
 
 void describe(Schema& s, TissuePhantomParams& p) {
   describe_grid(s, p.grid);
-  s("noise", p.noise, "Standard deviation of the noise, per cent of the brightest tissue.").at_least(0);
-  s("bias", p.bias, "Width of the multiplicative bias, per cent: 40 runs from 0.8 to 1.2.").range(0, 190);
-  s("means", p.means, "Signal of nothing, fluid, gray and white matter.").at_least(0);
-  s("partial_volume", p.partial_volume, "Voxels on borders mix their tissues.");
-  s("seed", p.seed, "Of the noise.");
+  s("noise", p.noise, "Standard deviation of the noise, in per cent of the brightest tissue.").at_least(0);
+  s("bias", p.bias, "Range of the multiplicative bias, in per cent: 40 is from 0.8 to 1.2.").range(0, 190);
+  s("means", p.means, "Signal of background, fluid, grey and white matter.").at_least(0);
+  s("partial_volume", p.partial_volume, "Mix the tissues in voxels on their borders.");
+  s("seed", p.seed, "Seed of the noise.");
 }
 
 namespace {
@@ -80,7 +80,8 @@ double bias_shape(Vec3 p) {
 
 DatasetPtr tissue_phantom(const TissuePhantomParams& p, Context& context) {
   if (p.means.size() != 4)
-    fail_usage(fmt::format("{} means given", p.means.size()), "tissue_phantom means", "give four: nothing, fluid, gray and white matter");
+    fail_usage(fmt::format("{} means were given", p.means.size()), "tissue_phantom means",
+               "give four: background, fluid, grey and white matter");
   const UniformGrid g = analytic_grid(p.grid, {{-box, -box, -box}, {box, box, box}}, "tissue_phantom", context);
   const size_t nx = g.dims[0], ny = g.dims[1], rows = ny * g.dims[2], n = nx * rows;
   Vec3 voxel;

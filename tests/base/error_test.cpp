@@ -39,8 +39,8 @@ TEST_CASE("error: the nearest name forgives slips, swaps, case and missing ends,
   CHECK(nearest_name("t", names) == "T");
   CHECK(nearest_name("density_of_states", names).empty());
   CHECK(nearest_name("x", {}).empty());
-  CHECK(unknown_name_hint("velocty", names) == "did you mean 'velocity'? has: temperature, pressure, velocity, T");
-  CHECK(unknown_name_hint("x", {}) == "there are none");
+  CHECK(unknown_name_hint("velocty", names) == "did you mean 'velocity'? available: temperature, pressure, velocity, T");
+  CHECK(unknown_name_hint("x", {}) == "none are available");
   std::vector<std::string> many;
   for (int i = 0; i < 30; ++i) many.push_back("name_number_" + std::to_string(i));
   CHECK(unknown_name_hint("zzzzzzzzzzzzzzzzzzzzzzzzzzzzzz", many).ends_with("name_number_23, ... (30 in all)"));

@@ -61,7 +61,7 @@ TEST_CASE("bad input: a missing file, a folder, an empty file, an unknown format
   write_file(f + "empty.vtu", "");
   check_refused({"info", "empty.vtu"}, 3, {"empty.vtu", "is empty"}, f);
   write_file(f + "what.blob", "hello there");
-  check_refused({"info", "what.blob"}, 3, {"what.blob", "no known format", "vti"}, f);
+  check_refused({"info", "what.blob"}, 3, {"what.blob", "unknown format", "vti"}, f);
   write_file(f + "text.vti", "hello there");
   check_refused({"info", "text.vti"}, 3, {"text.vti"}, f);
 }

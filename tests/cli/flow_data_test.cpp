@@ -16,7 +16,7 @@ TEST_CASE("topology: the steady wake of a cylinder has two centres, one saddle a
   REQUIRE(r.status == 0);
   CHECK(r.err.find("3 critical points: 1 saddle; 2 centre; indices sum to 1") != std::string::npos);
   CHECK(r.err.find("periodic orbit") == std::string::npos);
-  CHECK(r.err.find("families of closed lines about centres") != std::string::npos);
+  CHECK(r.err.find("families of closed lines around centres") != std::string::npos);
   CHECK(r.err.find("4 switch points of the border") != std::string::npos);  // front, back, and where the flow leaves on both sides
 }
 

@@ -32,7 +32,7 @@ TEST_CASE("convert: a source goes to Zarr slab by slab, in less memory than it h
 TEST_CASE("convert: what is in the way of a Zarr folder is told") {
   const std::string out = test::temp_folder() + "file.zarr";
   write_file(out, "a file");
-  CHECK(has(sightglass({"convert", "-s", "tangle size=20", "-o", out}).err, "no Zarr folder"));
+  CHECK(has(sightglass({"convert", "-s", "tangle size=20", "-o", out}).err, "not a Zarr folder"));
   const auto filtered = sightglass({"convert", "-s", "tangle size=20", "-f", "contour", "-o", test::temp_folder() + "x.zarr"});
   CHECK(filtered.status == 2);
   CHECK(has(filtered.err, "uniform grid"));
@@ -63,10 +63,10 @@ TEST_CASE("render: {n} in the output numbers the pictures of a series, all in on
 TEST_CASE("render: a series that cannot be is told") {
   const std::string out = test::temp_folder() + "bad_{n}.png";
   CHECK(has(sightglass({"render", "-s", "drift size=9", "-o", out}).err, "--times"));
-  CHECK(has(sightglass({"render", "-s", "drift size=9", "--times", "0:1:2:3", "-o", out}).err, "no list of times"));
-  CHECK(has(sightglass({"render", "-s", "tangle size=9", "--times", "0,1", "-o", out}).err, "has no time"));
+  CHECK(has(sightglass({"render", "-s", "drift size=9", "--times", "0:1:2:3", "-o", out}).err, "not a list of times"));
+  CHECK(has(sightglass({"render", "-s", "tangle size=9", "--times", "0,1", "-o", out}).err, "has no parameter 'time'"));
   CHECK(has(sightglass({"render", "-s", "drift size=9", "--times", "0,1", "-o", test::temp_folder() + "x.png"}).err, "{n}"));
-  CHECK(has(sightglass({"render", "-s", "drift size=9", "--times", "1:0", "-o", out}).err, "no range of times"));
+  CHECK(has(sightglass({"render", "-s", "drift size=9", "--times", "1:0", "-o", out}).err, "not a range of times"));
 }
 
 namespace {
@@ -117,7 +117,7 @@ TEST_CASE("render --within: a picture after that time, which says what it is mad
   const auto long_enough = sightglass(picture_of(large_volume(), out, {"--within", "500s"}));
   CHECK(has(long_enough.out, "at most 1 pixel"));
   CHECK(has(sightglass(picture_of(large_volume(), out, {"--within", "soon"})).err, "like 2s"));
-  CHECK(has(sightglass(picture_of(large_volume(), out, {"--within", "-1s"})).err, "is no time"));
+  CHECK(has(sightglass(picture_of(large_volume(), out, {"--within", "-1s"})).err, "is not a valid time"));
   const std::string series = test::temp_folder() + "series_within_{n}.png";
   CHECK(has(sightglass({"render", "-s", "drift size=9", "--times", "0,1", "-o", series, "--within", "2s"}).err, "--within"));
 }

@@ -86,7 +86,7 @@ TEST_CASE("transfer functions: files that are none are refused with the line") {
   CHECK(says(refused("sightglass-transfer: 1\nopacity: '0:0,1:3'\n"), "not between 0 and 1"));
   CHECK(says(refused("sightglass-transfer: 1\nopacity: {0: 1}\n"), "holds a map"));
   CHECK(says(refused("sightglass-transfer: 1\ntransfer: other.yaml\n"), "names another file"));
-  CHECK(says(refused("- 1\n"), "is no transfer function"));
+  CHECK(says(refused("- 1\n"), "is not a transfer function"));
   CHECK(says(refused("{"), "bad.yaml"));
   const std::string list = "sightglass-transfer: 1\nopacity: ['0:0', '@0.00002:0.25', '1:0.5']\nlevels: [0.00001, 0.00002]\n";
   write_file(path_of("list.yaml"), list);

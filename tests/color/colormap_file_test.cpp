@@ -114,12 +114,12 @@ TEST_CASE("colour map files: categories keep their keys and labels") {
 
 TEST_CASE("colour map files: errors of a .cpt name the line") {
   CHECK(has(refusal("e1.cpt", "# x\n0 1/2/3 0 4/5/6\n"), "line 2"));
-  CHECK(has(refusal("e2.cpt", "0 1/2/300 1 4/5/6\n"), "'1/2/300' is no colour"));
-  CHECK(has(refusal("e3.cpt", "0 red 1 blue\n2 red 3 blue\n"), "line 2: a slice from 2"));
+  CHECK(has(refusal("e2.cpt", "0 1/2/300 1 4/5/6\n"), "'1/2/300' is not a colour"));
+  CHECK(has(refusal("e3.cpt", "0 red 1 blue\n2 red 3 blue\n"), "line 2: a slice begins at 2"));
   CHECK(has(refusal("e4.cpt", "0 red 1 blue\n4 blue\n"), "slices and categories"));
   CHECK(has(refusal("e5.cpt", "0 notacolour 1 blue\n"), "'notacolour'"));
-  CHECK(has(refusal("e6.cpt", "zero red 1 blue\n"), "'zero' is no number"));
-  CHECK(has(refusal("e7.cpt", "# only words\n"), "no slice"));
+  CHECK(has(refusal("e6.cpt", "zero red 1 blue\n"), "'zero' is not a number"));
+  CHECK(has(refusal("e7.cpt", "# only words\n"), "neither slices"));
   CHECK(has(refusal("e8.cpt", "# COLOR_MODEL = LAB\n0 1 1 2\n"), "colour model"));
   CHECK(has(refusal("e9.cpt", "0 red 1\n"), "3 words"));
 }
@@ -140,9 +140,9 @@ TEST_CASE("colour map files: ParaView's spaces and indexed colours") {
   CHECK(maps[2].labels == std::vector<double>{3, 5, 8});
   CHECK(maps[2].label_names[2] == "eight");
   CHECK(has(refusal("p1.json", R"([{"Name":"q","RGBPoints":[0,0,0]}])"), "map 'q'"));
-  CHECK(has(refusal("p2.json", R"([{"Name":"q","RGBPoints":[0,0,0,2]}])"), "is no colour"));
-  CHECK(has(refusal("p3.json", R"([{"Name":"q","RGBPoints":[1,0,0,0,0,1,1,1]}])"), "do not rise"));
-  CHECK(has(refusal("p4.json", R"({"a":1})"), "no colour map"));
+  CHECK(has(refusal("p2.json", R"([{"Name":"q","RGBPoints":[0,0,0,2]}])"), "is not a colour"));
+  CHECK(has(refusal("p3.json", R"([{"Name":"q","RGBPoints":[1,0,0,0,0,1,1,1]}])"), "do not increase"));
+  CHECK(has(refusal("p4.json", R"({"a":1})"), "not a colour map"));
   CHECK(has(refusal("p5.json", std::string(100, '[') + std::string(100, ']')), "nested"));
 }
 
@@ -154,7 +154,7 @@ TEST_CASE("colour map files: niivue's lists") {
   CHECK(f.hi == 255);
   CHECK(color_text(f.map.at(1)) == "#fffaf5");
   CHECK(length(f.map.at(128.0 / 255) - Vec3f(113, 109, 101) / 255.f) < 0.005f);
-  CHECK(has(refusal("n1.json", R"({"R":[0,1],"G":[0],"B":[0,1]})"), "equally long"));
+  CHECK(has(refusal("n1.json", R"({"R":[0,1],"G":[0],"B":[0,1]})"), "differ in length"));
 }
 
 TEST_CASE("colour map files: ColorBrewer's rules, and names of maps") {

@@ -146,7 +146,7 @@ TEST_CASE("colour maps: samples are hit exactly and t is clamped") {
 TEST_CASE("colour maps: unknown names get a suggestion") {
   CHECK(test::error_of([] { find_colormap("sihgt"); }).find("did you mean 'sight'") != std::string::npos);
   CHECK(test::error_of([] { find_colormap("cubehelx_r"); }).find("did you mean 'cubehelix'") != std::string::npos);
-  CHECK(test::error_of([] { find_colormap("viridis"); }).find("nearest of ours is 'sight'") != std::string::npos);
+  CHECK(test::error_of([] { find_colormap("viridis"); }).find("nearest built-in one is 'sight'") != std::string::npos);
   CHECK(test::error_of([] { find_colormap("zzz"); }).find("coolwarm") != std::string::npos);
   CHECK(test::error_of([] { find_colormap("_r"); }).find("not found") != std::string::npos);
 }

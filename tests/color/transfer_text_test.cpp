@@ -43,7 +43,7 @@ TEST_CASE("opacity: on a log scale positions are along the scale and lines strai
 
 TEST_CASE("opacity: curves that cannot be are refused with what would be right") {
   const ColorScale a = axis(0, 10);
-  CHECK(says(test::error_of([&] { parse_opacity("0:0,0.6:0.5,0.3:1", a); }), "'0.3:1' lies below the point before it"));
+  CHECK(says(test::error_of([&] { parse_opacity("0:0,0.6:0.5,0.3:1", a); }), "'0.3:1' lies below the previous point"));
   CHECK(says(test::error_of([&] { parse_opacity("0:0,0.6:0.5,@3:1", a); }), "ascending"));
   CHECK(says(test::error_of([&] { parse_opacity("0:0,0.5:0,0.5:1,0.5:0", a); }), "third point"));
   CHECK(says(test::error_of([&] { parse_opacity(" ", a); }), "empty"));
@@ -111,7 +111,7 @@ TEST_CASE("colour stops: mistakes are named") {
   const auto error = [&](const char* text) { return test::error_of([&] { parse_color_stops(text, s, false); }); };
   CHECK(says(error(""), "no colours"));
   CHECK(says(error("0:black,1"), "'black,1' is not a colour"));
-  CHECK(says(error("black"), "'black' is not a colour at a place"));
+  CHECK(says(error("black"), "'black' is not a colour at a position"));
   CHECK(says(error("0.5:black,0.2:white"), "ascending"));
   CHECK(says(error("0:blakc,1:white"), "did you mean 'black'"));
   CHECK(says(error("x:black"), "'x:black'"));
@@ -139,7 +139,7 @@ TEST_CASE("widgets: places on both axes, and text reads back exactly") {
   CHECK(says(error("triangel 0 1 0 1"), "did you mean 'triangle'"));
   CHECK(says(error("triangle 0 1 0"), "3 numbers"));
   CHECK(says(error("rectangle 0.5 0.2 0 1"), "lower end"));
-  CHECK(says(error("rectangle 0 1 0.5 0.5"), "no height"));
+  CHECK(says(error("rectangle 0 1 0.5 0.5"), "zero width or height"));
   CHECK(says(error("rectangle 0 1 0 1 1.5"), "not between 0 and 1"));
   CHECK(says(error("rectangle 0 x 0 1"), "'x'"));
   CHECK(says(error(" ; "), "no widgets"));

@@ -90,7 +90,7 @@ TEST_CASE("hdf5: more numbers than the file can back are refused before memory i
   h.group("/VTKHDF/PointData");
   h.data<double>("/VTKHDF/PointData/p", {}, {hsize_t(n), hsize_t(n), hsize_t(n)}, {{1, 64, 64}, true});  // no chunk was ever written
   h.close();
-  CHECK(contains(test::error_of([&] { test::read_any(h.path); }), "more than what the file holds of it can give"));
+  CHECK(contains(test::error_of([&] { test::read_any(h.path); }), "more than its stored data can give"));
 }
 
 TEST_CASE("hdf5: counts and offsets that do not fit are refused by name") {
@@ -113,7 +113,7 @@ TEST_CASE("hdf5: counts and offsets that do not fit are refused by name") {
   CHECK(contains(with([](L p, L, L, L) { p = {INT64_MAX}; }), "holds the count"));
   CHECK(contains(with([](L, L c, L, L) { c = {7}; }), "'/VTKHDF/Offsets': has 2 rows"));
   CHECK(contains(with([](L, L, L i, L) { i = {2}; }), "need more than 2 point ids"));
-  CHECK(contains(with([](L, L, L, L o) { o = {0, -3}; }), "offsets of cells fall"));
+  CHECK(contains(with([](L, L, L, L o) { o = {0, -3}; }), "the offsets of cells decrease"));
   CHECK(contains(with([](L, L, L, L o) { o = {1, 3}; }), "begin at 1, not 0"));
 }
 
@@ -165,7 +165,7 @@ TEST_CASE("hdf5: groups that hold themselves by links are refused, or end") {
     if (hard) REQUIRE(H5Lcreate_hard(h.id(), "/VTKHDF/Assembly", h.id(), "/VTKHDF/Assembly/again", H5P_DEFAULT, H5P_DEFAULT) >= 0);
     else H5Lcreate_soft("/VTKHDF/Assembly", h.id(), "/VTKHDF/Assembly/again", H5P_DEFAULT, H5P_DEFAULT);
     h.close();
-    if (hard) CHECK(contains(test::error_of([&] { test::read_any(h.path); }), "too many blocks within each other"));
+    if (hard) CHECK(contains(test::error_of([&] { test::read_any(h.path); }), "nests blocks too deeply"));
     else refused(h.path);  // the library follows 16 soft links, then there is no such group
   }
   H5Sample h("soft.vtkhdf");

@@ -88,9 +88,9 @@ TEST_CASE("enzo: circles, missing grids and wrong shapes are refused") {
   };
   CHECK(contains(refused(hierarchy(), "Grid[2]->NextGridThisLevel = 0", "Grid[2]->NextGridThisLevel = 1"), "reaches grid 1 twice"));
   CHECK(contains(refused(hierarchy(), "Grid[2]->NextGridNextLevel = 0", "Grid[2]->NextGridNextLevel = 7"),
-                 "points to grid 7, which is not there"));
+                 "points to grid 7, which does not exist"));
   CHECK(contains(refused(hierarchy(), "NextGridNextLevel = 2", "NextGridNextLevel = 0"), "has no pointer to grid 2"));
-  CHECK(contains(refused(hierarchy(), "GridEndIndex      = 4 4 2", "GridEndIndex      = 4 9 2"), "grid 1 runs from 1 to 9 of 6"));
+  CHECK(contains(refused(hierarchy(), "GridEndIndex      = 4 4 2", "GridEndIndex      = 4 9 2"), "grid 1 extends from 1 to 9 of 6"));
   CHECK(contains(refused(hierarchy(), "GridDimension     = 6 6 4", "GridDimension     = 6 six 4"), "line 4"));
   CHECK(contains(refused(hierarchy(), "GridRightEdge     = 2 2 1", "GridRightEdge     = 1 2 1"), "edges at 1 and 1"));
   CHECK(contains(refused(hierarchy(), "run.cpu0000", "gone.cpu0000"), "gone.cpu0000"));

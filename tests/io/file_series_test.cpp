@@ -73,7 +73,7 @@ TEST_CASE("file series: times come from the files, or are stated") {
   CHECK(times_of(f + "a{n}.vti", "1,2,7") == std::vector<double>{1, 2, 7});
   CHECK(test::error_of([&] { times_of(f + "a{n}.vti", "1,2"); }).find("2 times for 3 steps") != std::string::npos);
   for (const char* bad : {"0:0", "0:-1", "x:1", "1,y,2", "0:nan"})
-    CHECK(test::error_of([&] { times_of(f + "a{n}.vti", bad); }).find("says no times of files") != std::string::npos);
+    CHECK(test::error_of([&] { times_of(f + "a{n}.vti", bad); }).find("does not give the times of the files") != std::string::npos);
   // Files that all say the same time say none.
   for (int n = 0; n < 3; ++n) write_step(f + "same" + std::to_string(n) + ".vti", n, 7.0);
   CHECK(times_of(f + "same{n}.vti") == std::vector<double>{0, 1, 2});
@@ -103,13 +103,13 @@ TEST_CASE("file series: what is not there is said, with what is near") {
   const std::string f = folder();
   write_step(f + "flow_1.vti", 1), write_step(f + "flow_2.vti", 1);
   const auto message = [&](const std::string& path) { return test::error_of([&] { series_files(path); }); };
-  CHECK(message(f + "flaw_{n}.vti").find("no file matches 'flaw_{n}.vti'; near is 'flow_1.vti'") != std::string::npos);
-  CHECK(message(f + "zzzzzzzzz*.nc").find("it has: flow_1.vti, flow_2.vti") != std::string::npos);
-  CHECK(message(f + "gone/flow_*.vti").find("no such folder; 'flow_*.vti' was looked for there") != std::string::npos);
+  CHECK(message(f + "flaw_{n}.vti").find("no file matches 'flaw_{n}.vti'; the nearest name is 'flow_1.vti'") != std::string::npos);
+  CHECK(message(f + "zzzzzzzzz*.nc").find("it contains: flow_1.vti, flow_2.vti") != std::string::npos);
+  CHECK(message(f + "gone/flow_*.vti").find("no such folder; looked for 'flow_*.vti' there") != std::string::npos);
   CHECK(message(f + "flow_1.vti," + f + "flow_9.vti").find("flow_9.vti: no such file") != std::string::npos);
   write_step(f + "t_1.vti", 1, 5.0), write_step(f + "t_2.vti", 1, 4.0), write_step(f + "t_3.vti", 1, 6.0);
   const std::string order = test::error_of([&] { times_of(f + "t_{n}.vti"); });
-  CHECK(order.find("t_2.vti: begins at the time 4, and 't_1.vti' before it ends at 5; ") != std::string::npos);
+  CHECK(order.find("t_2.vti: begins at the time 4, but the previous file, 't_1.vti', ends at 5; ") != std::string::npos);
   CHECK(times_of(f + "t_{n}.vti", "0:1").size() == 3);
 }
 

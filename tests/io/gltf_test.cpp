@@ -201,12 +201,12 @@ TEST_CASE("gltf: what is wrong is named") {
                    j["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = Json::object();
                  }),
                  "KHR_draco_mesh_compression"));
-  CHECK(contains(with([](Json& j) { j["nodes"][0]["children"] = {0}; }), "below itself"));
+  CHECK(contains(with([](Json& j) { j["nodes"][0]["children"] = {0}; }), "its own ancestor"));
   CHECK(contains(with([](Json& j) { j["nodes"][0]["children"] = {7}; }), "'children' is 7"));
   CHECK(contains(with([](Json& j) { j["accessors"][0]["count"] = 5; }), "accessor 0"));
   CHECK(contains(with([](Json& j) { j["accessors"][0]["count"] = uint64_t(1) << 63; }), "2^31 points"));
   CHECK(contains(with([](Json& j) { j["accessors"][0]["count"] = -1; }), "'count'"));
-  CHECK(contains(with([](Json& j) { j["accessors"][3]["count"] = 5; }), "no multiple of 3"));
+  CHECK(contains(with([](Json& j) { j["accessors"][3]["count"] = 5; }), "not a multiple of 3"));
   CHECK(contains(with([](Json& j) { j["accessors"][1]["count"] = 3; }), "'NORMAL' has 3 values for 4 points"));
   CHECK(contains(with([](Json& j) { j["accessors"][0]["type"] = "VEC5"; }), "VEC5"));
   CHECK(contains(with([](Json& j) { j["accessors"][0]["componentType"] = 1; }), "componentType"));

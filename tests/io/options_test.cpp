@@ -69,7 +69,7 @@ TEST_CASE("read options: what cannot be says what would be right") {
   CHECK(says(error_of([] { read_of({"dims=3,4"}); }), "list of 3"));
   CHECK(says(error_of([] { read_of({"dims=3,4,5"}); }), "u8 i8"));
   CHECK(says(error_of([] { read_of({"dims=3,4,0"}); }), "at least 1"));
-  CHECK(says(error_of([] { read_of({"type=f77"}); }), "not a type of numbers"));
+  CHECK(says(error_of([] { read_of({"type=f77"}); }), "not a number type"));
   CHECK(says(error_of([] { read_of({"region=1,2"}); }), "list of 6"));
   CHECK(says(error_of([] { read_of({"region=5,1,0,1,0,1"}); }), "begins at 5 and ends at 1"));
   CHECK(says(error_of([] { read_of({"stride=1,2"}); }), "one or three numbers"));
@@ -86,6 +86,6 @@ TEST_CASE("write options: a format takes its own options and no others") {
   CHECK(says(error_of([&] { of("a.zarr", {"chunk=4"}); }), "from 8 to 512"));
   CHECK_FALSE(of("a.stl", {"binary=false"}).binary);
   CHECK(says(error_of([&] { of("a.stl", {"compression=zlib"}); }), "unknown parameter 'compression'"));
-  CHECK(says(error_of([&] { of("a.obj", {"binary=false"}); }), "has none"));
+  CHECK(says(error_of([&] { of("a.obj", {"binary=false"}); }), "no parameters"));
   CHECK(of("a.obj", {}).binary);
 }

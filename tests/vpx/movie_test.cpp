@@ -128,15 +128,16 @@ TEST_CASE("movie: .mp4 goes through ffmpeg, and without it there is a hint and n
 }
 
 TEST_CASE("movie: what cannot be written is said before anything is drawn, and nothing is left behind") {
-  CHECK(test::error_of([] { MovieWriter(test::temp_folder() + "a.gif", {}); }).find("can write: .webm .mp4") != std::string::npos);
+  CHECK(test::error_of([] { MovieWriter(test::temp_folder() + "a.gif", {}); }).find("supported: .webm .mp4") != std::string::npos);
   CHECK(test::error_of([] { MovieWriter("/no/such/folder/a.webm", {}); }).find("/no/such/folder/a.webm") != std::string::npos);
   const std::string path = test::temp_folder() + "never.webm";
   {
     MovieWriter writer(path, {});
     writer.add(frame(32, 32, 0));
-    CHECK(test::error_of([&] { writer.add(frame(34, 32, 0)); }).find("all pictures of a film have one size") != std::string::npos);
+    CHECK(test::error_of([&] { writer.add(frame(34, 32, 0)); }).find("all pictures of a film must have the same size") !=
+          std::string::npos);
   }
   CHECK_FALSE(file_exists(path));
   MovieWriter empty(path, {});
-  CHECK(test::error_of([&] { empty.finish(); }).find("has no picture") != std::string::npos);
+  CHECK(test::error_of([&] { empty.finish(); }).find("has no pictures") != std::string::npos);
 }

@@ -34,7 +34,7 @@ MappedFile::MappedFile(const std::string& path) : path_(path) {
     ::close(*d);
     delete d;
   });
-  if (p == MAP_FAILED) fail_data(std::string("cannot be mapped: ") + std::strerror(error), path);
+  if (p == MAP_FAILED) fail_data(std::string("cannot map the file: ") + std::strerror(error), path);
   const size_t n = size_;
   mapped_watch().add(p, n, path, st);
   owner_ = std::shared_ptr<const void>(p, [n](const void* q) {
@@ -56,7 +56,9 @@ void MappedFile::copy_to(void* to, size_t offset, size_t bytes) const {
     while (begin < end) {
       const ssize_t n = ::pread(*descriptor_, static_cast<char*>(to) + begin, end - begin, off_t(offset + begin));
       if (n < 0 && errno == EINTR) continue;
-      if (n <= 0) fail_data(n < 0 ? std::string("cannot be read: ") + std::strerror(errno) : std::string("ends before its size"), path_);
+      if (n <= 0)
+        fail_data(n < 0 ? std::string("cannot read the file: ") + std::strerror(errno) : std::string("ends before its reported size"),
+                  path_);
       begin += size_t(n);
     }
   });
@@ -121,7 +123,7 @@ bool natural_less(std::string_view a, std::string_view b) {
   size_t i = 0, j = 0;
   while (i < a.size() && j < b.size()) {
     if (digit(a, i) && digit(b, j)) {
-      while (i < a.size() && a[i] == '0') ++i;  // leading zeros count only when all else is equal
+      while (i < a.size() && a[i] == '0') ++i;  // leading zeros count only when everything else is equal
       while (j < b.size() && b[j] == '0') ++j;
       const size_t i0 = i, j0 = j;
       while (digit(a, i)) ++i;
@@ -141,7 +143,7 @@ bool natural_less(std::string_view a, std::string_view b) {
 std::vector<std::string> folder_entries(const std::string& path) {
   check_may_read(path);
   DIR* folder = ::opendir(path.c_str());
-  if (!folder) fail_data(std::string("cannot be listed: ") + std::strerror(errno), path);
+  if (!folder) fail_data(std::string("cannot list the folder: ") + std::strerror(errno), path);
   std::vector<std::string> names;
   while (const dirent* entry = ::readdir(folder))
     if (const std::string name = entry->d_name; name != "." && name != "..") names.push_back(name);

@@ -23,10 +23,9 @@ class MappedFile {
   std::string_view text() const { return {reinterpret_cast<const char*>(data_), size_}; }
   const std::string& path() const { return path_; }
   /// Copies bytes [offset, offset + bytes) by reading, on all threads: the copy costs no mapped pages. The range must lie in the
-  /// file. Throws Error(data) when the file cannot be read (it may have been cut since).
+  /// file. Throws Error(data) when the file cannot be read (it may have been truncated since).
   void copy_to(void* to, size_t offset, size_t bytes) const;
-  /// Lets the system take back the memory of bytes that were looked at (they can still be read). For walks through files larger than
-  /// memory.
+  /// Lets the system reclaim the memory of bytes already read (they can be read again). For passes over files larger than memory.
   void release(const std::byte* begin, const std::byte* end) const noexcept;
   /// Keeps the mapping alive; for Buffer::owner.
   std::shared_ptr<const void> owner() const { return owner_; }

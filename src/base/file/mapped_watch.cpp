@@ -146,7 +146,7 @@ class Watch final : public MappedWatch {
   std::map<uintptr_t, Mapped> mapped_;
   std::vector<Place*> free_;
   uint64_t count_ = 0, gone_number_ = 0, bytes_ever_ = 0;
-  std::string gone_;  // a file that had changed when it was let go
+  std::string gone_;  // a file that had changed when it was unmapped
 };
 
 std::atomic<MappedWatch*> shared{nullptr};
@@ -163,7 +163,7 @@ void share_mapped_watch(MappedWatch* watch) { shared = watch; }
 
 void check_files_unchanged(uint64_t since) {
   if (const std::string path = mapped_watch().changed(since); !path.empty())
-    fail_data("the file changed while it was read", path, "read it again when it is written completely");
+    fail_data("the file changed while it was being read", path, "read it again once it has been written completely");
 }
 
 }  // namespace sg

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mapped files under watch. Simulations write while people look: a file that is cut while it is mapped would end the program by SIGBUS, one
-// that is written over changes what was checked. Pages that are gone read as zeros instead, and whoever hands on what was read asks first
-// whether the files are still what they were.
+// Mapped files under watch. Simulations write while people look: a file truncated while mapped would end the program by SIGBUS, and one
+// that is overwritten changes what was checked. Missing pages read as zeros instead, and code that passes on what was read first checks
+// that the files have not changed.
 #pragma once
 #include <sys/stat.h>
 
@@ -17,7 +17,7 @@ class MappedWatch {
   virtual ~MappedWatch() = default;
   /// From now on [begin, begin + bytes) is a mapping of a file that was in state `st` when it was opened.
   virtual void add(const void* begin, size_t bytes, const std::string& path, const struct stat& st) = 0;
-  /// To be called before it is unmapped.
+  /// To be called before unmapping.
   virtual void remove(const void* begin) noexcept = 0;
   /// Whether an address lies in a mapped file.
   virtual bool holds(const void* p) const = 0;
@@ -26,13 +26,13 @@ class MappedWatch {
   /// Bytes of all files that were ever mapped, together.
   virtual uint64_t bytes_ever() const = 0;
   /// The path of a file that was mapped at `since` or later and has changed since it was opened: was cut, or has another size or time of
-  /// its last change. "" when there is none. A file that was replaced (a new one under its name) has not changed: the old one is what is
-  /// mapped. Files that are mapped no longer are told once, and only when `since` is not 0.
+  /// its last change. "" when there is none. A file that was replaced (a new one under its name) has not changed: the old one is still
+  /// mapped. Files no longer mapped are reported once, and only when `since` is not 0.
   virtual std::string changed(uint64_t since) = 0;
 };
 
 MappedWatch& mapped_watch();
-/// For plug-ins: takes the program's watch for its own. Before any file is mapped.
+/// For plug-ins: uses the program's watch. To be called before any file is mapped.
 void share_mapped_watch(MappedWatch* watch);
 
 /// Throws Error(data) when a file changed that was mapped at `since` or later (0: any that is mapped still).

@@ -27,7 +27,7 @@ constexpr int attempts = 100;
 constexpr size_t longest_name = 255, added = 25;  // ".partial-" and 16 digits
 
 [[noreturn]] void fail_to_make(int error, const std::string& path) {
-  if (error == ENOENT) fail_data("cannot be written: the folder does not exist", path, "make the folder first");
+  if (error == ENOENT) fail_data("cannot be written: the folder does not exist", path, "create the folder first");
   fail_data(std::string("cannot be written: ") + std::strerror(error ? error : EIO), path);
 }
 
@@ -44,7 +44,7 @@ std::atomic<int> cleaning{0};
 
 std::string partial_name(const std::string& path) {
   uint64_t bits = 0;
-  if (::getrandom(&bits, sizeof bits, 0) != ssize_t(sizeof bits)) fail_data("there are no random numbers for a name", path);
+  if (::getrandom(&bits, sizeof bits, 0) != ssize_t(sizeof bits)) fail_data("no random numbers are available for a temporary name", path);
   const std::string name = file_name_of(path);
   return fmt::format("{}{}.partial-{:016x}", folder_of(path), name.substr(0, longest_name - added), bits);
 }
@@ -129,7 +129,7 @@ PartialFile::~PartialFile() {
 void PartialFile::commit() {
   check_files_unchanged();  // nothing is kept that was made of half a file
   struct stat st {};
-  if (::stat(name_.c_str(), &st) != 0) fail_data("cannot be written: nothing was written", path_);
+  if (::stat(name_.c_str(), &st) != 0) fail_data("cannot be written: no data was written", path_);
   if (::rename(name_.c_str(), path_.c_str()) != 0) fail_data(std::string("cannot be written: ") + std::strerror(errno), path_);
 }
 

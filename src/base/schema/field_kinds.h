@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a parameter of type FieldName takes, asked and told.
+// What a parameter of type FieldName accepts, for checks and help.
 #pragma once
 #include <string>
 
@@ -7,7 +7,7 @@
 
 namespace sg {
 
-/// Whether fields of so many components are among them; a count may be a vector's and a tensor's (3: xx yy xy).
+/// Whether fields of that many components are accepted; a count may be a vector's and a tensor's (3: xx yy xy).
 bool takes_components(const FieldKinds& kinds, int components);
 
 /// "a vector field (2 or 3 components) of points or cells", "any field of points or cells".

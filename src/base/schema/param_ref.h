@@ -16,7 +16,7 @@
 
 namespace sg {
 
-/// Name of a field in the input; empty = the operation chooses (its help says how); "none" where it may do without one.
+/// Name of a field in the input; empty = chosen by the operation (its help says how); "none" where no field is allowed.
 struct FieldName {
   std::string name;
   bool empty() const { return name.empty(); }
@@ -24,7 +24,7 @@ struct FieldName {
   friend bool operator==(const FieldName&, const FieldName&) = default;
 };
 
-/// What a parameter holds, and the alternative of Value that stands for it.
+/// Type of a parameter, and the alternative of Value that represents it.
 enum class ParamType {
   boolean,   ///< bool
   integer,   ///< int64_t

@@ -166,11 +166,11 @@ std::string_view param_type(const ParamDecl& decl);
 std::string range_text(const ParamDecl& decl);
 /// "3", "1 to 3", "at least 2": how long a list may be; "" without limits.
 std::string items_text(const ParamDecl& decl);
-/// "name=value" of those whose values are not the defaults: what set_params() takes to come to the same.
+/// "name=value" of those whose values are not the defaults: which set_params() turns back into the same values.
 std::vector<std::string> changed_words(const ParamSet& params);
 /// All values as "name=value" lines in declaration order: the part of the cache key that is the parameters.
 std::string params_text(const Schema& schema);
-/// A table for people: name, type, default, unit, sentence.
+/// A table for people: name, type, default, unit, description.
 std::string params_help(const Schema& schema);
 /// JSON schema of the parameters (draft 2020-12): {"$schema":...,"type":"object","additionalProperties":false,"properties":{...}}. Beside
 /// the standard's words, "unit" and "field" ({"on":[...],"of":[...]}: which fields are taken).

@@ -85,7 +85,7 @@ std::string element_json(const ParamDecl& d) {
   return r;
 }
 
-// Whether the default is a value that the schema itself allows: "" and {} stand for "chosen from the data".
+// Whether the default is a value that the schema itself allows: "" and {} mean "chosen from the data".
 bool has_default(const ParamDecl& decl) {
   if (decl.required_) return false;
   const Value v = decl.ref.get();

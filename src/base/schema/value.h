@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Value: what a parameter is set to, as every door passes it.
+// Value: what a parameter is set to, as passed by every interface.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace sg {
 
-/// std::monostate: not stated, so that the operation chooses ("auto" in text, null in JSON).
+/// std::monostate: not given, so that the operation chooses ("auto" in text, null in JSON).
 using Value =
     std::variant<std::monostate, bool, int64_t, double, std::string, std::vector<int64_t>, std::vector<double>, std::vector<std::string>>;
 

@@ -51,7 +51,7 @@ HWY_INLINE V mul_sub(V a, V b, V c) {
 }
 #endif
 
-/// Truncated; |v| < 2^31 (hn::ConvertTo looks after larger ones in four more instructions).
+/// Truncated; |v| < 2^31 (hn::ConvertTo also handles larger ones, in four more instructions).
 template <class V>
 HWY_INLINE hn::Vec<hn::RebindToSigned<hn::DFromV<V>>> truncated(V v) {
   using DI = hn::RebindToSigned<hn::DFromV<V>>;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The language in which kernels are written: Highway's vectors with operators and short names, and plain numbers where one is meant for
-// every lane. Each name is one operation of Highway, so that a formula says which IEEE operations are done and in which order; nothing is
-// fused but mul_add and its kin. Loads, stores, gathers and what is rare keep their names of Highway.
-// For files that are compiled once for each target and have included Highway; a kernel's namespace says
-// `using namespace simd::HWY_NAMESPACE;`.
+// every lane. Each name is one operation of Highway, so that a formula shows which IEEE operations are done and in which order; nothing is
+// fused except mul_add and its relatives. Loads, stores, gathers and rare operations keep their Highway names. For files that are compiled
+// once for each target and have included Highway; a kernel's namespace says `using namespace simd::HWY_NAMESPACE;`.
 #if defined(SG_BASE_VECTOR_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SG_BASE_VECTOR_INL_H
 #undef SG_BASE_VECTOR_INL_H
@@ -28,7 +27,7 @@ using Int = hn::Vec<hn::RebindToSigned<D>>;
 template <class D>
 using Mask = hn::Mask<D>;
 
-/// The tag of a mask; Highway of today knows it for vectors alone.
+/// The tag of a mask; Highway currently provides it only for vectors.
 template <class M>
 struct TagOfMask;
 #if HWY_TARGET == HWY_SCALAR

@@ -51,7 +51,7 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
     return put(Json(std::move(l.list)));
   }
   bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception& e) override {
-    fail_data(fmt::format("is no valid JSON: {}", std::string(e.what()).substr(0, 200)), path_);
+    fail_data(fmt::format("is not valid JSON: {}", std::string(e.what()).substr(0, 200)), path_);
   }
 
   Json root;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// JSON read into a bounded tree that never changes: copies share it. Values are asked what they are before they are taken: a file may hold
+// JSON read into a bounded tree that never changes: copies share it. Query the type of a value before taking it: a file may contain
 // anything.
 #pragma once
 #include <cstdint>
@@ -24,7 +24,7 @@ class Json {
   Json(const char*) = delete;  ///< would be taken for a bool
   explicit Json(std::string v) : value_(std::make_shared<const std::string>(std::move(v))) {}
   explicit Json(std::vector<Json> list) : value_(std::make_shared<const std::vector<Json>>(std::move(list))) {}
-  /// In that order; of members of one name the last stands, at the place of the first.
+  /// In that order; of members with the same name the last wins, at the position of the first.
   explicit Json(Members members);
 
   bool is_null() const { return is<std::monostate>(); }
@@ -36,19 +36,19 @@ class Json {
   bool is_whole() const { return is<uint64_t>(); }  ///< written as an integer from 0 on that fits 64 bits
   bool is_real() const { return is<double>(); }     ///< written with a point or an exponent, or too large for an integer
 
-  // What it holds, where it is of that kind; else false, 0 and "".
+  // The value if it has that type; else false, 0 and "".
   bool boolean() const;
   uint64_t whole() const;
   int64_t negative() const;  ///< of an integer below 0 that fits 64 bits
   double number() const;     ///< of any number
   const std::string& text() const;
 
-  /// Items of a list or members of an object; 0 for all else.
+  /// Items of a list or members of an object; 0 for anything else.
   size_t size() const;
   bool empty() const { return size() == 0; }
   /// Item i of a list; null when there is none.
   const Json& operator[](size_t i) const;
-  /// The member of an object; a null pointer when there is none, and for all else.
+  /// The member of an object; a null pointer when there is none, and for anything else.
   const Json* find(std::string_view key) const;
   bool contains(std::string_view key) const { return find(key) != nullptr; }
   /// The member, or null.
@@ -63,7 +63,7 @@ class Json {
  private:
   struct Object {
     Members members;
-    std::vector<uint32_t> by_name;  ///< places in the order of names, once there are many
+    std::vector<uint32_t> by_name;  ///< indices in the order of names, once there are many
   };
   template <class T>
   using Shared = std::shared_ptr<const T>;
@@ -76,7 +76,7 @@ class Json {
 
 constexpr int deepest_json = 64;
 
-/// Throws Error(data) naming `path` for what is no JSON and for what is nested deeper than deepest_json.
+/// Throws Error(data) naming `path` for what is not JSON and for what is nested deeper than deepest_json.
 Json parse_json(std::string_view text, const std::string& path);
 
 }  // namespace sg

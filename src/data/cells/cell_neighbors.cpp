@@ -33,7 +33,7 @@ class FaceSource {
       first_ = s->vertices.size() + s->lines.size(), end_ = first_ + cells_.count;
       single_ = CellType::polygon;
     } else {
-      fail_internal(fmt::format("face neighbours of a {} mesh are asked for; in a grid they are arithmetic", mesh_kind(mesh)));
+      fail_internal(fmt::format("face neighbours were requested for a {} mesh; in a grid they follow from the indices", mesh_kind(mesh)));
     }
     for (size_t t = 0; t < 256; ++t)
       if (const CellTypeInfo* info = cell_type_info(uint8_t(t)); info && info->dimension >= 2) {
@@ -43,7 +43,7 @@ class FaceSource {
   }
 
   size_t count() const { return count_; }
-  /// Of the mesh; or as many as the ids tell, when only topology was given.
+  /// Of the mesh; or as many as the ids imply, when only topology was given.
   size_t points() const {
     if (points_ > 0) return points_;
     const IndexView& ids = cells_.connectivity;
@@ -250,7 +250,7 @@ class Matcher {
     full_ = n >= 32;
     return false;
   }
-  // What the key does not tell.
+  // What the key does not contain.
   bool equal(const Open& have, size_t cell, uint32_t face) {
     if (!(face & many) && !source_.beyond_32_bits()) return true;
     source_.corners(cell, face & ~many, a_);

@@ -210,7 +210,7 @@ void CellReader::open(size_t cell) {
   if (!weights_.empty()) weights_.clear();
   if (!face_begin_.empty()) face_begin_.clear(), face_nodes_.clear();
   orders_ = {0, 0, 0};
-  if (cell >= count_) fail_internal(fmt::format("cell {} of {} was asked for", cell, count_));
+  if (cell >= count_) fail_internal(fmt::format("cell {} of {} was requested", cell, count_));
   if (s.kind == Source::Kind::unstructured) return open_unstructured(cell);
   ids_.clear(), at_.clear();
   s.each_id(cell, [&](size_t id) { ids_.push_back(int64_t(id)); });

@@ -59,13 +59,13 @@ enum class CellType : uint8_t {
 };
 
 struct CellTypeInfo {
-  std::string_view name;  ///< as VTK says it without the prefix: "Tetra", "TriQuadraticHexahedron"
+  std::string_view name;  ///< VTK's name without the prefix: "Tetra", "TriQuadraticHexahedron"
   int dimension;          ///< 0 point, 1 curve, 2 surface, 3 solid
   int points;             ///< number of points, -1 = any
   int corners;            ///< corner points of cells with a fixed shape; -1 for polygons, strips, polyhedra, ...
 };
 
-/// Null for a number that is no cell type.
+/// Null for a number that is not a cell type.
 const CellTypeInfo* cell_type_info(uint8_t type);
 inline const CellTypeInfo& cell_type_info(CellType t) { return *cell_type_info(uint8_t(t)); }
 

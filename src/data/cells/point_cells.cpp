@@ -13,8 +13,7 @@ namespace sg {
 PointCells::PointCells(const DatasetPtr& dataset) {
   CellReader reader(dataset);
   const size_t n = reader.count();
-  if (n >= UINT32_MAX)
-    fail_usage(fmt::format("{} cells are more than can be listed by point", n), "neighbours of points", "crop the mesh first");
+  if (n >= UINT32_MAX) fail_usage(fmt::format("{} cells are too many to list by point", n), "neighbours of points", "crop the mesh first");
   begin_.assign(dataset->point_count() + 1, 0);
   // Counting, then filling in the order of the cells: each list comes out sorted.
   for (size_t c = 0; c < n; ++c) {

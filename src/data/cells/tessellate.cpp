@@ -173,7 +173,7 @@ void split_lattice_quad(CellType type, Orders n, std::span<const Vec3> at, std::
     for (int i = 0; i < n[0]; ++i) split_quad(at, node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1), out);
 }
 
-// Orders along both sides of a Lagrange or Bezier quad: the given ones when they fit, else what the count of nodes says; 0 = none.
+// Orders along both sides of a Lagrange or Bezier quad: the given ones if they fit, else as the node count implies; 0 = none.
 Orders quad_orders(CellType type, size_t nodes, Orders given) {
   if (given[0] > 0 && given[1] > 0 && lattice_nodes(type, given) == nodes) return given;
   const int n = high_order_of(type, nodes);

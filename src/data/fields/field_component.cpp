@@ -10,8 +10,8 @@ namespace sg {
 void check_component(const Field& field, int component, std::string_view where) {
   const int n = field.components();
   if (component < n) return;
-  fail_usage(fmt::format("field '{}' has {} component{}, not component {}", field.name, n, n == 1 ? "" : "s", component),
-             std::string(where), n == 1 ? "leave component out" : fmt::format("0 to {}, or -1 for the magnitude", n - 1));
+  fail_usage(fmt::format("field '{}' has {} component{}; there is no component {}", field.name, n, n == 1 ? "" : "s", component),
+             std::string(where), n == 1 ? "leave out component" : fmt::format("0 to {}, or -1 for the magnitude", n - 1));
 }
 
 }  // namespace sg

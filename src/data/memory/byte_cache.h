@@ -13,8 +13,8 @@
 namespace sg {
 
 /// Safe from any number of threads; each thing is made once at a time, by the thread that asks first, while others work on. What was
-/// handed out lives until its last holder lets go, whether the cache still has it or not. `make` must not start parallel loops: those
-/// who wait for it hold a lock.
+/// handed out lives until its last holder lets go, whether the cache still has it or not. `make` must not start parallel loops: threads
+/// that wait for it hold a lock.
 template <class T>
 class ByteCache {
  public:
@@ -53,7 +53,7 @@ class ByteCache {
     slot->thing = thing;
     ++stats_.made;
     const auto it = places_.find(key);
-    if (it == places_.end() || it->second->second != slot) return thing;  // put out meanwhile: it goes with its holder
+    if (it == places_.end() || it->second->second != slot) return thing;  // put out meanwhile: it is freed with its holder
     slot->bytes = bytes;
     stats_.bytes += bytes;
     trim(slot.get());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memo: what was made from a dataset and is dear to make again, an index for repeated contouring for example.
+// Memo: results derived from a dataset that are expensive to recompute, for example an index for repeated contouring.
 #pragma once
 #include <cstddef>
 #include <map>
@@ -22,7 +22,7 @@ class Memo {
     const auto it = entries_.find(key);
     return it == entries_.end() ? nullptr : std::static_pointer_cast<const T>(it->second.thing);
   }
-  /// Keeps a thing of so many bytes. When another thread was faster, its thing stays; returns the one that is kept.
+  /// Keeps an object of that many bytes. When another thread was faster, its thing stays; returns the one that is kept.
   template <class T>
   std::shared_ptr<const T> keep(const std::string& key, T thing, size_t bytes) {
     const std::lock_guard lock(mutex_);

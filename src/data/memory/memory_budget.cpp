@@ -42,7 +42,7 @@ void need_memory(double bytes, const std::string& what, const std::string& where
   const size_t most = allowed_memory(), used = in_use;
   if (bytes <= double(most) - double(std::min(used, most))) return;
   const std::string need = human_bytes(uint64_t(std::clamp(bytes, 0.0, 1e18)));
-  fail_usage(fmt::format("{} need {}, {} of the {} allowed are in use", what, need, human_bytes(used), human_bytes(most)), where,
+  fail_usage(fmt::format("{} need {}, but {} of the {} allowed are in use", what, need, human_bytes(used), human_bytes(most)), where,
              hint + (hint.empty() ? "" : ", or ") + "allow more with --memory; --explain shows the steps");
 }
 
@@ -54,12 +54,12 @@ detail::ClaimWatch::~ClaimWatch() { innermost = outer_; }
 void detail::claim_memory(size_t bytes) {
   if (innermost) innermost->on_claim(bytes);
   const size_t before = in_use.fetch_add(bytes);
-  // Nobody said: all of the machine's. The system would promise more and end the program when it is used.
+  // Not given: all of the machine's. The system would promise more and end the program when it is used.
   const bool stated = limit != 0;
   const size_t most = stated ? limit.load() : machine_memory();
   if (before <= most && bytes <= most - before) return;
   in_use -= bytes;
-  fail_usage(fmt::format("{} more are needed, {} of the {} {} are in use", human_bytes(bytes), human_bytes(before), human_bytes(most),
+  fail_usage(fmt::format("{} more are needed, but {} of the {} {} are in use", human_bytes(bytes), human_bytes(before), human_bytes(most),
                          stated ? "allowed" : "of this machine"),
              "--memory", "read a smaller part (--region, --stride, --fields, --piece), or allow more; --explain shows the steps");
 }

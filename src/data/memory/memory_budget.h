@@ -7,9 +7,9 @@
 namespace sg {
 
 /// From now on the arrays of this process (Buffer::allocate; not mapped files, whose pages the system takes back when it must) may
-/// hold this many bytes together; 0 = no limit. One more then throws Error(usage) that says what is in use and what helps.
+/// hold this many bytes together; 0 = no limit. Allocating more then throws Error(usage) that says what is in use and what helps.
 void set_memory_limit(size_t bytes);
-/// What set_memory_limit() said; 0 = nothing.
+/// The value given to set_memory_limit(); 0 = nothing.
 size_t memory_limit();
 /// Bytes that arrays hold now.
 size_t array_memory();
@@ -17,7 +17,7 @@ size_t array_memory();
 /// What may be taken together: set_memory_limit(), else half of this machine's memory.
 size_t allowed_memory();
 /// To be asked before work whose size follows from a few words: throws Error(usage) when `bytes` more than what arrays hold now are beyond
-/// allowed_memory(). `what` says what would be made ("1000000000 seeds"), `hint` what else would do; --memory is told besides.
+/// allowed_memory(). `what` says what would be made ("1000000000 seeds"), `hint` what to do instead; --memory is mentioned as well.
 void need_memory(double bytes, const std::string& what, const std::string& where, const std::string& hint);
 
 namespace detail {
@@ -28,7 +28,7 @@ class ClaimWatch {
   virtual ~ClaimWatch();
   ClaimWatch(const ClaimWatch&) = delete;
   ClaimWatch& operator=(const ClaimWatch&) = delete;
-  /// Before memory is asked for; may throw.
+  /// To be called before allocating; may throw.
   virtual void on_claim(size_t bytes) = 0;
 
  private:

@@ -43,7 +43,7 @@ Array scaled(const Array& a, double factor, double offset) {
 }  // namespace
 
 DatasetPtr select(const DatasetPtr& in, const SelectParams& p, Context&) {
-  if (p.keep.empty() && p.drop.empty()) fail_usage("nothing to select", "select", "give keep=NAMES or drop=NAMES");
+  if (p.keep.empty() && p.drop.empty()) fail_usage("no fields are selected", "select", "give keep=NAMES or drop=NAMES");
   const auto names = in->fields().names();
   for (const auto* list : {&p.keep, &p.drop})
     for (const std::string& n : *list)
@@ -61,7 +61,7 @@ DatasetPtr select(const DatasetPtr& in, const SelectParams& p, Context&) {
 DatasetPtr magnitude(const DatasetPtr& in, const MagnitudeParams& p, Context&) {
   const Field& f = chosen(*in, p.field, {3, 2}, "magnitude", "vector");
   if (f.components() == 1)
-    fail_usage(fmt::format("field '{}' has one component, so it has no direction to leave out", f.name), "magnitude", "use it as it is");
+    fail_usage(fmt::format("field '{}' has only one component, so it has no magnitude", f.name), "magnitude", "use the field as it is");
   return with_result(in, {p.name.empty() ? f.name + "_magnitude" : p.name, f.association, scalar_of(f, -1, float_type(f.array.type())),
                           f.unit, Role::none});
 }
@@ -71,10 +71,10 @@ DatasetPtr scale_field(const DatasetPtr& in, const ScaleFieldParams& p, Context&
   if (!std::isfinite(p.factor) || !std::isfinite(p.offset)) fail_usage("factor and offset must be finite", "scale");
   const bool unchanged = p.factor == 1 && p.offset == 0;
   if (!unchanged && p.unit.empty() && !f.unit.empty())
-    ctx.info(fmt::format("scale: '{}' loses its unit {}; give unit=... to name the new one", f.name, f.unit));
+    ctx.info(fmt::format("scale: '{}' loses its unit {}; unit=... names the new one", f.name, f.unit));
   const bool wide = float_type(f.array.type()) == ElementType::f64;
   Array a = wide ? scaled<double>(f.array, p.factor, p.offset) : scaled<float>(f.array, p.factor, p.offset);
-  // Scaled normals, ids or labels are no longer that; scalars and vectors are (an offset moves a vector's tip, not its kind).
+  // Scaled normals, ids or labels lose that role; scalars and vectors are (an offset moves a vector's tip, not its kind).
   const Role role = f.role == Role::scalars || f.role == Role::vectors ? f.role : Role::none;
   return with_result(in, {p.name.empty() ? f.name : p.name, f.association, std::move(a),
                           !p.unit.empty() ? p.unit
@@ -86,7 +86,7 @@ DatasetPtr scale_field(const DatasetPtr& in, const ScaleFieldParams& p, Context&
 DatasetPtr component(const DatasetPtr& in, const ComponentParams& p, Context&) {
   const Field& f = chosen(*in, p.field, {3, 2}, "component", "vector");
   if (p.component < 0 || p.component >= f.components())
-    fail_usage(fmt::format("field '{}' has {} components, not component {}", f.name, f.components(), p.component), "component",
+    fail_usage(fmt::format("field '{}' has {} components; there is no component {}", f.name, f.components(), p.component), "component",
                fmt::format("0 to {}", f.components() - 1));
   const std::string suffix = f.components() <= 3 ? std::string(1, "xyz"[p.component]) : std::to_string(p.component);
   return with_result(in,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small operations on fields; the mesh stays as it is.
+// Small operations on fields; the mesh is unchanged.
 #pragma once
 #include "base/context.h"
 #include "base/schema/schema.h"
@@ -23,10 +23,10 @@ struct MagnitudeParams {
   std::string name = "";
 };
 inline void describe(Schema& s, MagnitudeParams& p) {
-  s("field", p.field, "Field of several components; default: the active vector.").takes({.scalars = false});
-  s("name", p.name, "Name of the result; default: the field's name and '_magnitude'.");
+  s("field", p.field, "Field of several components; default: the active vectors.").takes({.scalars = false});
+  s("name", p.name, "Name of the result; default: the field's name followed by '_magnitude'.");
 }
-/// Length of each tuple (Euclidean) as a field of its own beside the others: f64 for 64-bit fields, else f32; same unit; NaN stays.
+/// Length of each tuple (Euclidean) as an additional field: f64 for 64-bit fields, else f32; same unit; NaN stays.
 DatasetPtr magnitude(const DatasetPtr& in, const MagnitudeParams& p, Context& ctx);
 
 struct ScaleFieldParams {
@@ -37,11 +37,10 @@ struct ScaleFieldParams {
 };
 inline void describe(Schema& s, ScaleFieldParams& p) {
   s("field", p.field, "Field to scale; default: the active scalar.");
-  s("factor", p.factor, "Multiplies each number.");
-  s("offset", p.offset, "Is added afterwards.");
+  s("factor", p.factor, "Factor on each number.");
+  s("offset", p.offset, "Offset added afterwards.");
   s("name", p.name, "Name of the result; default: the field's own, which it replaces.");
-  s("unit", p.unit,
-    "Unit of the result, e.g. degC after offset=-273.15; default: the field's own when factor is 1 and offset 0, else none.");
+  s("unit", p.unit, "Unit of the result, e.g. degC after offset=-273.15; default: the field's own if factor is 1 and offset 0, else none.");
 }
 /// field * factor + offset, computed in double: f64 for 64-bit fields, else f32. The unit is dropped when the numbers change and no new
 /// one is given, because a scaled number with the old unit would be wrong.
@@ -53,11 +52,11 @@ struct ComponentParams {
   std::string name = "";
 };
 inline void describe(Schema& s, ComponentParams& p) {
-  s("field", p.field, "Field of several components; default: the active vector.");
-  s("component", p.component, "Which one, from 0.").at_least(0);
-  s("name", p.name, "Name of the result; default: the field's name and '_x', '_y', '_z' or the component's number.");
+  s("field", p.field, "Field of several components; default: the active vectors.");
+  s("component", p.component, "Component to take, counted from 0.").at_least(0);
+  s("name", p.name, "Name of the result; default: the field's name followed by '_x', '_y', '_z' or the component's number.");
 }
-/// One component as a field of its own beside the others; shares the bytes, same type and unit.
+/// One component as an additional field; shares the bytes, same type and unit.
 DatasetPtr component(const DatasetPtr& in, const ComponentParams& p, Context& ctx);
 
 }  // namespace sg

@@ -27,13 +27,13 @@ void check_shape(const Dataset& first, const Dataset& other, size_t number, Cont
   const bool same = first.point_count() == other.point_count() && first.cell_count() == other.cell_count() &&
                     (lattices ? lattice_dims(first.mesh()) == lattice_dims(other.mesh()) : first.kind() == other.kind());
   if (!same)
-    fail_usage(fmt::format("input {} has another mesh: {}; the first has {}", number, shape_of(other), shape_of(first)), "join_fields",
-               "the filter probe brings fields from one mesh to another");
+    fail_usage(fmt::format("input {} has a different mesh: {}; the first has {}", number, shape_of(other), shape_of(first)), "join_fields",
+               "the operation probe transfers fields from one mesh to another");
   const Box3 a = first.bounds(), b = other.bounds();
   const double apart = std::max(length(a.lo - b.lo), length(a.hi - b.hi));
   if (apart > 1e-6 * length(a.size()))
-    context.warn(fmt::format("join_fields: the points of input {} lie up to {:.3g} beside those of the first; values are taken by number",
-                             number, apart));
+    context.warn(fmt::format(
+        "join_fields: the points of input {} lie up to {:.3g} away from those of the first; values are matched by index", number, apart));
 }
 
 bool same_values(const Array& a, const Array& b) {
@@ -88,7 +88,7 @@ class Join {
       f.name = fmt::format("{}_{}", plain, number);
       if (told_.insert(f.name).second)
         context_.info(
-            fmt::format("join_fields: '{}' of input {} is another than that of the first: it is called '{}'", plain, number, f.name));
+            fmt::format("join_fields: '{}' of input {} differs from that of the first and is renamed '{}'", plain, number, f.name));
     }
     for (const Field& have : fields)
       if (have.role == f.role) f.role = Role::none;  // what is active stays so
@@ -104,7 +104,7 @@ class Join {
 
 Data join_fields(const std::vector<Data>& inputs, const JoinFieldsParams& p, Context& context) {
   if (!p.names.empty() && p.names.size() != p.fields.size())
-    fail_usage(fmt::format("{} names for {} fields", p.names.size(), p.fields.size()), "join_fields names", "one for each of fields=");
+    fail_usage(fmt::format("{} names for {} fields", p.names.size(), p.fields.size()), "join_fields names", "give one for each of fields=");
   std::vector<std::vector<DatasetPtr>> all(inputs.size());
   std::vector<std::string> have;
   for (size_t i = 0; i < inputs.size(); ++i) {

@@ -11,13 +11,13 @@ struct JoinFieldsParams {
   std::vector<std::string> fields, names;
 };
 inline void describe(Schema& s, JoinFieldsParams& p) {
-  s("fields", p.fields, "Fields to take of the further inputs; default: all.");
-  s("names", p.names, "Their names in the result, in the order of fields; default: their own.");
+  s("fields", p.fields, "Fields to take from the further inputs; default: all.");
+  s("names", p.names, "Their names in the result, in the order of 'fields'; default: their own.");
 }
 
-/// The first input with the fields of the others, whose meshes have the same kind, dimensions and numbers of points and cells; places are
-/// those of the first (a warning says when they differ). A field that the first has with the same values is left out; another field of a
-/// name that is taken gets the number of its input behind it ("T_2"). What one of them hides is hidden. Collections: part by part. Throws
+/// The first input with the fields of the others, whose meshes have the same kind, dimensions and numbers of points and cells; positions
+/// are those of the first (a warning says if they differ). A field that the first has with the same values is left out; another field with
+/// a name already in use gets the number of its input appended ("T_2"). What any of them hides is hidden. Collections: part by part. Throws
 /// Error(usage) for meshes of another shape, and for fields that none of the further inputs has.
 Data join_fields(const std::vector<Data>& inputs, const JoinFieldsParams& p, Context& context);
 

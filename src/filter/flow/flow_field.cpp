@@ -24,14 +24,15 @@ const Field& flow_field_of(const Dataset& d, const std::string& name, std::strin
     if (!f) f = d.fields().active(3);
     if (!f) f = d.fields().active(2);
     if (!f)
-      fail_usage("the data have no vector field", std::string(who), "a field of 2 or 3 components; calc makes one: calc expr='vec(u,v,0)'");
+      fail_usage("the data has no vector field", std::string(who),
+                 "a flow needs a field of 2 or 3 components; calc can make one: calc expr='vec(u,v,0)'");
   }
   if (f->association == Association::whole)
     fail_usage(fmt::format("field '{}' belongs to the whole dataset, not to points or cells", f->name), std::string(who));
   if (f->components() != 2 && f->components() != 3)
     fail_usage(
-        fmt::format("field '{}' has {} component{}, a velocity has 2 or 3", f->name, f->components(), f->components() == 1 ? "" : "s"),
-        std::string(who), "name a vector field by field=");
+        fmt::format("field '{}' has {} component{}; a velocity has 2 or 3", f->name, f->components(), f->components() == 1 ? "" : "s"),
+        std::string(who), "name a vector field with field=");
   return *f;
 }
 
@@ -40,8 +41,8 @@ FlowField::FlowField(DatasetPtr dataset, const std::string& name, Context& conte
   field_ = flow_field_of(*dataset_, name, "flow");
   dimension_ = mesh_dimension(*dataset_);
   if (dataset_->cell_count() == 0 || dimension_ < 1)
-    fail_usage(fmt::format("there is no flow between the points of a mesh of {} with {} cells", dataset_->kind(), dataset_->cell_count()),
-               "flow", "a grid, or cells of lines, surfaces or volume");
+    fail_usage(fmt::format("a mesh of kind {} with {} cells has no flow between its points", dataset_->kind(), dataset_->cell_count()),
+               "flow", "use a grid, or a mesh with line, surface or volume cells");
   access_ = std::make_shared<const FlowAccess>(dataset_, std::move(index), context);
   if (field_.association == Association::cell) {
     const DatasetPtr averaged = cell_to_point(dataset_, {{field_.name}}, context);
@@ -56,7 +57,7 @@ FlowField::FlowField(DatasetPtr dataset, const std::string& name, Context& conte
   measure_speeds(context);
 }
 
-// The largest speed. Infinities, and what is infinite once it is squared, are no velocities: they become NaN.
+// The largest speed. Infinities, and what is infinite once it is squared, are not velocities: they become NaN.
 void FlowField::measure_speeds(Context& context) {
   struct Speeds {
     double largest2 = 0;
@@ -94,7 +95,7 @@ void FlowField::measure_speeds(Context& context) {
   largest_speed_ = std::sqrt(speeds.largest2);
   if (speeds.beyond == 0) return;
   context.info(
-      fmt::format("{} values of '{}' are infinite or beyond {:g}: there is no flow", speeds.beyond, field_.name, std::sqrt(most2)));
+      fmt::format("{} values of '{}' are infinite or beyond {:g} and count as missing", speeds.beyond, field_.name, std::sqrt(most2)));
   const auto cleared = [&]<class T>(const T* from) {
     T* out = nullptr;
     packed_ = Array::make<T>(packed_.count(), components_, &out);

@@ -24,13 +24,13 @@ class FlowAccess;
 class FlowField {
  public:
   /// `field` empty: the active vector field (role vectors, else the first of 3, else of 2 components). `index`: a locator of the same mesh
-  /// that is to be used again (next time step); null makes one. Throws Error(usage) when there is no such field or it has other than 2 or 3
+  /// that is to be used again (next time step); null makes one. Throws Error(usage) when there is no such field or it does not have 2 or 3
   /// components, or when the mesh has no cells. Velocities that are infinite, or too large to be squared, count as none, with a note.
   FlowField(DatasetPtr dataset, const std::string& field, Context& context, std::shared_ptr<const CellLocator> index = {});
 
   const DatasetPtr& dataset() const { return dataset_; }
   const Field& field() const { return field_; }  ///< on points
-  /// Made when it is first asked for.
+  /// Made on first use.
   const std::shared_ptr<const CellLocator>& locator() const;
   int dimension() const { return dimension_; }  ///< 3 with solid cells, else 2 (or 1): the mesh is a surface, flat or curved
   double largest_speed() const { return largest_speed_; }

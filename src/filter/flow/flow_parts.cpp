@@ -10,10 +10,10 @@ namespace sg {
 
 std::vector<DatasetPtr> flow_meshes(const Data& data, std::string& field, std::string_view who) {
   if (std::holds_alternative<TablePtr>(data))
-    fail_usage("needs a mesh but got a table", std::string(who), "make points of its rows first: table_to_points x=... y=... z=...");
+    fail_usage("needs a mesh but got a table", std::string(who), "turn its rows into points first: table_to_points x=... y=... z=...");
   std::vector<DatasetPtr> all;
   for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { all.push_back(d); });
-  if (all.empty()) fail_usage("got no mesh", std::string(who));
+  if (all.empty()) fail_usage("has no mesh as input", std::string(who));
   const auto has = [&](const Dataset& d) {
     if (!field.empty()) return d.fields().find(field) != nullptr;
     return d.fields().with_role(Role::vectors) || d.fields().active(3) || d.fields().active(2);
@@ -27,7 +27,7 @@ std::vector<DatasetPtr> flow_meshes(const Data& data, std::string& field, std::s
     if (field.empty()) field = flow_field_of(*d, field, who).name;
     out.push_back(d);
   }
-  // A mesh alone, or the first of many, tells what is wrong.
+  // A single mesh, or the first of many, gives the error.
   if (out.empty()) flow_field_of(*all.front(), field, who), out.push_back(all.front());
   return out;
 }
@@ -83,7 +83,7 @@ PartsCursor::PartsCursor(const FlowParts& parts) {
 
 bool PartsCursor::operator()(Vec3 x, Vec3& v) {
   if (cursors_[last_](x, v)) return true;
-  // Solid parts hold nothing beyond their box; surfaces answer from beside them, too.
+  // Solid parts hold nothing beyond their box; surfaces also answer for points off the surface.
   const auto may_hold = [&](const FlowCursor& c) {
     if (!flat_) return true;
     const Box3& b = c.field().dataset()->bounds();

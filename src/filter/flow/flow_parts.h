@@ -50,7 +50,7 @@ class PartsCursor {
  private:
   std::vector<FlowCursor> cursors_;
   size_t last_ = 0;
-  bool flat_ = false;  // lines stay in the surface by themselves, or there is none
+  bool flat_ = false;  // lines stay in the surface by themselves, or there is no surface
 };
 
 }  // namespace sg

@@ -24,7 +24,7 @@ std::string squeezed(std::string_view unit) {
   return r;
 }
 
-// Metres a second in the unit; 0 when it is no speed.
+// Metres a second in the unit; 0 when it is not a speed.
 double metres_per_second(std::string_view unit) {
   struct Known {
     std::string_view text;
@@ -79,7 +79,7 @@ bool needs_geographic(const Dataset& d, const Field& velocity) {
 
 void warn_of_degrees(const Dataset& d, const Field& velocity, std::string_view who, Context& context) {
   if (needs_geographic(d, velocity))
-    context.warn(fmt::format("{}: places are degrees, but '{}' is in {}: it is traced as if it were degrees; geographic=true converts it",
+    context.warn(fmt::format("{}: positions are in degrees, but '{}' is in {}: it is traced as if in degrees; geographic=true converts it",
                              who, velocity.name, velocity.unit));
 }
 
@@ -101,10 +101,11 @@ Data geographic_flow(const Data& data, const std::string& field, double seconds,
     const Field* f = d->fields().find(field);
     if (!f) return d;
     if (f->association != Association::point)
-      fail_usage(fmt::format("field '{}' lies on cells", field), std::string(who) + " geographic", "cell_to_point brings it to the points");
+      fail_usage(fmt::format("field '{}' is a cell field", field), std::string(who) + " geographic",
+                 "cell_to_point converts it to a point field");
     if (!on_a_globe(d->bounds()))
-      fail_usage(fmt::format("latitudes from {:.6g} to {:.6g}", d->bounds().lo.y, d->bounds().hi.y), std::string(who) + " geographic",
-                 "x has to be longitudes and y latitudes, in degrees");
+      fail_usage(fmt::format("latitudes range from {:.6g} to {:.6g}", d->bounds().lo.y, d->bounds().hi.y), std::string(who) + " geographic",
+                 "x must be longitude and y latitude, in degrees");
     const double unit = metres_per_second(f->unit), scale = (unit > 0 ? unit : 1) * seconds / metres_per_degree;
     DatasetParts parts = d->parts();
     Field now = *f;

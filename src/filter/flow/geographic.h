@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Flows over longitude and latitude whose velocities are metres a second: traced as they are, they would go a degree where they say a
-// metre.
+// Flows over longitude and latitude whose velocities are metres a second: traced unconverted, they would move a degree for each metre.
 #pragma once
 #include "base/context.h"
 #include "data/dataset.h"
 
 namespace sg {
 
-/// The places are degrees and the velocity is metres a second, as the file says (units of coordinates, unit of the field).
+/// Positions are in degrees and the velocity is in metres per second, according to the file (units of the coordinates and of the field).
 bool needs_geographic(const Dataset& d, const Field& velocity);
-/// Warns when it does, and says what helps.
+/// Warns if so, and says what helps.
 void warn_of_degrees(const Dataset& d, const Field& velocity, std::string_view who, Context& context);
-/// Seconds in a unit of the file's time ("days since ...": 86400); 1 when it says none.
+/// Seconds in a unit of the file's time ("days since ...": 86400); 1 when it has none.
 double seconds_of_time(const Dataset& d);
 
 /// The datasets of `data` that have the point field `field` (2 or 3 components, m/s, or what its unit says: cm/s, km/h, knots), with

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One step of an ordinary differential equation x' = v(x, t), by the classic explicit schemes and a symplectic one. A *flow* is explained
-// in flow_field.h; here only its velocity is asked for.
+// in flow_field.h; here only its velocity is used.
 #pragma once
 #include <cstdint>
 
@@ -50,7 +50,7 @@ bool implicit_midpoint_step(Flow& flow, Vec3 x, double t, double h, Vec3 k1, Vec
 }
 
 /// A particle of place x and velocity v that a force moves: x'' = a(x, t). Velocity Verlet (leapfrog): of order 2, symplectic for forces
-/// that depend on the place alone, so that the energy of orbits does not drift. `a(x, t)` is at the old place and becomes that at the new.
+/// that depend only on position, so that the energy of orbits does not drift. `a(x, t)` is at the old place and becomes that at the new.
 template <class Acceleration>
 void symplectic_step(Acceleration&& acceleration, double t, double h, Vec3& x, Vec3& v, Vec3& a) {
   v += (h / 2) * a;

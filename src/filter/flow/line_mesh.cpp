@@ -101,7 +101,7 @@ DatasetPtr lines_dataset(const packets::SeedLines& lines, const std::string& vel
         Box3 some;
         for (size_t l = from; l < to; ++l)
           for (const Piece* p : {&lines.backward[size_t(seed[l])], &lines.forward[size_t(seed[l])]})
-            for (size_t i = 0; i < p->count; i += 8) {  // nearly: it only tells near from far
+            for (size_t i = 0; i < p->count; i += 8) {  // nearly: it only separates near from far
               const Record& r = p->first[i];
               some.add(lines.origin + Vec3(double(r.x[0]), double(r.x[1]), double(r.x[2])));
             }

@@ -9,7 +9,7 @@ namespace sg {
 /// As lines_dataset() of streamlines.h, in the order of the seeds.
 DatasetPtr lines_dataset(const packets::SeedLines& lines, const std::string& velocity_name, const std::string& unit);
 
-/// What a value that lines or surfaces of a flow have of their own ("speed", "time") is called beside the velocity: "speed_2" where the
+/// Name of a value that lines or surfaces of a flow carry themselves ("speed", "time"), next to the velocity: "speed_2" where the
 /// velocity is called "speed". (FieldSet::add lets go of the array of a field of the same name.)
 std::string own_value(std::string_view value, std::string_view velocity);
 

@@ -15,14 +15,15 @@
 namespace sg {
 
 void describe(Schema& s, StreamlinesParams& p) {
-  s("field", p.field, "Velocity: a point or cell field of 2 or 3 components; default: the active vectors.").takes(fields::vectors);
-  s("direction", p.direction, "Along the flow, against it, or both from each seed, as one line.");
+  s("field", p.field, "Velocity: point or cell field of 2 or 3 components; default: the active vectors.").takes(fields::vectors);
+  s("direction", p.direction, "Trace along the flow, against it, or both ways from each seed as one line.");
   describe(s, p.integration);
   describe(s, p.stop);
   describe(s, p.seeds);
-  s("geographic", p.geographic, "x and y are degrees and the velocity is in m/s: it is converted (times are seconds, lengths degrees).");
+  s("geographic", p.geographic, "x and y are in degrees and the velocity is in m/s: convert it (times in seconds, lengths in degrees).");
   s("attributes", p.attributes,
-    "What lines carry beside speed, time, length and velocity: the mesh's other fields; the vorticity; how the flow turns about the line.");
+    "Fields of the lines besides speed, time, length and velocity: the mesh's other fields; the vorticity; the rotation of the flow about "
+    "the line.");
 }
 
 namespace {
@@ -35,13 +36,13 @@ std::string no_line_hint(const FlowParts& parts, std::span<const Vec3> seeds) {
     for (int a = 0; a < 3; ++a) all = all && s[a] >= b.lo[a] && s[a] <= b.hi[a];
     in += all;
   }
-  if (in > 0) return "the flow has no value there: hidden cells, holes, or NaN";
-  return fmt::format("the mesh lies in x {:.6g} to {:.6g}, y {:.6g} to {:.6g}, z {:.6g} to {:.6g}", b.lo.x, b.hi.x, b.lo.y, b.hi.y, b.lo.z,
-                     b.hi.z);
+  if (in > 0) return "the flow has no value there (hidden cells, holes or NaN)";
+  return fmt::format("the mesh extends over x {:.6g} to {:.6g}, y {:.6g} to {:.6g}, z {:.6g} to {:.6g}", b.lo.x, b.hi.x, b.lo.y, b.hi.y,
+                     b.lo.z, b.hi.z);
 }
 
-// How many of these lines can still be told apart, lines of a default picture drawn on the box that they fill: those that cover a good half
-// of its shadow in space, two fifths of it when flat.
+// How many of these lines can still be distinguished, lines of a default picture drawn on the box that they fill: those that cover a good
+// half of its shadow in space, two fifths of it when flat.
 size_t most_apart(const Dataset& lines, const std::string& velocity, const Box3& box) {
   const Vec3 e = box.size();
   const bool flat = std::min({e.x, e.y, e.z}) < 1e-6 * box.diagonal();
@@ -68,23 +69,23 @@ Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Co
   const FlowParts parts(p.geographic ? converted(inputs[0], p.field.name) : inputs[0], p.field.name, "streamlines", context);
   if (!p.geographic) warn_of_degrees(*parts.fields().front().dataset(), parts.fields().front().field(), "streamlines", context);
   const double largest = parts.largest_speed();
-  if (!(largest > 0)) fail_usage(fmt::format("field '{}' is zero or NaN everywhere: nothing flows", parts.name()), "streamlines");
+  if (!(largest > 0)) fail_usage(fmt::format("field '{}' is zero or NaN everywhere: there is no flow", parts.name()), "streamlines");
   StopParams stop = p.stop;
   // Lines that circle would fill the picture.
   if (!stop.max_length && !stop.max_time) stop.max_length = 1.5 * parts.bounds().diagonal();
-  if (stop.min_speed == StopParams().min_speed)  // nobody said
+  if (stop.min_speed == StopParams().min_speed)  // not given
     for (const FlowField& f : parts.fields())
       if (noise_speed(*f.dataset(), f.dataset()->fields().require(parts.name())) > 0) {
         stop.min_speed = 0.02;
-        context.info(fmt::format("most of '{}' is noise: lines end where it is slower than 2 % of its largest speed; min_speed=0 shows all",
-                                 parts.name()));
+        context.info(fmt::format(
+            "most of '{}' is noise: lines end where the speed is below 2 % of its largest value; min_speed=0 shows all", parts.name()));
         break;
       }
   const TraceOptions options = trace_options(p.integration, stop, largest);
   std::vector<DatasetPtr> meshes;
   for (const FlowField& f : parts.fields()) meshes.push_back(f.dataset());
   PartsCursor cursor(parts);
-  // Seeds that nobody placed go where much flows: into vessels, not into the still parts around them.
+  // Seeds without a given place go where the flow is strong: into vessels, not into the still parts around them.
   double much = 0;
   uint64_t asked = 0;
   const bool chosen = p.seeds.seeds.has_value();
@@ -108,7 +109,8 @@ Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Co
   if (p.seeds.count == 0 && seed_kind(p.seeds, inputs.size() > 1) == SeedKind::random)
     if (const size_t most = most_apart(*lines, parts.name(), parts.bounds()); most < lines->cell_count()) {
       const int64_t last = lines->fields().require("seed", Association::cell).array.view<int64_t>()[most - 1];
-      context.info(fmt::format("streamlines: {} of {}, as many as can be told apart; count= makes more", most, lines->cell_count()));
+      context.info(
+          fmt::format("streamlines: {} of {}, as many as can be told apart; count= sets another number", most, lines->cell_count()));
       at.resize(size_t(last) + 1);
       lines = trace(at);
     }

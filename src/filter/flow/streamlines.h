@@ -6,7 +6,7 @@
 
 namespace sg {
 
-/// What lines carry beside speed, time, length and velocity.
+/// Fields of the lines besides speed, time, length and velocity.
 enum class LineAttribute { fields, vorticity, rotation, none };
 constexpr auto enum_words(LineAttribute) {
   using enum LineAttribute;
@@ -33,10 +33,11 @@ void describe(Schema& s, StreamlinesParams& p);
 /// gradient; "rotation": "angular velocity", half the vorticity along the line (radians a time), and "rotation", its integral over time
 /// since the seed (radians): how far a ribbon has turned.
 /// Cell fields: "seed" (number of the seed) and "stop" (why the line ended downstream, upstream with direction=backward: a StopReason,
-/// labels). Of random seeds whose count nobody gave the first ones are taken whose lines can be told apart in a picture. Without max_length
-/// and max_time, lines end after one and a half times the mesh's diagonal. In grids that are mostly noise (noise_speed.h) they end below 2
-/// % of the largest speed, unless min_speed is given. Uniform grids and tetrahedra of f32 vectors go through packets (packets/packets.h).
-/// Throws Error(usage) without a vector field, for one that is zero everywhere, and when no seed lies in the flow.
+/// labels). Of random seeds without a given count only the first are used, as many as give lines that can be distinguished in a picture.
+/// Without max_length and max_time, lines end after one and a half times the mesh's diagonal. In grids that are mostly noise
+/// (noise_speed.h) they end below 2 % of the largest speed, unless min_speed is given. Uniform grids and tetrahedra of f32 vectors go
+/// through packets (packets/packets.h). Throws Error(usage) without a vector field, for one that is zero everywhere, and when no seed lies
+/// in the flow.
 Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Context& context);
 
 /// Lines of two points and more as that mesh, with the first four point fields and the cell fields. f32, about an origin of their own when

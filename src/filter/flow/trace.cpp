@@ -10,24 +10,23 @@ namespace sg {
 
 void describe(Schema& s, IntegrationParams& p) {
   s("integrator", p.integrator,
-    "Scheme: dormand_prince adapts its steps to the tolerance, the others take steps of one size; implicit_midpoint is symplectic.");
-  s("step", p.step, "Size of a step (dormand_prince: of the first), in step_unit.").positive();
-  s("step_unit", p.step_unit, "What steps are measured in: sizes of the local cell, length, or time.");
-  s("tolerance", p.tolerance, "dormand_prince: error of one step, in sizes of the local cell.").positive();
+    "Integration scheme: dormand_prince adapts its steps to the tolerance, the others use fixed steps; implicit_midpoint is symplectic.");
+  s("step", p.step, "Step size (dormand_prince: of the first step), in step_unit.").positive();
+  s("step_unit", p.step_unit, "Unit of steps: local cell size, length, or time.");
+  s("tolerance", p.tolerance, "dormand_prince: error per step, in local cell sizes.").positive();
   s("min_step", p.min_step, "dormand_prince: smallest step, in step_unit; default: a fiftieth of step.");
   s("max_step", p.max_step, "dormand_prince: largest step, in step_unit; default: step, which keeps lines smooth.");
 }
 
 void describe(Schema& s, StopParams& p) {
-  s("max_length", p.max_length, "Longest line; default: no limit.").unit("length");
-  s("max_time", p.max_time, "Longest time along a line; default: no limit.").unit("time");
-  s("max_steps", p.max_steps, "Most steps in each direction.").range(1, 1e9);
+  s("max_length", p.max_length, "Maximum length of a line; default: no limit.").unit("length");
+  s("max_time", p.max_time, "Maximum time along a line; default: no limit.").unit("time");
+  s("max_steps", p.max_steps, "Maximum number of steps in each direction.").range(1, 1e9);
   s("min_speed", p.min_speed,
-    "Lines end where the flow is slower than this part of its largest speed. The default, 1e-9, of streamlines is 0.02 where most of a "
-    "grid is noise, as around "
-    "the vessels of a scan.")
+    "Lines end where the speed is below this fraction of its largest value. The default of 1e-9 becomes 0.02 for streamlines where most of "
+    "a grid is noise, as around the vessels of a scan.")
       .range(0, 1);
-  s("closed", p.closed, "Lines end where they come back to their seed.");
+  s("closed", p.closed, "End lines where they return to their seed.");
 }
 
 TraceOptions trace_options(const IntegrationParams& p, const StopParams& stop, double largest_speed) {
@@ -36,9 +35,10 @@ TraceOptions trace_options(const IntegrationParams& p, const StopParams& stop, d
   o.step = p.step, o.tolerance = p.tolerance;
   o.min_step = p.min_step.value_or(p.step / 50), o.max_step = p.max_step.value_or(p.step);
   if (!(o.min_step > 0) || !(o.max_step >= o.min_step))
-    fail_usage(fmt::format("min_step {} and max_step {} leave no step", o.min_step, o.max_step), "integrator", "0 < min_step <= max_step");
+    fail_usage(fmt::format("min_step {} and max_step {} leave no valid step", o.min_step, o.max_step), "integrator",
+               "choose 0 < min_step <= max_step");
   o.max_length = stop.max_length.value_or(HUGE_VAL), o.max_time = stop.max_time.value_or(HUGE_VAL);
-  if (!(o.max_length > 0) || !(o.max_time > 0)) fail_usage("a line of no length", "max_length, max_time", "positive numbers");
+  if (!(o.max_length > 0) || !(o.max_time > 0)) fail_usage("lines would have no length", "max_length, max_time", "give positive numbers");
   o.max_steps = stop.max_steps, o.min_speed = stop.min_speed * largest_speed, o.closed = stop.closed;
   return o;
 }
@@ -46,14 +46,15 @@ TraceOptions trace_options(const IntegrationParams& p, const StopParams& stop, d
 void check_way(const FlowField& flow, double duration, double most, const TraceOptions& o, std::string_view who) {
   const double cell = flow.usual_cell(), cells = flow.usual_speed() * std::abs(duration) / cell;
   if (std::isfinite(duration) && cells > most)
-    fail_usage(fmt::format("in a time of {:.4g} this flow passes through {:.3g} cells, too many to follow", std::abs(duration), cells),
-               std::string(who), "do the units of its time, velocity and mesh belong together?");
+    fail_usage(fmt::format("in a time of {:.4g} this flow crosses {:.3g} cells, too many to trace", std::abs(duration), cells),
+               std::string(who), "check that the units of time, velocity and mesh are consistent");
   const double step = o.scheme == Scheme::dormand_prince ? o.max_step : o.step, reach = step * double(o.max_steps);
   constexpr double nowhere = 1e-6;
   const double goal = o.unit == StepUnit::cells ? 1 : o.unit == StepUnit::length ? cell : std::abs(duration);
   if (std::isfinite(goal) && reach < nowhere * goal)
-    fail_usage(fmt::format("{} steps of {:.4g} (step_unit={}) go nowhere", o.max_steps, step, word_of(o.unit)), fmt::format("{} step", who),
-               fmt::format("larger ones: {:.4g} would be a cell in as many", goal / double(o.max_steps)));
+    fail_usage(fmt::format("{} steps of {:.4g} (step_unit={}) do not cross a cell", o.max_steps, step, word_of(o.unit)),
+               fmt::format("{} step", who),
+               fmt::format("use larger steps: {:.4g} would cross one cell in that number", goal / double(o.max_steps)));
 }
 
 namespace {

@@ -58,8 +58,9 @@ struct TraceOptions {
 /// Throws Error(usage) for sizes that are not positive or bad names. `largest_speed` scales min_speed.
 TraceOptions trace_options(const IntegrationParams& integration, const StopParams& stop, double largest_speed);
 
-/// Throws Error(usage) naming `who` for a way through more than `most` cells of this flow in `duration`, which no steps can follow, and for
-/// steps so small that max_steps of them are nowhere near the size of a cell (measured in time: near the duration, where it is finite).
+/// Throws Error(usage) naming `who` for a path through more than `most` cells of this flow in `duration`, which no number of steps can
+/// follow, and for steps so small that max_steps of them are nowhere near the size of a cell (measured in time: near the duration, where it
+/// is finite).
 void check_way(const FlowField& flow, double duration, double most, const TraceOptions& options, std::string_view who);
 
 /// Points of many lines, one line after the other; `time` grows with the flow (falls when traced backwards from 0).

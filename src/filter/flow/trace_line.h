@@ -37,7 +37,7 @@ inline Vec3 crossing(Vec3 x0, Vec3 x1, Vec3 m0, Vec3 m1, Vec3 at, Vec3 normal, d
 }
 
 /// Whether a scheme's steps, measured in length or cells, are steps in length: of dx/ds = v / |v|, the same curves as those of dx/dt = v.
-/// Then all steps are as long as they should be, and none is longer near places where the flow stands still. Adaptive steps watch their
+/// Then all steps are as long as they should be, and none is longer near stagnation points. Adaptive steps watch their
 /// error instead, and implicit ones keep the areas that time keeps.
 inline bool by_length(const TraceOptions& o) {
   return o.unit != StepUnit::time && o.scheme != Scheme::dormand_prince && o.scheme != Scheme::implicit_midpoint;

@@ -40,7 +40,7 @@ DatasetPtr barb(int knots, double side) {
   }
   const BarbStrokes s = barb_strokes(knots);
   const double needed = pennant * s.pennants + (s.pennants ? after_pennants : 0) + gap * (s.barbs + s.half);
-  const double tight = std::min(1.0, 0.95 / needed);  // more strokes than a staff holds stand closer
+  const double tight = std::min(1.0, 0.95 / needed);  // more strokes than fit on a staff are drawn closer together
   b.point({0, 0, 0}), b.point({-1, 0, 0}), b.line(0, 1);
   double x = -1;
   for (int k = 0; k < s.pennants; ++k, x += pennant * tight) {
@@ -59,7 +59,7 @@ DatasetPtr barb(int knots, double side) {
   if (s.pennants) x += after_pennants * tight;
   for (int k = 0; k < s.barbs; ++k, x += gap * tight) stroke_of(b, {x, 0, 0}, {x - lean, side * stroke, 0});
   if (s.half) {
-    if (knots == barb_step) x += gap;  // alone it must not look like the end of a whole one
+    if (knots == barb_step) x += gap;  // on its own it must not look like the end of a full one
     stroke_of(b, {x, 0, 0}, {x - 0.5 * lean, side * 0.5 * stroke, 0});
   }
   return std::move(b).made();
@@ -72,11 +72,11 @@ double factor_of(const Field& v, const BarbParams& p, Context& context) {
     try {
       return knots_per(v.unit);
     } catch (const Error&) {
-      context.warn(fmt::format("the unit '{}' of '{}' is no speed that barbs know; taken as m/s (say unit=)", v.unit, v.name));
+      context.warn(fmt::format("barbs do not know the unit '{}' of '{}'; it is taken as m/s (set unit=)", v.unit, v.name));
       return knots_per("m/s");
     }
   }
-  context.info(fmt::format("'{}' has no unit; the barbs take it as m/s (say unit=kn, km/h, mph)", v.name));
+  context.info(fmt::format("'{}' has no unit; barbs take it as m/s (set unit=kn, km/h, mph)", v.name));
   return knots_per("m/s");
 }
 
@@ -87,10 +87,9 @@ bool looks_like_degrees(const Box3& box) {
 }  // namespace
 
 void describe(Schema& s, BarbParams& p) {
-  s("unit", p.unit, "barbs: unit of the vectors; auto: that of the field, else m/s. m/s, km/h, mph, ft/s or kn.");
-  s("hemisphere", p.hemisphere, "barbs: the side of the strokes; latitude: by the sign of the latitude of each place.");
-  s("latitude", p.latitude, "barbs: point field of latitudes in degrees; default: y, where the data looks like degrees.")
-      .takes(fields::scalars);
+  s("unit", p.unit, "barbs: unit of the vectors: m/s, km/h, mph, ft/s or kn; auto: that of the field, else m/s.");
+  s("hemisphere", p.hemisphere, "barbs: side of the strokes; latitude: by the sign of the latitude at each point.");
+  s("latitude", p.latitude, "barbs: point field of latitudes in degrees; default: y, if it looks like degrees.").takes(fields::scalars);
 }
 
 BarbStrokes barb_strokes(int knots) {
@@ -144,13 +143,13 @@ double knots_per(const std::string& unit) {
     if (name == word) return factor;
     names.emplace_back(name);
   }
-  fail_usage(fmt::format("'{}' is no unit of speed that barbs know", unit), "glyphs: unit", "give m/s, km/h, mph, ft/s or kn");
+  fail_usage(fmt::format("'{}' is not a unit of speed known to barbs", unit), "glyphs: unit", "give m/s, km/h, mph, ft/s or kn");
 }
 
 DatasetPtr barb_places(const DatasetPtr& data, const std::string& vectors, const BarbParams& p, Context& context) {
   const Field& v = data->fields().require(vectors, Association::point);
   if (v.components() != 2 && v.components() != 3)
-    fail_usage(fmt::format("field '{}' has {} components", v.name, v.components()), "glyphs: barbs", "a wind has 2 or 3");
+    fail_usage(fmt::format("field '{}' has {} components", v.name, v.components()), "glyphs: barbs", "a wind needs 2 or 3");
   const double factor = factor_of(v, p, context);
   Array latitude;
   if (p.hemisphere == BarbHemisphere::latitude) {
@@ -161,7 +160,7 @@ DatasetPtr barb_places(const DatasetPtr& data, const std::string& vectors, const
     } else if (looks_like_degrees(data->bounds())) {
       latitude = point_positions(data->mesh()).component(1).made_packed();
       if (data->bounds().lo.y < 0)
-        context.info("barbs: y is taken as latitude, so strokes change sides south of 0 (hemisphere=north keeps them)");
+        context.info("barbs: y is taken as latitude, so strokes change sides south of 0 (hemisphere=north prevents this)");
     }
   }
   const size_t n = data->point_count();

@@ -24,7 +24,7 @@ struct BarbParams {
 };
 void describe(Schema& s, BarbParams& p);
 
-/// Speeds are rounded to 5 knots; the fastest barb that there is.
+/// Speeds are rounded to 5 knots; this is the fastest barb.
 constexpr int barb_step = 5, most_barb_knots = 500;
 /// The strokes of a rounded speed: pennants of 50, barbs of 10 and at most one half barb of 5 knots.
 struct BarbStrokes {

@@ -45,7 +45,7 @@ const Field* wanted_vectors(const Dataset& d, const GlyphParams& p) {
       std::string has;
       for (const std::string& n : d.fields().names()) has += (has.empty() ? "" : ", ") + n;
       fail_usage("there is no vector field to show", "glyphs",
-                 has.empty() ? "the data has no fields" : fmt::format("it has {}; shape=sphere size_by=NAME shows scalars", has));
+                 has.empty() ? "the data has no fields" : fmt::format("fields: {}; shape=sphere size_by=NAME shows scalars", has));
     }
     return f;
   }
@@ -70,7 +70,7 @@ GlyphPointsParams placement(const Dataset& d, const GlyphParams& p, const Field*
   GlyphPointsParams q;
   q.every = p.every, q.seed = p.seed, q.spacing = p.spacing;
   int64_t fitting = barbs ? 180 : flat_axis >= 0 ? 900 : 2500;
-  // A long and narrow box is small on the picture: no more of them along it than can be told apart.
+  // A long and narrow box is small on the picture: no more of them along it than can be distinguished.
   const Vec3 size = d.bounds().size();
   const double along = (barbs ? 22 : 45), step = d.bounds().empty() ? 0 : std::max({size.x, size.y, size.z}) / along;
   if (step > 0) {
@@ -84,7 +84,7 @@ GlyphPointsParams placement(const Dataset& d, const GlyphParams& p, const Field*
   if (q.mode == GlyphPlaces::all && vectors && vectors->association == Association::cell) q.mode = GlyphPlaces::cells;
   how = q.mode == GlyphPlaces::even    ? "placed evenly"
         : q.mode == GlyphPlaces::all   ? "at all points"
-        : q.mode == GlyphPlaces::cells ? "one a cell"
+        : q.mode == GlyphPlaces::cells ? "one per cell"
         : q.mode == GlyphPlaces::lines ? "along the lines"
         : q.mode == GlyphPlaces::every ? fmt::format("at every {}th point", q.every)
                                        : fmt::format("placed {}", word_of(q.mode));
@@ -117,7 +117,7 @@ void choose_scale_rule(const GlyphParams& p, const Field* vectors, bool barbs, C
   if (!f) {
     std::vector<std::string> names{"auto", "constant", "length"};
     for (const std::string& n : out.data->fields().names()) names.push_back(n);
-    fail_usage(fmt::format("'{}' is neither 'length' nor 'constant' nor a field", by), "glyphs: size_by", unknown_name_hint(by, names));
+    fail_usage(fmt::format("'{}' is neither 'length', 'constant' nor a field", by), "glyphs: size_by", unknown_name_hint(by, names));
   }
   r.size = GlyphRule::Size::field, r.size_field = by;
 }
@@ -164,14 +164,14 @@ double distance_of_places(const Dataset& input, const Dataset& places) {
   return std::min(mean, 1.25 * nearest[nearest.size() / 2]);
 }
 
-// Scale of the rule from the size asked for, or from the distance of the places.
+// Scale of the rule from the requested size, or from the distance between points.
 void choose_size(const Dataset& input, const GlyphParams& p, bool in_pixels, int flat_axis, ChosenGlyphs& out) {
-  if (p.size > 0 && p.factor > 0) fail_usage("size and factor both say how large glyphs are", "glyphs", "give one of them");
+  if (p.size > 0 && p.factor > 0) fail_usage("size and factor both set the size of glyphs", "glyphs", "give one of them");
   GlyphRule& r = out.rule;
   const std::string by = r.size == GlyphRule::Size::length ? r.vectors : r.size == GlyphRule::Size::field ? r.size_field : "";
   const std::vector<double> factors = by.empty() ? std::vector<double>{1} : size_factors(*out.data, by);
   if (factors.empty()) {
-    out.note = fmt::format("; '{}' is zero or not finite everywhere: there are no glyphs", by);
+    out.note = fmt::format("; '{}' is zero or not finite everywhere, so there are no glyphs", by);
     return;
   }
   double most = factors.back();
@@ -191,7 +191,7 @@ void choose_size(const Dataset& input, const GlyphParams& p, bool in_pixels, int
     const double usual = factors[size_t(seen) + size_t(0.95 * double(factors.size() - size_t(seen) - 1))];
     if (p.size == 0 && most > 1.5 * usual) {
       r.largest = 1.6 * size, most = usual;
-      out.note += fmt::format("; those above {} are drawn as long as that", short_number(1.6 * usual, 3));
+      out.note += fmt::format("; those above {} are drawn at that length", short_number(1.6 * usual, 3));
     }
     r.scale = size / most;
   }
@@ -201,23 +201,24 @@ void choose_size(const Dataset& input, const GlyphParams& p, bool in_pixels, int
 }  // namespace
 
 void describe(Schema& s, GlyphParams& p) {
-  s("vectors", p.vectors, "Field of 2 or 3 components that the glyphs point along; default: the active vectors; 'none' for none.")
+  s("vectors", p.vectors, "Field of 2 or 3 components that glyphs point along; default: the active vectors; 'none' for none.")
       .takes(fields::vectors);
-  s("frames", p.frames, "Point field of 9 numbers, a matrix by rows that turns and stretches the shape, in place of vectors.")
+  s("frames", p.frames, "Point field of 9 numbers, a matrix by rows that rotates and stretches the shape, instead of vectors.")
       .takes(fields::tensors);
   describe(s, p.shape);
   s("size_by", p.size_by,
-    "What the size of a glyph shows: length (of its vector), constant, or the name of a scalar field; auto: length, barbs constant.");
-  s("size", p.size, "Length of the largest glyph; 0: about the distance of the places. Barbs in pictures: pixels.")
+    "What the size of a glyph shows: length (of its vector), constant, or the name of a scalar field; auto: length, for barbs constant.");
+  s("size", p.size, "Length of the largest glyph; 0: about the distance between glyphs. For barbs in pictures: in pixels.")
       .unit("length")
       .at_least(0);
-  s("factor", p.factor, "Length of a glyph of value 1, in place of size; 0: by size.").at_least(0);
+  s("factor", p.factor, "Length of a glyph of value 1, instead of size; 0: by size.").at_least(0);
   s("place", p.place,
-    "Where: all points, every n-th, evenly, cells, random, apart (no overlap), lines (along them); auto: evenly, all of few.");
-  s("count", p.count, "About how many glyphs, placed evenly or at random; 0: chosen.").range(0, 1e9);
-  s("every", p.every, "place=every: one of this many points.").range(1, 1e12);
-  s("seed", p.seed, "place=random: another number gives other places.");
-  s("spacing", p.spacing, "Distance of places, evenly or along lines; 0: from the count.").unit("length").at_least(0);
+    "Where glyphs are placed: all points, every n-th, evenly, cells, random, apart (no overlap), lines (along them); auto: evenly, or all "
+    "points if few.");
+  s("count", p.count, "Approximate number of glyphs placed evenly or at random; 0: chosen automatically.").range(0, 1e9);
+  s("every", p.every, "place=every: one glyph per this many points.").range(1, 1e12);
+  s("seed", p.seed, "place=random: another number gives other points.");
+  s("spacing", p.spacing, "Distance between glyphs placed evenly or along lines; 0: from the count.").unit("length").at_least(0);
   describe(s, p.barbs);
 }
 
@@ -227,7 +228,7 @@ ChosenGlyphs choose_glyphs(const DatasetPtr& data, const GlyphParams& given, boo
   const Field* vectors = wanted_vectors(*data, p);
   const int flat_axis = plane_of(*data, vectors);
   out.barbs = p.shape.shape == "barbs";
-  if (out.barbs && !vectors) fail_usage("barbs show a wind", "glyphs", "name a vector field with vectors=");
+  if (out.barbs && !vectors) fail_usage("barbs need a wind", "glyphs", "name a vector field with vectors=");
   if (p.shape.shape == "auto") p.shape.shape = p.frames.empty() ? flat_axis >= 0 ? "arrow2d" : "arrow" : "superquadric";
   out.flat = out.barbs || p.shape.shape == "arrow2d";
   std::string how;

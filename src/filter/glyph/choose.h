@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is drawn when little is said: field, shape, places and size of glyphs; for pictures and for the operation `glyphs`.
+// Defaults for drawing glyphs: field, shape, places and size of glyphs; for pictures and for the operation `glyphs`.
 #pragma once
 #include "filter/glyph/barbs.h"
 #include "filter/glyph/geometry.h"
@@ -37,7 +37,7 @@ struct ChosenGlyphs {
 
 /// `in_pixels`: sizes are pixels of a picture (size 0: 34 for barbs, 40 for others). Defaults: the active vectors; flat arrows for flat
 /// data whose vectors lie in it, else arrows; at most 2500 places evenly (900 in a plane, 180 barbs), all points where there are fewer; the
-/// vectors' lengths as sizes, the longest about as long as places are apart. Throws Error(usage).
+/// vectors' lengths as sizes, the longest about as long as the distance between glyphs. Throws Error(usage).
 ChosenGlyphs choose_glyphs(const DatasetPtr& data, const GlyphParams& p, bool in_pixels, Context& context);
 
 struct GlyphsParams : GlyphParams {};

@@ -61,10 +61,10 @@ DatasetPtr glyph_geometry(const DatasetPtr& data, const GlyphRule& rule, const s
   double bytes = 12;
   for (const Field& f : data->fields()) bytes += double(f.components()) * double(element_size(f.array.type()));
   need_memory(double(all_points) * bytes + 4 * double(all_lines + all_triangles), fmt::format("{} glyphs", instances->standing), "glyphs",
-              "take fewer points (glyph_points) or a simpler shape");
+              "use fewer points (glyph_points) or a simpler shape");
   if (all_points >= size_t(INT32_MAX) || all_triangles / 3 + all_lines / 2 >= size_t(INT32_MAX))
     fail_usage(fmt::format("{} glyphs make {} points", instances->standing, all_points), "glyphs",
-               "take fewer points (glyph_points) or a simpler shape; pictures draw glyphs without their geometry");
+               "use fewer points (glyph_points) or a simpler shape; pictures draw glyphs without their geometry");
   float* xyz = nullptr;
   int32_t *segment = nullptr, *corner = nullptr;
   SurfaceMesh mesh;

@@ -21,8 +21,8 @@ constexpr size_t grain = 1 << 13;
 Array numbers_of(const Dataset& d, const std::string& name, int least, int most, const char* what) {
   const Field& f = with_context(what, [&]() -> const Field& { return d.fields().require(name); });
   if (f.association != Association::point)
-    fail_usage(fmt::format("'{}' is a {} field; glyphs stand at points", f.name, association_name(f.association)), what,
-               "glyph_points mode=cells makes points of cells");
+    fail_usage(fmt::format("'{}' is a {} field; glyphs are placed at points", f.name, association_name(f.association)), what,
+               "glyph_points mode=cells turns cells into points");
   if (f.components() < least || f.components() > most)
     fail_usage(fmt::format("field '{}' has {} component{}", f.name, f.components(), f.components() == 1 ? "" : "s"), what,
                least == most ? fmt::format("it needs {}", least) : fmt::format("it needs {} or {}", least, most));
@@ -35,7 +35,7 @@ struct Inputs {
 
 const double* values(const Array& a) { return a.empty() ? nullptr : reinterpret_cast<const double*>(a.raw()); }
 
-// The 3x3 part; false where no glyph stands.
+// The 3x3 part; false where there is no glyph.
 bool matrix_of(const Inputs& in, const GlyphRule& rule, size_t i, Mat3& m) {
   double factor = rule.scale;
   if (!in.frames.empty()) {
@@ -69,7 +69,7 @@ GlyphInstances make_instances(const DatasetPtr& data, const GlyphRule& rule, siz
   if (!rule.frames.empty()) in.frames = numbers_of(d, rule.frames, 9, 9, "glyphs: frames");
   else if (!rule.vectors.empty()) in.vectors = numbers_of(d, rule.vectors, 2, 3, "glyphs: vectors");
   if (rule.size == GlyphRule::Size::length && in.vectors.empty())
-    fail_usage("the size is a vector's length, but no vector field turns the glyphs", "glyphs", "name a field with vectors=");
+    fail_usage("the size is a vector's length, but no vector field is given", "glyphs", "name a field with vectors=");
   if (rule.size == GlyphRule::Size::field) in.sizes = numbers_of(d, rule.size_field, 1, 1, "glyphs: scale");
   if (!rule.choice.empty()) in.choice = numbers_of(d, rule.choice, 1, 1, "glyphs: choice");
   if (!d.point_ghost().empty()) in.ghost = d.point_ghost().converted(ElementType::u8).made_packed();

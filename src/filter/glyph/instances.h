@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where glyphs stand, how they are turned and how large they are: one matrix per point of a dataset, no geometry.
+// Positions, orientations and sizes of glyphs: one matrix per point of a dataset, no geometry.
 #pragma once
 #include <optional>
 #include <string>
@@ -39,7 +39,7 @@ struct GlyphInstances {
   bool stands(size_t i) const { return data()[12 * i] == data()[12 * i]; }
 };
 
-/// 48 bytes a point; remembered for the datasets and rules asked for last. `shape_count`: 1..255. Throws Error(usage) for unknown fields,
+/// 48 bytes a point; cached for the most recent datasets and rules. `shape_count`: 1..255. Throws Error(usage) for unknown fields,
 /// wrong numbers of components, cell fields and a factor that has no field.
 std::shared_ptr<const GlyphInstances> glyph_instances(const DatasetPtr& data, const GlyphRule& rule, size_t shape_count);
 

@@ -57,7 +57,7 @@ std::vector<int64_t> visible_points(const Dataset& d, int64_t every) {
 
 bool all_finite(Vec3 p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
-// Can places between the points be probed? Solids, and what is flat along an axis.
+// Whether positions between the points can be probed: solids, and what is flat along an axis.
 bool fills_its_box(const Dataset& d, const Box3& box) {
   if (d.as<PointCloud>() || d.cell_count() == 0) return false;
   const int axes = extended_axes(box);
@@ -65,7 +65,7 @@ bool fills_its_box(const Dataset& d, const Box3& box) {
   if (axes < 2) return false;
   const CellReader first(DatasetPtr(&d, [](const Dataset*) {}));
   CellReader reader = first;
-  int most = 0;  // a few cells tell the dimension of the mesh
+  int most = 0;  // a few cells give the dimension of the mesh
   for (size_t k = 0; k < 64; ++k) {
     reader.open(k * (d.cell_count() - 1) / 63);
     most = std::max(most, reader.dimension());
@@ -77,7 +77,7 @@ bool fills_its_box(const Dataset& d, const Box3& box) {
 void check_places(const Dataset& d, double n) {
   double bytes = 100;
   for (const Field& f : d.fields()) bytes += 8 * double(f.components());
-  need_memory(n * bytes, fmt::format("{:.0f} places", n), "glyph_points", "take fewer: count, spacing");
+  need_memory(n * bytes, fmt::format("{:.0f} glyphs", n), "glyph_points", "use fewer: count, spacing");
 }
 
 // Those of the places that lie in the mesh, with its fields.
@@ -106,7 +106,7 @@ std::vector<Vec3> grid_places(const Dataset& data, const Box3& box, double h, si
   size_t n[3];
   for (int a = 0; a < 3; ++a) n[a] = size_t(std::clamp(std::round(box.size()[a] / h), 1.0, 1e6));
   if (n[0] * n[1] > limit || n[0] * n[1] * n[2] > limit)
-    fail_usage(fmt::format("a grid of {} x {} x {} places is too fine", n[0], n[1], n[2]), "glyph_points", "take a larger spacing");
+    fail_usage(fmt::format("a grid of {} x {} x {} positions is too fine", n[0], n[1], n[2]), "glyph_points", "use a larger spacing");
   check_places(data, double(n[0] * n[1] * n[2]));
   std::vector<Vec3> places;
   for (size_t k = 0; k < n[2]; ++k)
@@ -225,7 +225,7 @@ DatasetPtr random_on_surface(const DatasetPtr& data, const GlyphPointsParams& p)
     const double own = 0.5 * length(cross(b - a, c - a));
     sum[i] = area += std::isfinite(own) ? own : 0;
   }
-  if (!(area > 0)) fail_usage("the surface has no area", "glyph_points", "mode=all takes its points");
+  if (!(area > 0)) fail_usage("the surface has no area", "glyph_points", "use mode=all for its points");
   check_places(*data, double(p.count));
   std::vector<Vec3> places;
   std::vector<int64_t> ids, cells;
@@ -295,7 +295,7 @@ DatasetPtr apart_places(const DatasetPtr& data, const GlyphPointsParams& p, cons
   std::stable_sort(ids.begin(), ids.end(), [&](int64_t a, int64_t b) { return diameter[size_t(a)] > diameter[size_t(b)]; });
   if (ids.empty()) return chosen(data, ids);
   const Vec3 away = p.view ? normalize(*p.view) : Vec3{};
-  if (p.view && !(length(away) > 0)) fail_usage("the direction of sight has no length", "glyph_points: view");
+  if (p.view && !(length(away) > 0)) fail_usage("the viewing direction has no length", "glyph_points: view");
   auto place = [&](int64_t i) {
     const Vec3 q = at(xyz, size_t(i)) - box.center();
     return q - away * dot(q, away);

@@ -7,7 +7,7 @@
 
 namespace sg {
 
-/// Where glyphs stand, see glyph_points().
+/// Where glyphs are placed, see glyph_points().
 enum class GlyphPlaces { all, every, even, cells, random, apart, lines };
 constexpr auto enum_words(GlyphPlaces) {
   using enum GlyphPlaces;
@@ -25,20 +25,21 @@ struct GlyphPointsParams {
 };
 inline void describe(Schema& s, GlyphPointsParams& p) {
   s("mode", p.mode,
-    "all points; every n-th point; even: about `count` places on a grid in space; cells: the middle of each cell; random; apart: points "
-    "whose "
-    "glyphs do not overlap, large ones first; lines: along the lines of a mesh at even spacing.");
-  s("count", p.count, "even, random: about how many places.").range(1, 1e9);
-  s("every", p.every, "every: take the first point of so many.").range(1, 1e12);
-  s("seed", p.seed, "random: another number gives other places.");
+    "all points; every n-th point; even: about 'count' points on a grid in space; cells: cell centres; random; apart: points whose glyphs "
+    "do not overlap, large ones first; lines: evenly along the lines of a mesh.");
+  s("count", p.count, "even, random: approximate number of points.").range(1, 1e9);
+  s("every", p.every, "every: take one point out of this many.").range(1, 1e12);
+  s("seed", p.seed, "random: another number gives other points.");
   s("spacing", p.spacing,
-    "lines, even: distance of places; apart: diameter of a glyph without `diameter`; 0: chosen from the size of the data.")
+    "lines, even: distance between points; apart: diameter of a glyph without 'diameter'; 0: from the size of the data.")
       .unit("length")
       .at_least(0);
-  s("separation", p.separation, "lines: places nearer than this share of the spacing to one before are left out; 0 keeps all.").range(0, 1);
-  s("diameter", p.diameter, "apart: point field of sizes (of vectors: their lengths), times `scale`.").takes(fields::on_points);
+  s("separation", p.separation, "lines: points closer than this share of the spacing to an earlier one are left out; 0 keeps all.")
+      .range(0, 1);
+  s("diameter", p.diameter, "apart: point field of sizes (of vectors: their lengths), times 'scale'.").takes(fields::on_points);
   s("scale", p.scale, "apart: factor on the field of diameters.").positive();
-  s("view", p.view, "apart: direction of sight; glyphs do not overlap on a picture seen along it. Default: not in space.");
+  s("view", p.view,
+    "apart: viewing direction along which glyphs must not overlap in the picture. Default: they must not overlap in space.");
 }
 
 /// Places for glyphs as a PointCloud whose point fields are those of the mesh there (cell fields: of the cell that holds the place):

@@ -18,7 +18,7 @@ DatasetPtr points_along_lines(const DatasetPtr& data, const GlyphPointsParams& p
   const auto* mesh = data->as<SurfaceMesh>();
   if (!mesh || mesh->lines.size() == 0)
     fail_usage(fmt::format("the mesh ({}) has no lines", data->kind()), "glyph_points: mode=lines",
-               "streamlines, isolines and the like have lines");
+               "use streamlines, isolines or the like to make lines");
   const double spacing = p.spacing > 0 ? p.spacing : 0.06 * data->bounds().diagonal();
   const CellsView lines = cells_view(mesh->lines);
   NeighbourGrid near(std::max(spacing, 1e-300));
@@ -35,8 +35,8 @@ DatasetPtr points_along_lines(const DatasetPtr& data, const GlyphPointsParams& p
     if (!(sum.back() > 0) || !std::isfinite(sum.back())) continue;
     const double pieces = sum.back() / spacing;
     if (!(double(places.size()) + pieces < most_places))
-      fail_usage(fmt::format("a spacing of {:.4g} makes more than {:.0f} places on the lines", spacing, most_places), "glyph_points",
-                 "take a larger spacing");
+      fail_usage(fmt::format("a spacing of {:.4g} makes more than {:.0f} points on the lines", spacing, most_places), "glyph_points",
+                 "use a larger spacing");
     const auto steps = size_t(pieces);
     const double first = 0.5 * (sum.back() - double(steps) * spacing);
     size_t k = 1;

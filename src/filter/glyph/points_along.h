@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Places along lines, and who is near. Internal to filter/glyph.
+// Points along lines, and proximity queries. Internal to filter/glyph.
 #pragma once
 #include <algorithm>
 #include <cmath>

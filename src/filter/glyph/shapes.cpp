@@ -84,7 +84,7 @@ void superquadric(ShapeBuilder& b, double alpha, double beta, int sides) {
     else
       for (int k = 0; k < sides; ++k) {
         const double t = 2 * pi * k / sides;
-        // Exact zeros where the angle is a quarter: a power below 1 would make much of rounding.
+        // Exact zeros where the angle is a quarter: a power below 1 would amplify rounding errors.
         auto clean = [](double v) { return std::abs(v) < 1e-12 ? 0.0 : v; };
         now.push_back(b.point({0.5 * (std::abs(cf) < 1e-9 ? 0.0 : cf), 0.5 * power(clean(std::cos(t)), alpha) * sf,
                                0.5 * power(clean(std::sin(t)), alpha) * sf}));
@@ -148,7 +148,7 @@ std::atomic<ShapeReader> shape_reader = nullptr;
 
 DatasetPtr from_file(const std::string& path, Context& context) {
   const ShapeReader read = shape_reader;
-  if (!read) fail_usage(fmt::format("nothing reads '{}' here", path), "glyphs: shape");
+  if (!read) fail_usage(fmt::format("no reader for '{}' is available here", path), "glyphs: shape");
   const DatasetPtr d = surface_of(read(path, context), context);
   const Box3& box = d->bounds();
   const Vec3 size = box.size();
@@ -170,10 +170,11 @@ DatasetPtr from_file(const std::string& path, Context& context) {
 
 void describe(Schema& s, GlyphShapeParams& p) {
   s("shape", p.shape,
-    "arrow, cone, needle, line (hedgehog), arrow2d (flat), cylinder, disc, sphere, cube, superquadric, barbs, or a file with a surface.");
-  s("sides", p.sides, "Sides of round shapes.").range(3, 256);
-  s("anchor", p.anchor, "What stands at the point; auto: the tail of what points somewhere, the middle of what does not.");
-  s("tip_length", p.tip_length, "Length of an arrow's tip; its whole length is 1.").range(0, 1);
+    "Shape: arrow, cone, needle, line (hedgehog), arrow2d (flat), cylinder, disc, sphere, cube, superquadric, barbs, or a file with a "
+    "surface.");
+  s("sides", p.sides, "Number of sides of round shapes.").range(3, 256);
+  s("anchor", p.anchor, "Part of the glyph at the point; auto: the tail of shapes that point somewhere, the middle of others.");
+  s("tip_length", p.tip_length, "Length of an arrow's tip, as a fraction of its length.").range(0, 1);
   s("tip_radius", p.tip_radius, "Radius of an arrow's tip.").range(0, 10);
   s("shaft_radius", p.shaft_radius, "Radius of an arrow's shaft.").range(0, 10);
   s("alpha", p.alpha, "superquadric: exponent around the axis; 1 is round, 0 square.").range(0, 10);
@@ -212,7 +213,7 @@ DatasetPtr glyph_shape_mesh(const GlyphShapeParams& p, Context& context) {
     if (!file_exists(p.shape)) {
       std::vector<std::string> known(std::begin(names), std::end(names));
       known.emplace_back("barbs");
-      fail_usage(fmt::format("there is no shape and no file '{}'", p.shape), "glyphs: shape", unknown_name_hint(p.shape, known));
+      fail_usage(fmt::format("there is neither a shape nor a file '{}'", p.shape), "glyphs: shape", unknown_name_hint(p.shape, known));
     }
     shape = from_file(p.shape, context);
   }

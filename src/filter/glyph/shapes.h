@@ -11,7 +11,7 @@
 
 namespace sg {
 
-/// What of a shape stands at the point.
+/// Which part of a shape is at the point.
 enum class GlyphAnchor { tail, middle, tip };
 constexpr auto enum_words(GlyphAnchor) {
   using enum GlyphAnchor;
@@ -36,12 +36,12 @@ std::span<const std::string_view> glyph_shape_names();
 ///                                        one segment (drawn with constant width)
 ///   cylinder, sphere, cube, superquadric -1/2 to 1/2 along x and across it; disc: of diameter 1 across x, flat
 ///   a file                               its longest edge of the box is 1, the middle of the box at 0
-/// `anchor`: tail, middle or tip stands at the point (without: as listed). Solids are closed and their faces look outward.
+/// `anchor`: tail, middle or tip is at the point (without: as listed). Solids are closed and their faces look outward.
 /// superquadric: (cos^beta p, sgn sin^alpha t sin^beta p, cos^alpha t sin^beta p) / 2 about the x axis (Barr 1981, Kindlmann 2004).
 /// Throws Error(usage) for an unknown name with a hint, Error(data) for files that cannot be read.
 DatasetPtr glyph_shape_mesh(const GlyphShapeParams& p, Context& context);
 
-/// How files are read: the reader stands in a layer further down, which says here what it is. Without one, shapes from files are an error.
+/// How files are read: the reader is in a later layer, which registers it here. Without one, shapes from files are an error.
 using ShapeReader = DatasetPtr (*)(const std::string& path, Context& context);
 void set_shape_reader(ShapeReader reader);
 

@@ -17,9 +17,9 @@ const Field& times_of(const Dataset& d, const TrailsParams& p) {
   const Field* f = p.field.empty() ? nullptr : &d.fields().require(p.field.name, Association::point);
   for (const char* name : {"time", "integration time", "IntegrationTime"})
     if (!f) f = d.fields().find(name, Association::point);
-  if (!f) fail_usage("there is no point field of times", "trails", "pathlines have 'time'; name another with field=");
+  if (!f) fail_usage("there is no point field of times", "trails", "pathlines have 'time'; name another field with field=");
   if (f->components() != 1)
-    fail_usage(fmt::format("field '{}' has {} components", f->name, f->components()), "trails", "a time is one number");
+    fail_usage(fmt::format("field '{}' has {} components", f->name, f->components()), "trails", "times must be single numbers");
   return *f;
 }
 
@@ -133,8 +133,9 @@ Array faded(const std::vector<double>& color, const std::vector<float>& ages) {
 DatasetPtr trails(const DatasetPtr& data, const TrailsParams& p, Context& context) {
   const auto* mesh = data->as<SurfaceMesh>();
   if (!mesh || mesh->lines.size() == 0)
-    fail_usage(fmt::format("the mesh ({}) has no lines", data->kind()), "trails", "pathlines and streamlines have lines");
-  if (p.color.size() != 3) fail_usage(fmt::format("{} numbers are no colour", p.color.size()), "trails: color", "give red,green,blue");
+    fail_usage(fmt::format("the mesh ({}) has no lines", data->kind()), "trails", "use pathlines or streamlines to make lines");
+  if (p.color.size() != 3)
+    fail_usage(fmt::format("{} numbers do not make a colour", p.color.size()), "trails: color", "give red,green,blue");
   const Field& field = times_of(*data, p);
   const Array times = field.array.converted(ElementType::f64).made_packed();
   const std::vector<Span> spans = spans_of(cells_view(mesh->lines), times.view<double>());
@@ -151,7 +152,7 @@ DatasetPtr trails(const DatasetPtr& data, const TrailsParams& p, Context& contex
   carry_gathered(fields, data->fields(), Association::cell, std::span<const int64_t>(cells), Association::cell);
   carry_whole(fields, data->fields());
   const Array rgba = faded(p.color, out.age);
-  std::vector<Field> renamed;  // pictures colour by what fades unless they are told
+  std::vector<Field> renamed;  // pictures are coloured by the fading unless specified
   for (const Field& f : fields)
     if (f.role == Role::scalars || f.role == Role::colors) renamed.push_back(f), renamed.back().role = Role::none;
   for (Field& f : renamed) fields.add(std::move(f));

@@ -15,12 +15,12 @@ struct TrailsParams {
   std::vector<double> color{0.09, 0.1, 0.16};
 };
 inline void describe(Schema& s, TrailsParams& p) {
-  s("time", p.time, "The moment; default: the latest at which half of the lines still run.").unit("@field");
-  s("length", p.length, "How long before it a trail begins; 0: a tenth of the time that most lines last.").unit("@field").at_least(0);
-  s("field", p.field, "Point field of times that grow along each line; default: 'time', 'integration time' or 'IntegrationTime'.")
+  s("time", p.time, "Time shown; default: the latest at which half of the lines still run.").unit("@field");
+  s("length", p.length, "Duration of a trail before that time; 0: a tenth of the duration of most lines.").unit("@field").at_least(0);
+  s("field", p.field, "Point field of times that increase along each line; default: 'time', 'integration time' or 'IntegrationTime'.")
       .takes(fields::point_scalars);
-  s("color", p.color, "Red, green and blue, 0 to 1, of the field 'trail'.").range(0, 1);
-  s("heads", p.heads, "Adds a vertex where each particle is at the moment.");
+  s("color", p.color, "Red, green and blue (0 to 1) of the field 'trail'.").range(0, 1);
+  s("heads", p.heads, "Add a vertex at the current position of each particle.");
 }
 
 /// The part of each poly-line with times in [time - length, time], cut exactly at both ends (fields interpolated), as a SurfaceMesh of

@@ -16,8 +16,8 @@ namespace sg {
 
 namespace {
 
-// One array after the other; `have[i]` may be null (filled with NaN or 0). Empty arrays have no say in the type and the components
-// unless all are empty: an input without points need not name either.
+// One array after the other; `have[i]` may be null (filled with NaN or 0). Empty arrays do not affect the type and the components unless
+// all are empty: an input without points need not name either.
 Array joined(const std::vector<const Array*>& have, const std::vector<size_t>& counts) {
   const Array *first = nullptr, *empty = nullptr;
   bool one_type = true, whole = true;
@@ -73,7 +73,7 @@ const Points& points_of(const DatasetPtr& d) {
   return d->as<PointCloud>()->points;
 }
 
-// f32 offsets of one origin stay so; else f64 about the first origin. Inputs without points have no say.
+// f32 offsets of one origin stay so; else f64 about the first origin. Inputs without points do not count.
 Points joined_points(const std::vector<DatasetPtr>& parts) {
   Points out;
   out.origin = points_of(parts[0]).origin;
@@ -228,7 +228,7 @@ Array joined_ghosts(const std::vector<DatasetPtr>& parts, bool of_points) {
 DatasetPtr append(const std::vector<Data>& inputs, const AppendParams& p, Context& ctx) {
   std::vector<DatasetPtr> parts;
   for (const Data& d : inputs) for_each_dataset(d, [&](const std::string&, const DatasetPtr& one) { parts.push_back(one); });
-  if (parts.empty()) fail_usage("there is no mesh among the inputs", "append");
+  if (parts.empty()) fail_usage("none of the inputs is a mesh", "append");
   check_memory(parts);
   bool surfaces = true, clouds = true;
   for (const DatasetPtr& d : parts) surfaces = surfaces && d->as<SurfaceMesh>(), clouds = clouds && d->as<PointCloud>();

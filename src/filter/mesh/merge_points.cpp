@@ -98,14 +98,16 @@ DatasetPtr merge_points(const DatasetPtr& in, const MergePointsParams& p, Contex
   if (is_lattice(in->mesh())) return in;
   const Points* points = points_of(in->mesh());
   if (!points)
-    fail_usage(fmt::format("cannot work on a mesh of kind {}", in->kind()), "merge_points", "take its cells first: threshold, or resample");
+    fail_usage(fmt::format("cannot work on a mesh of kind {}", in->kind()), "merge_points",
+               "extract its cells first (threshold), or use resample");
   if (!std::isfinite(p.tolerance)) fail_usage("the tolerance is not finite", "merge_points tolerance");
   std::vector<Vec3> at(points->count());
   for (size_t i = 0; i < at.size(); ++i) at[i] = points->at(i);
   const Box3& box = in->bounds();
   const double size = box.empty() ? 0 : std::max({box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z});
   if (p.tolerance > 0 && size / p.tolerance > 1e15)
-    fail_usage(fmt::format("{} is finer than the coordinates", p.tolerance), "merge_points tolerance", "0 merges equal points");
+    fail_usage(fmt::format("{} is below the precision of the coordinates", p.tolerance), "merge_points tolerance",
+               "use 0 to merge equal points");
   const std::vector<int64_t> into = p.tolerance > 0 ? near_points(at, p.tolerance, ctx) : equal_points(at);
   if (in->as<PointCloud>()) {
     std::vector<int64_t> kept;
@@ -128,7 +130,7 @@ DatasetPtr merge_points(const DatasetPtr& in, const MergePointsParams& p, Contex
     if (n >= std::min<size_t>(size_t(reader.dimension()) + 1, reader.ids().size())) cells.push_back(int64_t(c));
   }
   if (cells.size() < reader.count())
-    ctx.info(fmt::format("merge_points: {} cells fell together and were removed", reader.count() - cells.size()));
+    ctx.info(fmt::format("merge_points: {} cells collapsed and were removed", reader.count() - cells.size()));
   return extract_cells(named, cells, "merge_points");
 }
 

@@ -11,7 +11,7 @@ struct MergePointsParams {
   double tolerance = 0;
 };
 inline void describe(Schema& s, MergePointsParams& p) {
-  s("tolerance", p.tolerance, "Points up to this far apart become one; 0: only equal ones.").at_least(0).unit("length");
+  s("tolerance", p.tolerance, "Merge points up to this far apart; 0: only equal ones.").at_least(0).unit("length");
 }
 
 /// Each point is replaced by the first point (in input order) that stays and lies within the tolerance; those that stay keep their

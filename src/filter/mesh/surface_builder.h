@@ -70,7 +70,7 @@ enum CellState : uint8_t {
 /// One CellState per cell from the ghost arrays (AMR: and where patches of a level overlap); empty when all are visible.
 std::vector<uint8_t> cell_states(const Dataset& in);
 
-/// An i64 cell or point field of ids (role labels, so that it is no default for colouring).
+/// An i64 cell or point field of ids (role labels, so that it is not a default for colouring).
 Field id_field(std::string name, Association association, std::vector<int64_t> ids);
 
 }  // namespace sg

@@ -98,7 +98,7 @@ class Tessellation {
   }
 
   DatasetPtr run(int level) {
-    for (auto& [key, s] : shaped_) s.at_middles = {};  // they have told the level
+    for (auto& [key, s] : shaped_) s.at_middles = {};  // the level has been reported
     for (size_t c = 0; c < mesh_.cells.size(); ++c) {
       if (c % 1024 == 0) ctx_.check();
       map_.open(c);
@@ -291,7 +291,7 @@ class Tessellation {
   Context& ctx_;
   std::map<std::pair<CellType, int>, std::unique_ptr<CellPattern>> patterns_;
   std::map<std::tuple<int, int, std::array<int, 3>, int>, ShapedPattern> shaped_;
-  std::vector<std::pair<const Array*, double>> scaled_;  // fields that count, and what brings them to units of their tolerance
+  std::vector<std::pair<const Array*, double>> scaled_;  // fields that count, and their scale to units of their tolerance
   std::vector<double> nodes_, values_, middles_, weights_;
   size_t width_ = 3;
   std::unordered_map<PointKey, int64_t, PointKeyHash> shared_;
@@ -319,7 +319,7 @@ DatasetPtr tessellate(const DatasetPtr& in, const TessellateParams& p, Context& 
   const int most = work.affordable(p.max_level), level = work.level(p.tolerance, most, left);
   if (left > 1)
     ctx.info(fmt::format("tessellate: {} leaves a distance of {:.3g} times the tolerance",
-                         most < p.max_level ? fmt::format("{} halvings, as many as there is room for,", most) : "max_level", left));
+                         most < p.max_level ? fmt::format("{} halvings, the most that fit,", most) : "max_level", left));
   return work.run(level);
 }
 

@@ -12,7 +12,7 @@
 namespace sg {
 
 /// Cells by slabs of `thickness` layers along z, ascending in each slab. A cell is in every slab that its box, grown by the tolerance of
-/// CellProbe, reaches; hidden cells and those beside the grid are in none.
+/// CellProbe, reaches; hidden cells and those outside the grid are in none.
 struct CellSlabs {
   size_t thickness = 1;
   std::vector<size_t> begin;  ///< slabs + 1

@@ -18,7 +18,7 @@ FieldSampler::FieldSampler(const Dataset& from, size_t count) {
     if (f.association == Association::point) {
       type = element_size(type) == 8 ? ElementType::f64 : ElementType::f32;
     } else {
-      t.field.association = Association::cell;  // of the source: tells write() what to do
+      t.field.association = Association::cell;  // of the source: controls write()
       if (from.fields().find(f.name, Association::point)) t.field.name += "_cell";
     }
     if (t.field.name == "valid") continue;

@@ -40,7 +40,7 @@ struct SampleBlock {
 /// the cell. Where there is no cell: NaN, integers 0. A cell field that has the name of a point field gets "_cell" behind it.
 class FieldSampler {
  public:
-  /// Room for `count` tuples. A PointCloud counts as cells of one point, with point fields only.
+  /// Allocates `count` tuples. A PointCloud counts as cells of one point, with point fields only.
   FieldSampler(const Dataset& from, size_t count);
   /// Blocks may be written at the same time when they write different tuples.
   void write(const SampleBlock& block);

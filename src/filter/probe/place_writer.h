@@ -8,7 +8,7 @@
 
 namespace sg {
 
-/// One per thread. What was added is written at the latest when it dies.
+/// One per thread. Whatever was added is written at the latest by the destructor.
 class PlaceWriter {
  public:
   PlaceWriter(CellProbe probe, const SimplexArrays& simplices, FieldSampler& out)

@@ -24,7 +24,7 @@ void tell_missing(const FieldSet& fields, Context& context) {
   const auto valid = fields.require("valid", Association::point).array.view<uint8_t>();
   size_t n = 0;
   for (size_t i = 0; i < valid.count; ++i) n += valid[i];
-  if (n < valid.count) context.info(fmt::format("probe: {} of {} points lie outside", valid.count - n, valid.count));
+  if (n < valid.count) context.info(fmt::format("probe: {} of {} points lie outside the mesh", valid.count - n, valid.count));
 }
 
 }  // namespace
@@ -71,10 +71,11 @@ DatasetPtr probe(const DatasetPtr& points, const DatasetPtr& source, const Probe
 DatasetPtr probe_at(const DatasetPtr& source, const ProbeAtParams& p, Context& context) {
   const bool line = p.from || p.to;
   if (line == !p.points.empty())
-    fail_usage("either points or a line from one point to another is needed", "probe_at", "points=x,y,z,... or from=x,y,z to=x,y,z");
-  if (line && !(p.from && p.to)) fail_usage("a line has two ends", "probe_at", p.from ? "add to=x,y,z" : "add from=x,y,z");
+    fail_usage("either points or a line between two points is needed", "probe_at", "give points=x,y,z,... or from=x,y,z to=x,y,z");
+  if (line && !(p.from && p.to)) fail_usage("a line needs two ends", "probe_at", p.from ? "add to=x,y,z" : "add from=x,y,z");
   if (p.points.size() % 3 != 0)
-    fail_usage(fmt::format("{} numbers make no whole points", p.points.size()), "probe_at", "three numbers a point: points=x,y,z,x,y,z");
+    fail_usage(fmt::format("{} numbers do not make whole points", p.points.size()), "probe_at",
+               "give three numbers per point: points=x,y,z,x,y,z");
   double* xyz = nullptr;
   const size_t count = line ? size_t(p.count) : p.points.size() / 3;
   Points points;

@@ -11,7 +11,7 @@ struct ProbeParams {
   bool keep_fields = true;
 };
 inline void describe(Schema& s, ProbeParams& p) {
-  s("keep_fields", p.keep_fields, "The first input's own fields stay where the second has none of the same name.");
+  s("keep_fields", p.keep_fields, "Keep the first input's own fields if the second has none of the same name.");
 }
 
 /// The mesh of `points` with the fields of `source` at its points, linear in each cell (its shape functions), and the u8 point field
@@ -27,9 +27,9 @@ struct ProbeAtParams {
 };
 inline void describe(Schema& s, ProbeAtParams& p) {
   s("points", p.points, "Points as x,y,z,x,y,z,...");
-  s("from", p.from, "First point of a line.");
-  s("to", p.to, "Last point of the line.");
-  s("count", p.count, "Points on the line, both ends included.").range(2, 1e9);
+  s("from", p.from, "First end of a line.");
+  s("to", p.to, "Other end of the line.");
+  s("count", p.count, "Number of points on the line, both ends included.").range(2, 1e9);
 }
 
 /// The fields of `source` at given points (a PointCloud) or along a straight line (a SurfaceMesh of one poly-line, with the point field

@@ -16,12 +16,12 @@ UniformGrid resample_grid(const Dataset& input, const ResampleParams& p) {
   Box3 box = input.bounds();
   if (!p.bounds.empty()) {
     if (p.bounds.size() != 6)
-      fail_usage(fmt::format("bounds has {} numbers", p.bounds.size()), "resample", "six: xmin,xmax,ymin,ymax,zmin,zmax");
+      fail_usage(fmt::format("bounds has {} numbers", p.bounds.size()), "resample", "give six: xmin,xmax,ymin,ymax,zmin,zmax");
     for (int a = 0; a < 3; ++a) {
       box.lo[a] = p.bounds[size_t(2 * a)], box.hi[a] = p.bounds[size_t(2 * a) + 1];
       if (!(box.lo[a] <= box.hi[a]) || !std::isfinite(box.hi[a] - box.lo[a]))
         fail_usage(fmt::format("bounds of {} run from {} to {}", "xyz"[a], short_number(box.lo[a]), short_number(box.hi[a])), "resample",
-                   "the smaller first");
+                   "give the smaller first");
     }
   }
   if (box.empty() || !std::isfinite(box.diagonal())) fail_usage("the mesh has no finite extent", "resample", "give bounds");
@@ -29,7 +29,8 @@ UniformGrid resample_grid(const Dataset& input, const ResampleParams& p) {
   const double longest = std::max({extent.x, extent.y, extent.z});
   UniformGrid g;
   g.origin = box.lo;
-  if (!p.dims.empty() && p.dims.size() != 3) fail_usage(fmt::format("dims has {} numbers", p.dims.size()), "resample", "three: nx,ny,nz");
+  if (!p.dims.empty() && p.dims.size() != 3)
+    fail_usage(fmt::format("dims has {} numbers", p.dims.size()), "resample", "give three: nx,ny,nz");
   double points = 1;
   for (int a = 0; a < 3; ++a) {
     const bool flat = extent[a] <= 1e-9 * longest;
@@ -38,13 +39,13 @@ UniformGrid resample_grid(const Dataset& input, const ResampleParams& p) {
     else if (!flat) n = std::max<size_t>(2, size_t(std::lround(extent[a] / longest * double(p.size - 1))) + 1);
     if (flat && n > 1)
       fail_usage(fmt::format("{} points along {}, where the box has no extent", n, "xyz"[a]), "resample",
-                 "1 there, or bounds with an extent");
+                 "give 1 for that axis, or bounds with an extent");
     if (n == 1 && !flat) g.origin[a] = box.center()[a];
     g.dims[size_t(a)] = n;
     g.spacing[a] = n > 1 ? extent[a] / double(n - 1) : 1.0;
     points *= double(n);
   }
-  if (points > 1e12) fail_usage("the grid has more than 10^12 points", "resample", "fewer dims");
+  if (points > 1e12) fail_usage("the grid has more than 10^12 points", "resample", "give smaller dims");
   return g;
 }
 

@@ -21,12 +21,12 @@ struct ResampleParams {
   double tolerance = 1e-3;
 };
 inline void describe(Schema& s, ResampleParams& p) {
-  s("dims", p.dims, "Points along x, y and z; default: from size.").at_least(1);
-  s("size", p.size, "Points along the longest axis, the others in proportion.").range(2, 1e6);
-  s("bounds", p.bounds, "Box as xmin,xmax,ymin,ymax,zmin,zmax; default: that of the mesh.").unit("length");
-  s("mode", p.mode, "linear: values at the grid's points. conservative: averages over the grid's cells that keep integrals.");
+  s("dims", p.dims, "Number of points along x, y and z; default: from size.").at_least(1);
+  s("size", p.size, "Number of points along the longest axis, the others in proportion.").range(2, 1e6);
+  s("bounds", p.bounds, "Bounds as xmin,xmax,ymin,ymax,zmin,zmax; default: those of the mesh.").unit("length");
+  s("mode", p.mode, "linear: values at the grid's points. conservative: averages over the grid's cells, which preserve integrals.");
   s("tolerance", p.tolerance,
-    "Conservative mode: how far, in parts of its size, a curved cell may lie from the straight pieces that stand for it.")
+    "conservative: largest distance, as a fraction of its size, between a curved cell and the straight pieces that represent it.")
       .range(1e-6, 1);
 }
 
@@ -41,7 +41,7 @@ inline void describe(Schema& s, ResampleParams& p) {
 /// for boxes without extent, dims that fit no box, and conservative mode on a mesh without solid cells.
 DatasetPtr resample(const DatasetPtr& input, const ResampleParams& params, Context& context);
 
-/// The grid that the parameters ask for.
+/// The grid that the parameters request.
 UniformGrid resample_grid(const Dataset& input, const ResampleParams& params);
 /// mode=conservative.
 DatasetPtr resample_conservative(const DatasetPtr& input, const UniformGrid& grid, double tolerance, Context& context);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Averages that keep integrals: every solid cell is cut along the grid, and what each part holds goes to its grid cell.
+// Averages that keep integrals: every solid cell is cut along the grid, and each part's content is added to its grid cell.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -177,9 +177,10 @@ bool has_solids(const Dataset& d) {
 
 DatasetPtr resample_conservative(const DatasetPtr& input, const UniformGrid& grid, double tolerance, Context& context) {
   if (!has_solids(*input))
-    fail_usage(fmt::format("a mesh of kind '{}' without solid cells has no volume to keep", input->kind()), "resample", "use mode=linear");
+    fail_usage(fmt::format("a mesh of kind '{}' without solid cells has no volume to conserve", input->kind()), "resample",
+               "use mode=linear");
   for (size_t n : grid.dims)
-    if (n < 2) fail_usage("conservative mode needs grid cells along all axes", "resample", "2 points or more along each");
+    if (n < 2) fail_usage("conservative mode needs grid cells along all axes", "resample", "give 2 points or more along each");
   const Mesh mesh = grid;
   const Lattice lattice(mesh);
   const GridScan scan(input, lattice.view());

@@ -17,7 +17,7 @@ void sample_points(const DatasetPtr& from, size_t count, const std::function<Vec
 /// Tuple i at point i of an affine lattice whose axes lie along x, y and z. Meshes of cells are scan-converted: each cell writes the
 /// points that it holds, cells in ascending order, the first one stays. The same answers as sample_points().
 void sample_grid(const DatasetPtr& from, const LatticeView& grid, FieldSampler& out, Context& context);
-/// May sample_grid() be asked for this lattice?
+/// Whether sample_grid() supports this lattice.
 bool fits_sample_grid(const LatticeView& grid);
 
 }  // namespace sg

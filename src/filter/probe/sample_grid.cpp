@@ -25,7 +25,7 @@ namespace {
 
 constexpr uint32_t none = UINT32_MAX;
 
-// The points of some layers: who holds them, and where in the cell.
+// The points of some layers: which cell contains them, and where in the cell.
 struct Slab {
   std::vector<uint32_t> cell;
   Plane<Vec3> rst;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cuts a tetrahedron along the planes of a grid. What comes out are tetrahedra again, each within one grid cell; they fill the first one
-// exactly.
+// Cuts a tetrahedron along the planes of a grid. The pieces are tetrahedra, each within one grid cell, that fill the original exactly.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -16,7 +15,7 @@ struct ClipVertex {
 };
 
 /// Calls emit(volume, mean, i, j, k) for each part within grid cells [lo, hi) per axis: volume in grid cells, mean[4] the barycentric
-/// coordinates of its centroid. Parts of one grid cell may come apart.
+/// coordinates of its centroid. Parts of one grid cell may be disconnected.
 template <class Emit>
 class TetClipper {
  public:

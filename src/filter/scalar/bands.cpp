@@ -98,7 +98,7 @@ class Cutter {
     for (const Ring& ring : rings) out.add(ring, highest, cell);
   }
 
-  // Does the saddle of a quadrilateral lie above the level?
+  // Whether the saddle of a quadrilateral lies above the level.
   bool joins_high(std::span<const int64_t> p, int32_t level) const {
     const auto at = [&](size_t k) { return f_[size_t(p[k])] - levels_[size_t(level)]; };
     return p.size() == 4 && joined_inside(at(0), at(1), at(2), at(3));
@@ -156,7 +156,7 @@ bool is_convex(std::span<const Vec3> at) {
 std::vector<double> borders(const Dataset& s, const Field& field, const BandsParams& p) {
   std::vector<double> v = p.values;
   for (double x : v)
-    if (!std::isfinite(x)) fail_usage(fmt::format("{} is no border of a band", x), "bands values", "give finite numbers");
+    if (!std::isfinite(x)) fail_usage(fmt::format("{} is not a valid band limit", x), "bands values", "give finite numbers");
   if (v.empty()) {
     const Range r = s.range(field, p.component);
     for (int k = 1; k < p.count && !r.empty(); ++k) v.push_back(r.lo + (r.hi - r.lo) * k / p.count);
@@ -171,14 +171,15 @@ const Field& band_field(const Dataset& s, const BandsParams& p) {
   if (p.field.empty()) {
     f = s.fields().active(1);
     if (!f || f->association != Association::point)
-      fail_usage("the mesh has no scalar point field", "bands", "name one: field=NAME; cell_to_point makes point fields of cell fields");
+      fail_usage("the mesh has no scalar point field", "bands",
+                 "name one with field=NAME; cell_to_point turns cell fields into point fields");
   } else {
     f = s.fields().find(p.field.name, Association::point);
     if (!f) {
       const Field& other = with_context("bands", [&]() -> const Field& { return s.fields().require(p.field.name); });
-      fail_usage(fmt::format("field '{}' lies on the {}; bands need values at the points", other.name,
+      fail_usage(fmt::format("field '{}' is defined on the {}; bands need values at the points", other.name,
                              other.association == Association::cell ? "cells" : "whole mesh"),
-                 "bands", other.association == Association::cell ? "cell_to_point makes a point field of it" : "");
+                 "bands", other.association == Association::cell ? "cell_to_point turns it into a point field" : "");
     }
   }
   if (p.component >= f->components())
@@ -294,15 +295,15 @@ DatasetPtr bands(const DatasetPtr& in, const BandsParams& p, Context& ctx) {
   each([&](std::span<const Node> ring, int32_t b, int64_t cell) {
     for (const Node& n : ring)
       ids.push_back(int32_t(n.level < 0 ? number[n.lo] : kept + (std::lower_bound(cuts.begin(), cuts.end(), n) - cuts.begin())));
-    if (ids.size() > size_t(INT32_MAX)) fail_usage("the bands have more than 2^31 corners", "bands", "ask for fewer at a time");
+    if (ids.size() > size_t(INT32_MAX)) fail_usage("the bands have more than 2^31 corners", "bands", "use fewer at a time");
     offsets.push_back(int32_t(ids.size())), band.push_back(b), cells.push_back(cell);
     low.push_back(b > 0 ? levels[size_t(b - 1)] : range.lo), high.push_back(b < last_band ? levels[size_t(b)] : range.hi);
   });
   size_t nan = 0;
   for (const Pieces& part : parts) nan += part.nan;
-  if (nan > 0) ctx.info(fmt::format("bands: {} polygons without a value at a corner were left out", nan));
+  if (nan > 0) ctx.info(fmt::format("bands: {} polygons with a corner without a value were left out", nan));
   if (band.empty() && mesh.polygons.size() > 0)
-    ctx.info(fmt::format("bands: nothing is left, '{}' runs from {} to {}", field.name, short_number(range.lo), short_number(range.hi)));
+    ctx.info(fmt::format("bands: nothing is left; '{}' ranges from {} to {}", field.name, short_number(range.lo), short_number(range.hi)));
 
   DatasetParts out;
   carry_interpolated(out.fields, s->fields(), points);

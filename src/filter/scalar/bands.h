@@ -19,9 +19,9 @@ struct BandsParams {
 inline void describe(Schema& s, BandsParams& p) {
   s("field", p.field, "Point field; default: the active scalar.").takes(fields::on_points);
   s("component", p.component, "Component of the field; -1: the only one, or the magnitude.").at_least(-1);
-  s("values", p.values, "Borders between bands; default: equal bands over the field's range.").unit("@field");
+  s("values", p.values, "Limits between bands; default: equal bands over the field's range.").unit("@field");
   s("count", p.count, "Number of bands when no values are given.").range(1, 100000);
-  s("outside", p.outside, "Keeps what lies below the first and above the last of the values, as bands of their own.");
+  s("outside", p.outside, "Keep what lies below the first and above the last value, as bands of their own.");
 }
 
 /// The faces of a surface or flat grid (of solids: their skin), cut where the field equals each value: every polygon of the result

@@ -50,7 +50,7 @@ class Joints {
     for (size_t i = 0; i < s.ends.size(); ++i)
       for (int64_t p : s.ends[i]) list_[next[size_t(p)]++] = i;
   }
-  /// The one segment that goes on from `segment` at its end `point`; -1 where the line ends.
+  /// The one segment that continues `segment` at its end `point`; -1 where the line ends.
   int64_t beyond(size_t segment, int64_t point) const {
     const size_t b = start_[size_t(point)];
     if (start_[size_t(point) + 1] - b != 2) return -1;
@@ -118,7 +118,7 @@ DatasetPtr polylines(const DatasetPtr& in, const PolylinesParams& p, Context& ct
   const Segments s = segments_of(in, other_cells);
   if (s.ends.empty() && other_cells > 0)
     fail_usage("the mesh has no lines", "polylines",
-               "make some first: isolines, contour of a flat mesh, feature_edges, slice of a surface");
+               "make lines first with isolines, contour of a flat mesh, feature_edges or slice of a surface");
   const Joints joints(s, in->point_count(), fields);
   Lines lines = join(s, joints);
   std::vector<int64_t> number(in->point_count(), -1), points;
@@ -139,12 +139,11 @@ DatasetPtr polylines(const DatasetPtr& in, const PolylinesParams& p, Context& ct
   carry_gathered(out.fields, in->fields(), Association::point, points, Association::point);
   size_t dropped = 0;
   for (const Field& f : in->fields()) dropped += f.association == Association::cell;
-  for (const Field* f : fields)
-    out.fields.add(f->with(gather(f->array, std::span<const int64_t>(lines.cells))));
+  for (const Field* f : fields) out.fields.add(f->with(gather(f->array, std::span<const int64_t>(lines.cells))));
   carry_whole(out.fields, in->fields());
   if (dropped > fields.size())
     ctx.info(fmt::format("polylines: {} cell fields that vary along a line were left out", dropped - fields.size()));
-  if (other_cells > 0) ctx.info(fmt::format("polylines: {} cells that are no lines were left out", other_cells));
+  if (other_cells > 0) ctx.info(fmt::format("polylines: {} cells that are not lines were left out", other_cells));
   out.fields.add({"closed", Association::cell, Array::from_vector(std::move(lines.closed)), "", Role::labels});
   out.fields.add({"length", Association::cell, Array::from_vector(std::move(length_of)), "", Role::none});
   out.notes = in->notes();
@@ -178,7 +177,7 @@ DatasetPtr isolines(const DatasetPtr& in, const IsolinesParams& p, Context& ctx)
     lines.fields.add(
         {"contour value", Association::cell, Array::from_vector(std::vector<double>(mesh.cell_count(), c.values[0])), "", Role::none});
   }
-  // A line crosses many cells: nobody expects their fields on it, so polylines need not say that they are gone.
+  // A line crosses many cells: their fields are not expected on it, so polylines need not report them as dropped.
   FieldSet kept;
   for (const Field& f : lines.fields)
     if (f.association != Association::cell || f.name == "contour value") kept.add(f);

@@ -15,7 +15,7 @@ struct PolylinesParams {
 };
 inline void describe(Schema& s, PolylinesParams& p) {
   s("fields", p.fields,
-    "Cell fields that are the same all along a line, and stay; default: 'contour value' and 'edge type' where there are.");
+    "Cell fields to keep, which must be constant along each line; default: 'contour value' and 'edge type', if present.");
 }
 
 /// Lines and polylines of a mesh joined end to end into as long ones as possible. Where three or more meet, or one of `fields` differs,
@@ -33,7 +33,7 @@ struct IsolinesParams {
 };
 inline void describe(Schema& s, IsolinesParams& p) {
   s("field", p.field, "Point field; default: the active scalar.").takes(fields::on_points);
-  s("component", p.component, "Of a field with several: 0, 1, ..., x, y, z, or magnitude.");
+  s("component", p.component, "Component of a field with several: 0, 1, ..., x, y, z, or magnitude.");
   s("values", p.values, "Values of the lines; default: evenly spaced within the range.").unit("@field");
   s("count", p.count, "Number of lines when no values are given.").range(1, 100000);
 }

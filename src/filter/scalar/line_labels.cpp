@@ -90,14 +90,14 @@ std::pair<Vec3, Vec3> label_page(Vec3 n) {
 
 DatasetPtr line_labels(const DatasetPtr& in, const LineLabelsParams& p, Context& ctx) {
   if (!(length(p.normal) > 0) || !std::isfinite(length(p.normal)))
-    fail_usage("the normal has no length", "line_labels normal", "for example normal=0,0,1");
+    fail_usage("the normal has no length", "line_labels normal", "write e.g. normal=0,0,1");
   const Field* field = nullptr;
   if (!p.field.empty()) field = with_context("line_labels", [&] { return &in->fields().require(p.field.name); });
   else field = in->fields().find("contour value", Association::cell);
   if (!field) field = in->fields().active(1);
   if (!field) fail_usage("the mesh has no scalar field", "line_labels", "name one: field=NAME");
   if (field->association == Association::whole || field->components() != 1)
-    fail_usage(fmt::format("field '{}' has not one number per point or cell", field->name), "line_labels");
+    fail_usage(fmt::format("field '{}' does not have one number per point or cell", field->name), "line_labels");
   PolylinesParams by;
   if (field->association == Association::cell) by.fields = {field->name};
   const std::string name = field->name;

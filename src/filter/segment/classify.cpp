@@ -17,14 +17,14 @@ namespace sg {
 
 void describe(Schema& s, ClassifyParams& p) {
   s("field", p.field, "Field of intensities; default: the active scalar.").takes(fields::scalars);
-  s("mask", p.mask, "Only samples where this field is not zero are classified; default: all.").takes(fields::scalars);
+  s("mask", p.mask, "Classify only samples where this field is not zero; default: all.").takes(fields::scalars);
   s("classes", p.classes, "Number of tissues.").range(1, 16);
-  s("background", p.background, "One more class, darker than all tissues, is nothing.");
-  s("partial_volume", p.partial_volume, "Samples may be mixes of two classes next to each other in intensity.");
-  s("bias_degree", p.bias_degree, "Total degree of the polynomial that is the logarithm of the bias; 0: no bias.").range(0, 8);
-  s("smoothness", p.smoothness, "How much a neighbour of a class speaks for that class (Potts); 0: not at all.").range(0, 10);
-  s("iterations", p.iterations, "Most rounds of the estimation.").range(1, 10000);
-  s("tolerance", p.tolerance, "Rise of the mean log-likelihood below which it stops.").positive();
+  s("background", p.background, "Add one class, darker than all tissues, for the background.");
+  s("partial_volume", p.partial_volume, "Allow samples that mix two classes adjacent in intensity.");
+  s("bias_degree", p.bias_degree, "Total degree of the polynomial for the logarithm of the bias; 0: no bias.").range(0, 8);
+  s("smoothness", p.smoothness, "Weight of neighbours of the same class (Potts model); 0: none.").range(0, 10);
+  s("iterations", p.iterations, "Maximum number of iterations.").range(1, 10000);
+  s("tolerance", p.tolerance, "Increase of the mean log-likelihood below which iteration stops.").positive();
 }
 
 namespace {
@@ -114,7 +114,7 @@ TissueModel start_model(const TissueSamples& s, const ClassifyParams& p, size_t 
     fail_usage(h.value.empty() ? fmt::format("field '{}' has no finite value to classify", name)
                                : fmt::format("field '{}' has {} different value{}, too few for {} classes", name, h.value.size(),
                                              h.value.size() == 1 ? "" : "s", pure),
-               "classify", "ask for fewer classes, or leave the background out with background=false");
+               "classify", "use fewer classes, or leave out the background with background=false");
   least_deviation = std::max(1e-3 * (h.value.back() - h.value.front()), whole_numbers ? 0.3 : 0.0);
   if (!(least_deviation > 0)) least_deviation = 1e-6 * std::max(1.0, std::abs(h.value[0]));
   TissueModel m;
@@ -169,7 +169,7 @@ DensityTable density_table(const TissueModel& m) {
 
 constexpr size_t max_classes = 17;
 
-// Expected shares of one sample from its densities and what its neighbours say (factor[c], 1 when they say nothing).
+// Expected shares of one sample from its densities and its neighbours (factor[c], 1 when they have no influence).
 inline void expected_shares(const DensityTable& t, float y, float corrected, const float* factor, float* share) {
   const float* bright_row = t.row(corrected);
   const float* dark_row = t.background ? t.row(y) : bright_row;
@@ -284,7 +284,7 @@ void report(const TissueModel& m, const ClassifyParams& p, const TissueSamples& 
   const std::string bias = terms ? fmt::format("; bias {} to {} over tissue", short_number(lo, 3), short_number(hi, 3)) : "";
   context.info(fmt::format("classify: {}{}; {} after {} iterations on {} samples", classes, bias, m.converged ? "converged" : "stopped",
                            m.iterations, s.value.size()));
-  if (!m.converged) context.warn(fmt::format("classify: not converged after {} iterations; give more with iterations=", m.iterations));
+  if (!m.converged) context.warn(fmt::format("classify: not converged after {} iterations; allow more with iterations=", m.iterations));
 }
 
 }  // namespace
@@ -293,7 +293,7 @@ DatasetPtr classify(const DatasetPtr& in, const ClassifyParams& p, Context& cont
   const Volume v = open_volume(*in, p, context);
   const SampleImage& image = v.image;
   const size_t n = image.count(), pure = size_t(p.classes) + (p.background ? 1 : 0), first = p.background ? 1 : 0;
-  if (pure == 1 && p.bias_degree == 0) fail_usage("one class alone says nothing", "classify", "ask for more classes");
+  if (pure == 1 && p.bias_degree == 0) fail_usage("a single class is meaningless", "classify", "use more classes");
   const BiasPolynomial bias(p.bias_degree, {image.dims[0] > 1, image.dims[1] > 1, image.dims[2] > 1});
   std::vector<double> calm;
   TissueSamples samples = chosen_samples(v, bias, calm);

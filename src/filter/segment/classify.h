@@ -22,8 +22,8 @@ void describe(Schema& s, ClassifyParams& p);
 /// Each sample of a uniform or rectilinear grid is one of `classes` tissues, a mix of two that are neighbours in intensity, or (with
 /// `background`) nothing. The means, deviations and shares of the classes and a bias field exp(polynomial of `bias_degree`) are
 /// estimated together by expectation-maximisation (Wells et al. 1996, Van Leemput et al. 1999) on at most 100000 evenly chosen samples
-/// (averaged with their neighbours for the bias, which noise must not steer; then as they are for means, deviations and shares), from
-/// the optimal split of the histogram; a mix has every proportion equally often (Shattuck et al. 2001). Then the shares of every
+/// (averaged with their neighbours for the bias, which noise must not influence; then unsmoothed for means, deviations and shares), from
+/// the optimal split of the histogram; in a mix every proportion is equally likely (Shattuck et al. 2001). Then the shares of every
 /// sample are found by mean-field sweeps with a Potts prior of strength `smoothness` over the six neighbours (a neighbour counts by the
 /// inverse of its distance).
 /// Adds "label" (u8; 0: nothing, background or outside the mask; 1 to classes by rising intensity: the class with the largest

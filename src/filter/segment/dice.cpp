@@ -14,8 +14,8 @@
 namespace sg {
 
 void describe(Schema& s, DiceParams& p) {
-  s("field", p.field, "Label field to judge.").takes(fields::scalars);
-  s("truth", p.truth, "Label field that is right.").takes(fields::scalars);
+  s("field", p.field, "Label field to assess.").takes(fields::scalars);
+  s("truth", p.truth, "Reference label field.").takes(fields::scalars);
 }
 
 namespace {
@@ -29,7 +29,7 @@ const Field& label_field(const Dataset& in, const FieldName& name, const char* w
   if (name.empty()) fail_usage(fmt::format("no {} given", which), "dice", fmt::format("name the label field: {}=NAME", which));
   const Field& f = with_context("dice", [&]() -> const Field& { return in.fields().require(name.name); });
   if (f.association == Association::whole || f.components() != 1)
-    fail_usage(fmt::format("'{}' is no label field on points or cells", f.name), "dice");
+    fail_usage(fmt::format("'{}' is not a label field on points or cells", f.name), "dice");
   return f;
 }
 
@@ -37,8 +37,8 @@ const Field& label_field(const Dataset& in, const FieldName& name, const char* w
 bool whole_number(double x, const Field& f, size_t i, int64_t& label) {
   if (std::isnan(x)) return false;
   if (x != std::floor(x) || std::abs(x) >= 9007199254740992.0)
-    fail_usage(fmt::format("field '{}' is no label field: sample {} is {}", f.name, i, short_number(x)), "dice",
-               "labels are whole numbers");
+    fail_usage(fmt::format("field '{}' is not a label field: sample {} is {}", f.name, i, short_number(x)), "dice",
+               "labels must be whole numbers");
   label = int64_t(x);
   return true;
 }

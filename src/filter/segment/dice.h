@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well two label fields agree.
+// Agreement of two label fields.
 #pragma once
 #include "base/context.h"
 #include "base/schema/schema.h"

@@ -90,7 +90,7 @@ void distance_transform(const uint8_t* set, const std::array<std::vector<double>
     if (x.size() > 1 && x.front() > x.back())
       for (double& v : x) v = -v;
   const std::array<size_t, 3> d{at[0].size(), at[1].size(), at[2].size()};
-  if (nearest && d[0] * d[1] * d[2] >= nobody) fail_usage("the grid has more than four billion samples", "distance_map", "crop it");
+  if (nearest && d[0] * d[1] * d[2] >= nobody) fail_usage("the grid has more than four billion samples", "distance_map", "crop it first");
   parallel_for(
       d[1] * d[2], 64,
       [&](size_t begin, size_t end) {
@@ -128,11 +128,11 @@ void distance_transform(const uint8_t* set, const std::array<std::vector<double>
 }
 
 void describe(Schema& s, DistanceMapParams& p) {
-  s("field", p.field, "Point or cell field that tells the set; default: the first label field, else the active scalar.")
+  s("field", p.field, "Point or cell field that defines the set; default: the first label field, else the active scalar.")
       .takes(fields::scalars);
-  s("min", p.min, "Smallest value of the set; default with max: no limit.").unit("@field");
-  s("max", p.max, "Largest value of the set; default with min: no limit.").unit("@field");
-  s("both_sides", p.both_sides, "Negative distances inside the set.");
+  s("min", p.min, "Smallest value in the set; default with max: no limit.").unit("@field");
+  s("max", p.max, "Largest value in the set; default with min: no limit.").unit("@field");
+  s("both_sides", p.both_sides, "Make distances inside the set negative.");
   s("name", p.name, "Name of the new field.");
 }
 

@@ -13,12 +13,12 @@ namespace sg {
 
 void describe(Schema& s, LabelComponentsParams& p) {
   s("field", p.field, "Field of labels; default: the first label field, else the active scalar.").takes(fields::scalars);
-  s("background", p.background, "Label that is nothing.");
-  s("labels", p.labels, "Only these labels; default: all but the background.");
+  s("background", p.background, "Background label.");
+  s("labels", p.labels, "Labels to use; default: all except the background.");
   s("connectivity", p.connectivity, "Neighbours in space: 6 (faces), 18 (and edges) or 26 (and corners).").range(6, 26);
-  s("by_label", p.by_label, "Different labels are different parts.");
-  s("min_size", p.min_size, "Drops parts of fewer samples.").at_least(1);
-  s("keep", p.keep, "Keeps only this many of the largest parts; 0: all.").at_least(0);
+  s("by_label", p.by_label, "Treat different labels as different parts.");
+  s("min_size", p.min_size, "Drop parts with fewer samples.").at_least(1);
+  s("keep", p.keep, "Keep only this many of the largest parts; 0: all.").at_least(0);
 }
 
 namespace {
@@ -74,7 +74,7 @@ RunSets find_runs(const int32_t* code, std::array<size_t, 3> d, bool by_label, c
       },
       &context);
   const size_t total = exclusive_scan(s.first);
-  if (total >= UINT32_MAX) fail_usage("the labels change too often", "label_components", "crop the image");
+  if (total >= UINT32_MAX) fail_usage("the image has too many label runs", "label_components", "crop the image");
   s.runs.resize(total);
   s.sets = UnionFind<>(total);
   parallel_for(rows, 64, [&](size_t begin, size_t end) {
@@ -142,7 +142,7 @@ CodeComponents code_components(const int32_t* code, std::array<size_t, 3> d, int
 
 DatasetPtr label_components(const DatasetPtr& in, const LabelComponentsParams& p, Context& context) {
   if (p.connectivity != 6 && p.connectivity != 18 && p.connectivity != 26)
-    fail_usage(fmt::format("{} is no connectivity", p.connectivity), "label_components connectivity", "give 6, 18 or 26");
+    fail_usage(fmt::format("{} is not a valid connectivity", p.connectivity), "label_components connectivity", "give 6, 18 or 26");
   const SampleImage image = sample_image(*in, p.field, "label_components", true);
   const LabelCodes codes = label_codes(image, p.background, p.labels, "label_components", context);
   CodeComponents c = code_components(codes.code.data(), image.dims, p.connectivity, p.by_label, context);
@@ -156,7 +156,7 @@ DatasetPtr label_components(const DatasetPtr& in, const LabelComponentsParams& p
         if (c.component[i] > last) c.component[i] = 0;
     });
   }
-  context.info(all == 0 ? std::string("label_components: no sample carries a wanted label")
+  context.info(all == 0 ? std::string("label_components: no sample has one of the selected labels")
                         : fmt::format("label_components: {} part{}{}, the largest of {} samples", all, all == 1 ? "" : "s",
                                       c.size.size() < all ? fmt::format(" ({} kept)", c.size.size()) : "", c.size.empty() ? 0 : c.size[0]));
   DatasetParts parts = in->parts();

@@ -20,7 +20,7 @@ void describe(Schema& s, LabelComponentsParams& p);
 
 /// Adds "component" (i32): 0 for background, NaN, hidden samples and parts that are dropped, 1 for the largest part and so on (equals in
 /// order of their first sample), and the field of the whole "component sizes" (i64, samples). Samples of one label (or, without by_label,
-/// of any wanted one) hang together over faces (6), edges too (18) or corners too (26; 4, 8 and 8 in a plane). Uniform and rectilinear
+/// of any wanted one) are connected over faces (6), edges too (18) or corners too (26; 4, 8 and 8 in a plane). Uniform and rectilinear
 /// grids.
 DatasetPtr label_components(const DatasetPtr& in, const LabelComponentsParams& p, Context& context);
 

@@ -57,7 +57,7 @@ LabelNet::LabelNet(const int32_t* code, std::array<size_t, 3> dims, bool walls, 
       &context_);
   vertices_ = exclusive_scan(first_vertex_), faces_ = exclusive_scan(first_face_);
   if (vertices_ >= size_t(INT32_MAX))
-    fail_usage("the surface has more than two billion points", "label_surface", "choose fewer labels, or crop");
+    fail_usage("the surface has more than two billion points", "label_surface", "use fewer labels, or crop first");
 }
 
 int32_t LabelNet::vertex(size_t i, size_t row) const {

@@ -13,11 +13,11 @@ namespace sg {
 
 void describe(Schema& s, LabelSurfaceParams& p) {
   s("field", p.field, "Field of labels; default: the first label field, else the active scalar.").takes(fields::scalars);
-  s("background", p.background, "Label that is nothing.");
-  s("labels", p.labels, "Only these labels; default: all but the background.");
-  s("smooth", p.smooth, "Smooth surfaces instead of the boxes of the voxels.");
-  s("iterations", p.iterations, "Steps of smoothing.").range(0, 10000);
-  s("walls", p.walls, "Also the faces between two labels.");
+  s("background", p.background, "Background label.");
+  s("labels", p.labels, "Labels to use; default: all except the background.");
+  s("smooth", p.smooth, "Smooth the surfaces instead of keeping the voxel faces.");
+  s("iterations", p.iterations, "Number of smoothing steps.").range(0, 10000);
+  s("walls", p.walls, "Also make the faces between two labels.");
 }
 
 namespace {
@@ -51,7 +51,7 @@ Points place_vertices(const Dataset& in, const SampleImage& image, const LabelNe
   return points;
 }
 
-// Does a grid with these axes turn counterclockwise into clockwise?
+// Whether a grid with these axes reverses orientation.
 bool mirrored(const Dataset& in, const SampleImage& image) {
   double sign = 1;
   for (const auto& x : image.at) sign *= x.size() > 1 && x.back() < x.front() ? -1 : 1;
@@ -76,7 +76,7 @@ Array sides_array(const LabelCodes& codes, const std::vector<int64_t>& samples, 
 
 DatasetPtr label_surface(const DatasetPtr& input, const LabelSurfaceParams& params, Context& context) {
   if (!(params.background == std::floor(params.background)) || !(std::abs(params.background) < 0x1p53))
-    fail_usage("the background is no whole number", "label_surface background");
+    fail_usage("the background is not a whole number", "label_surface background");
   const SampleImage image = sample_image(*input, params.field, "label_surface", true);
   const LabelCodes codes = label_codes(image, params.background, params.labels, "label_surface", context);
   const LabelNet net(codes.code.data(), image.dims, params.walls, context);
@@ -111,7 +111,7 @@ DatasetPtr label_surface(const DatasetPtr& input, const LabelSurfaceParams& para
   out.fields.add({"sides", Association::cell,
                   wide ? sides_array<int64_t>(codes, samples, params.background) : sides_array<int32_t>(codes, samples, params.background),
                   "", Role::none});
-  if (net.faces() == 0) context.info("label_surface: no sample carries a wanted label; the surface is empty");
+  if (net.faces() == 0) context.info("label_surface: no sample has one of the selected labels; the surface is empty");
   return make_dataset(std::move(out));
 }
 

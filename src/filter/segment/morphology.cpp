@@ -17,12 +17,12 @@ namespace sg {
 
 void describe(Schema& s, MorphologyParams& p) {
   s("field", p.field, "Field of labels; default: the first label field, else the active scalar.").takes(fields::scalars);
-  s("operation", p.operation, "What to do.");
+  s("operation", p.operation, "Operation to apply.");
   s("radius", p.radius, "Radius of the ball; default: the largest spacing of the grid.").unit("length").at_least(0);
-  s("background", p.background, "Label that is nothing.");
-  s("labels", p.labels, "Only these labels are the set; the others stay as they are; default: all but the background.");
-  s("max_size", p.max_size, "fill: most samples of a hole; 0: any.").at_least(0);
-  s("name", p.name, "Name of the result; default: in place of the field.");
+  s("background", p.background, "Background label.");
+  s("labels", p.labels, "Labels that form the set, the others staying unchanged; default: all except the background.");
+  s("max_size", p.max_size, "fill: largest hole to fill, in samples; 0: any.").at_least(0);
+  s("name", p.name, "Name of the result; default: it replaces the field.");
 }
 
 namespace {
@@ -91,7 +91,7 @@ DatasetPtr morphology(const DatasetPtr& in, const MorphologyParams& p, Context& 
     if (image.dims[a] > 1) least = std::min(least, image.spacing(a));
   if (p.radius) radius = *p.radius;
   if (p.operation != Morphology::fill && radius < least && least < HUGE_VAL)
-    context.warn(fmt::format("morphology: a ball of radius {} reaches no neighbour; the nearest are {} away", short_number(radius),
+    context.warn(fmt::format("morphology: a ball of radius {} reaches no neighbours; the nearest are {} away", short_number(radius),
                              short_number(least)));
 
   Mask set(n);

@@ -30,7 +30,7 @@ void describe(Schema& s, MorphologyParams& p);
 ///   fill    adds the background that is enclosed (6 neighbours), in holes of up to max_size samples (0: any)
 /// Added samples take the label of the nearest sample that was in the set, removed ones the background. What lies outside the image or
 /// has no value neither grows nor erodes, and keeps what it has. The result has the type and, unless `name` is given, the name of the
-/// field. Uniform and rectilinear grids, point or cell fields. Throws Error(usage) for numbers that are no labels.
+/// field. Uniform and rectilinear grids, point or cell fields. Throws Error(usage) for numbers that are not labels.
 DatasetPtr morphology(const DatasetPtr& in, const MorphologyParams& p, Context& context);
 
 }  // namespace sg

@@ -55,7 +55,7 @@ ValueCounts value_counts(const Array& a, const std::vector<uint8_t>& states, int
     const double lo = double(span.lo), width = double(span.hi) - lo;
     const bool exact = std::is_integral_v<T> && width < 65536;
     const size_t m = exact ? size_t(width) + 1 : size_t(bins);
-    if (!std::isfinite(width)) fail_usage("the range of the values is beyond double precision", "histogram", "scale the field");
+    if (!std::isfinite(width)) fail_usage("the range of the values exceeds double precision", "histogram", "scale the field first");
     const double per_unit = width > 0 ? double(m) / width : 0;
     const auto place = [&](T x) -> size_t {
       if (exact) return size_t(double(x) - lo);
@@ -136,16 +136,16 @@ DatasetPtr otsu(const DatasetPtr& in, const OtsuParams& p, Context& context) {
   if (field->association == Association::whole)
     fail_usage(fmt::format("field '{}' belongs to the whole mesh, not to points or cells", field->name), "otsu");
   if (field->components() != 1)
-    fail_usage(fmt::format("field '{}' has {} components, one is needed", field->name, field->components()), "otsu",
-               "take one of them with component, or the length with magnitude");
+    fail_usage(fmt::format("field '{}' has {} components, but one is needed", field->name, field->components()), "otsu",
+               "take one of them with component, or use magnitude");
   const std::vector<uint8_t> states = sample_states(*in, field->association);
   const ValueCounts h = value_counts(field->array, states, p.bins, context);
   if (h.value.size() < size_t(p.classes))
     fail_usage(h.value.empty() ? fmt::format("field '{}' has no finite value", field->name)
                : h.value.size() == 1
-                   ? fmt::format("field '{}' is {} everywhere: nothing to split", field->name, short_number(h.value[0]))
+                   ? fmt::format("field '{}' is {} everywhere, so there is nothing to split", field->name, short_number(h.value[0]))
                    : fmt::format("field '{}' has {} different values, too few for {} classes", field->name, h.value.size(), p.classes),
-               "otsu", h.value.size() > 1 ? fmt::format("ask for at most {} classes", h.value.size()) : "choose another field");
+               "otsu", h.value.size() > 1 ? fmt::format("use at most {} classes", h.value.size()) : "choose another field");
   const std::vector<size_t> split = best_split(h, p.classes);
   std::vector<double> thresholds;
   for (const size_t i : split) thresholds.push_back((h.value[i - 1] + h.value[i]) / 2);
@@ -163,7 +163,7 @@ DatasetPtr otsu(const DatasetPtr& in, const OtsuParams& p, Context& context) {
   }
   std::string text;
   for (const double t : thresholds) text += (text.empty() ? "" : ", ") + short_number(t);
-  context.info(fmt::format("otsu: {} of '{}' parted at {}, {}% of the variance between them",
+  context.info(fmt::format("otsu: {} of '{}' separated at {}, {}% of the variance between them",
                            p.classes == 2 ? "2 classes" : fmt::format("{} classes", p.classes), field->name, text,
                            short_number(100 * between / total, 4)));
 

@@ -15,12 +15,12 @@ struct OtsuParams {
 };
 void describe(Schema& s, OtsuParams& p);
 
-/// The classes-1 thresholds that make the variance within classes least (Otsu 1979), by dynamic programming over the histogram: the
+/// The classes-1 thresholds that minimise the variance within classes (Otsu 1979), by dynamic programming over the histogram: the
 /// optimum, not a local one. A value v gets the label "number of thresholds below v", so 0 is the darkest class; NaN and hidden samples
-/// get 0. Integers of up to 65536 different values are counted one by one, others in `bins` equal bins. A threshold lies midway
-/// between the occupied bins that it parts; of equally good splits the lowest is taken. Adds the field `name` (u8) and a field of the whole
-/// "NAME thresholds"; logs them with the share of variance that they explain. Any mesh, point or cell field. Throws Error(usage) when
-/// the field has fewer different values (after binning) than classes.
+/// get 0. Integers of up to 65536 different values are counted one by one, others in `bins` equal bins. A threshold lies midway between the
+/// occupied bins that it separates; of equally good splits the lowest is taken. Adds the field `name` (u8) and a field of the whole "NAME
+/// thresholds"; logs them with the share of variance that they explain. Any mesh, point or cell field. Throws Error(usage) when the field
+/// has fewer different values (after binning) than classes.
 DatasetPtr otsu(const DatasetPtr& in, const OtsuParams& p, Context& context);
 
 /// Values (ascending) and how often they occur.

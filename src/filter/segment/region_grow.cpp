@@ -15,11 +15,11 @@ namespace sg {
 
 void describe(Schema& s, RegionGrowParams& p) {
   s("field", p.field, "Field of values; default: the active scalar.").takes(fields::scalars);
-  s("seeds", p.seeds, "Places where regions begin: x,y,z of each.").unit("length");
-  s("min", p.min, "Smallest value of the region.").unit("@field");
-  s("max", p.max, "Largest value of the region.").unit("@field");
-  s("confidence", p.confidence, "Without min and max: deviations about the mean of the region.").positive();
-  s("rounds", p.rounds, "Without min and max: how often the range is found again.").range(0, 100);
+  s("seeds", p.seeds, "Seed points of the regions: x,y,z of each.").unit("length");
+  s("min", p.min, "Smallest value in the region.").unit("@field");
+  s("max", p.max, "Largest value in the region.").unit("@field");
+  s("confidence", p.confidence, "Without min and max: half width of the range, in standard deviations about the region's mean.").positive();
+  s("rounds", p.rounds, "Without min and max: number of times the range is re-estimated.").range(0, 100);
   s("connectivity", p.connectivity, "Neighbours in space: 6 (faces), 18 (and edges) or 26 (and corners).").range(6, 26);
   s("name", p.name, "Name of the label field.");
 }
@@ -98,10 +98,10 @@ std::vector<size_t> around(const SampleImage& image, const std::vector<size_t>& 
 
 DatasetPtr region_grow(const DatasetPtr& in, const RegionGrowParams& p, Context& context) {
   if (p.seeds.empty() || p.seeds.size() % 3 != 0)
-    fail_usage(p.seeds.empty() ? std::string("no seed given") : fmt::format("{} numbers are no list of places", p.seeds.size()),
+    fail_usage(p.seeds.empty() ? std::string("no seed is given") : fmt::format("{} numbers do not make a list of points", p.seeds.size()),
                "region_grow seeds", "give x,y,z of each seed");
   if (p.connectivity != 6 && p.connectivity != 18 && p.connectivity != 26)
-    fail_usage(fmt::format("{} is no connectivity", p.connectivity), "region_grow connectivity", "give 6, 18 or 26");
+    fail_usage(fmt::format("{} is not a valid connectivity", p.connectivity), "region_grow connectivity", "give 6, 18 or 26");
   if (p.min && p.max && *p.min > *p.max)
     fail_usage(fmt::format("min {} is above max {}", short_number(*p.min), short_number(*p.max)), "region_grow", "swap them");
   const SampleImage image = sample_image(*in, p.field, "region_grow");

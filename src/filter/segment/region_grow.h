@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples that hang together with seeds.
+// Samples that are connected to seeds.
 #pragma once
 #include "base/context.h"
 #include "base/schema/schema.h"

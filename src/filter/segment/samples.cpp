@@ -61,7 +61,7 @@ std::vector<double> cell_centers(const std::vector<double>& x) {
 }  // namespace
 
 std::vector<uint8_t> sample_states(const Dataset& in, Association association) {
-  if (association == Association::whole) fail_usage("a field of the whole has no samples", "sample_states");
+  if (association == Association::whole) fail_usage("a field of the whole dataset has no samples", "sample_states");
   std::vector<uint8_t> cells = states_of_bits(in.cell_ghost(), ghost_hidden_cell | ghost_refined_cell);
   if (association == Association::cell) return cells;
   std::vector<uint8_t> points = states_of_bits(in.point_ghost(), ghost_hidden_point);
@@ -98,8 +98,8 @@ SampleImage sample_image(const Dataset& in, const FieldName& name, std::string_v
   if (field->association == Association::whole)
     fail_usage(fmt::format("field '{}' belongs to the whole mesh, not to points or cells", field->name), where);
   if (field->components() != 1)
-    fail_usage(fmt::format("field '{}' has {} components, one is needed", field->name, field->components()), where,
-               "take one of them with component, or the length with magnitude");
+    fail_usage(fmt::format("field '{}' has {} components, but one is needed", field->name, field->components()), where,
+               "take one of them with component, or use magnitude");
   SampleImage image;
   image.field = *field;
   image.field.array = field->array.made_packed();
@@ -118,7 +118,8 @@ SampleImage sample_image(const Dataset& in, const FieldName& name, std::string_v
 
 const Field& companion_field(const Dataset& in, const SampleImage& image, const FieldName& name, std::string_view who) {
   const Field& f = with_context(who, [&]() -> const Field& { return in.fields().require(name.name, image.field.association); });
-  if (f.components() != 1) fail_usage(fmt::format("field '{}' has {} components, one is needed", f.name, f.components()), std::string(who));
+  if (f.components() != 1)
+    fail_usage(fmt::format("field '{}' has {} components, but one is needed", f.name, f.components()), std::string(who));
   return f;
 }
 
@@ -149,7 +150,7 @@ LabelCodes label_codes(const SampleImage& image, std::optional<double> backgroun
   std::sort(list.begin(), list.end());
   const size_t n = image.count();
   LabelCodes r;
-  // A pass in the native type tells whether all numbers are whole and fit 32 bits.
+  // A pass in the native type checks whether all numbers are whole and fit 32 bits.
   struct Check {
     size_t bad = SIZE_MAX;
     bool wide = false;
@@ -183,9 +184,9 @@ LabelCodes label_codes(const SampleImage& image, std::optional<double> backgroun
           &context);
   });
   if (check.bad != SIZE_MAX)
-    fail_usage(fmt::format("field '{}' is no label field: sample {} is {}", image.field.name, check.bad,
+    fail_usage(fmt::format("field '{}' is not a label field: sample {} is {}", image.field.name, check.bad,
                            short_number(image.field.array.get(check.bad))),
-               std::string(who), "labels are whole numbers; otsu or classify make them from intensities");
+               std::string(who), "labels must be whole numbers; make them from intensities with otsu or classify");
   auto is_wanted = [&](int64_t x) {
     if (background && double(x) == *background) return false;
     return list.empty() || std::binary_search(list.begin(), list.end(), x);

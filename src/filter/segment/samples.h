@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the operations on lattice images share: a scalar field on points or cells as an image of samples, which of them count,
+// Common base of operations on lattice images: a scalar field on points or cells as an image of samples, which of them count,
 // and labels of any number type as 32-bit codes.
 #pragma once
 #include <array>
@@ -44,15 +44,15 @@ SampleImage sample_image(const Dataset& in, const FieldName& name, std::string_v
 /// The same grid and states with another field of the same association.
 const Field& companion_field(const Dataset& in, const SampleImage& image, const FieldName& name, std::string_view who);
 
-/// Labels as codes: 0 is "nothing" (background, hidden, NaN), every other code stands for one label.
+/// Labels as codes: 0 is "nothing" (background, hidden, NaN), every other code represents one label.
 struct LabelCodes {
   Plane<int32_t> code;
-  std::vector<int64_t> table;  ///< label of code c is table[c-1]; empty: the code is the label itself, zero_code stands for label 0
+  std::vector<int64_t> table;  ///< label of code c is table[c-1]; empty: the code is the label itself, zero_code represents label 0
   static constexpr int32_t zero_code = INT32_MIN;
   int64_t label(int32_t c) const { return table.empty() ? (c == zero_code ? 0 : int64_t(c)) : table[size_t(c) - 1]; }
 };
 
-/// `wanted` empty: all but the background. Throws Error(usage) naming `who` for numbers that are no whole number below 2^53.
+/// `wanted` empty: all but the background. Throws Error(usage) naming `who` for numbers that are not whole numbers below 2^53.
 LabelCodes label_codes(const SampleImage& image, std::optional<double> background, const std::vector<int64_t>& wanted, std::string_view who,
                        const Context& context);
 

@@ -167,7 +167,7 @@ void maximisation(TissueModel& m, Sums& s, double samples, size_t active, const 
     m.deviation[c] = std::max(options.least_deviation, std::sqrt(s.yy[c] / s.share[c]));
   }
   for (size_t c = 0; c < m.parts(); ++c) m.share[c] = std::max(1e-6, s.share[c] / samples);
-  // Mixes need classes in order and apart.
+  // Mixtures need classes that are ordered and separated.
   std::vector<size_t> order(k);
   std::iota(order.begin(), order.end(), size_t(0));
   std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return m.mean[a] < m.mean[b]; });

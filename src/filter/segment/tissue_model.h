@@ -33,7 +33,7 @@ struct TissueModel {
   std::vector<double> mean, deviation;  ///< of the pure classes, ascending
   std::vector<double> share;            ///< of the pure classes, then of the mixes k|k+1
   BiasPolynomial bias;
-  bool background = false;  ///< the first class is nothing: noise alone, which the bias does not touch
+  bool background = false;  ///< the first class is nothing: pure noise, which the bias does not affect
   int iterations = 0;
   bool converged = false;
   double log_likelihood = 0;  ///< mean per sample

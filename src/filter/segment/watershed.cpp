@@ -18,9 +18,9 @@ namespace sg {
 
 void describe(Schema& s, WatershedParams& p) {
   s("field", p.field, "Field to flood; default: the active scalar.").takes(fields::scalars);
-  s("markers", p.markers, "Label field whose labels grow; default: the minima of the field.").takes(fields::scalars);
-  s("gradient", p.gradient, "Floods the length of the gradient of the field.");
-  s("min_depth", p.min_depth, "Minima that are not deeper than this are no basins of their own.").unit("@field").at_least(0);
+  s("markers", p.markers, "Label field to grow from; default: the minima of the field.").takes(fields::scalars);
+  s("gradient", p.gradient, "Flood the gradient magnitude of the field.");
+  s("min_depth", p.min_depth, "Minima shallower than this do not form basins of their own.").unit("@field").at_least(0);
   s("connectivity", p.connectivity, "Neighbours in space: 6 (faces), 18 (and edges) or 26 (and corners).").range(6, 26);
   s("name", p.name, "Name of the label field.");
 }
@@ -49,7 +49,7 @@ Plane<float> values_of(const SampleImage& image) {
   return f;
 }
 
-// Length of the gradient; one-sided at borders and beside samples without a value.
+// Length of the gradient; one-sided at borders and next to samples without a value.
 Plane<float> gradient_length(const SampleImage& image, const Plane<float>& f) {
   const auto d = image.dims;
   const auto stride = image.strides();
@@ -203,10 +203,10 @@ void flood(Plane<int32_t>& label, const Plane<uint32_t>& key, const std::vector<
 
 DatasetPtr watershed(const DatasetPtr& in, const WatershedParams& p, Context& context) {
   if (p.connectivity != 6 && p.connectivity != 18 && p.connectivity != 26)
-    fail_usage(fmt::format("{} is no connectivity", p.connectivity), "watershed connectivity", "give 6, 18 or 26");
+    fail_usage(fmt::format("{} is not a valid connectivity", p.connectivity), "watershed connectivity", "give 6, 18 or 26");
   const SampleImage image = sample_image(*in, p.field, "watershed");
   const size_t n = image.count();
-  if (n >= nobody) fail_usage("the grid has more than four billion samples", "watershed", "crop it");
+  if (n >= nobody) fail_usage("the grid has more than four billion samples", "watershed", "crop it first");
   Plane<uint32_t> key(n);
   {
     Plane<float> f = values_of(image);
@@ -228,7 +228,7 @@ DatasetPtr watershed(const DatasetPtr& in, const WatershedParams& p, Context& co
     for (size_t i = 0; i < n; ++i)
       if (codes.code[i] != 0 && key[i] != nobody) label[i] = codes.code[i], shore.push_back(uint32_t(i));
     if (shore.empty())
-      fail_usage(fmt::format("field '{}' marks no sample", p.markers.name), "watershed markers", "markers are labels other than 0");
+      fail_usage(fmt::format("field '{}' marks no sample", p.markers.name), "watershed markers", "markers must be labels other than 0");
   } else {
     shore = deep_minima(key, neighbors, p.min_depth, context);
     for (const uint32_t i : shore) label[i] = int32_t(++basins);

@@ -118,13 +118,13 @@ TablePtr integrate(const Data& in, const IntegrateParams& p, Context& ctx) {
     parts.push_back(d);
     dimension = std::max(dimension, highest_dimension(d));
   });
-  if (dimension < 0) fail_usage("has no cell to integrate over", "integrate", "hidden and duplicate cells do not count");
+  if (dimension < 0) fail_usage("has no cells to integrate over", "integrate", "hidden and duplicate cells do not count");
   std::vector<Row> rows;
   ExactSum whole;
   for (const std::string& name : p.fields) {
     bool found = false;
     for (const DatasetPtr& d : parts) found = found || d->fields().find(name);
-    if (!found) (void)parts[0]->fields().require(name);  // says what there is
+    if (!found) (void)parts[0]->fields().require(name);  // lists what there is
   }
   for (const DatasetPtr& d : parts) {
     std::vector<Column> columns;

@@ -24,7 +24,7 @@ const Array& ghosts_of(const DatasetPtr& in, const Field& f) {
 
 bool left_out(const Array& ghost, size_t i) { return !ghost.empty() && ghost.view<uint8_t>()[i] != 0; }
 
-// The finite values, in order, and how many are none.
+// The finite values, in order, and how many are not finite.
 struct Numbers {
   std::vector<double> finite;
   size_t missing = 0, infinite = 0;
@@ -145,7 +145,7 @@ TablePtr statistics(const DatasetPtr& in, const StatisticsParams& p, Context& ct
     if (f.components() > 1) add_row(rows, in, f, -1);
     if (n > 0) infinite += fmt::format("{}'{}' ({})", infinite.empty() ? "" : ", ", f.name, n);
   }
-  if (!infinite.empty()) ctx.warn(fmt::format("statistics: infinite values are counted apart: {}", infinite));
+  if (!infinite.empty()) ctx.warn(fmt::format("statistics: infinite values are counted separately: {}", infinite));
   auto t = std::make_shared<Table>();
   add_column(*t, "field", std::move(rows.field), rows.fields);
   add_column(*t, "association", std::move(rows.association), {"point", "cell", "whole"});
@@ -165,16 +165,17 @@ TablePtr histogram(const DatasetPtr& in, const HistogramParams& p, Context& ctx)
   const int component = f->components() == 1 ? 0 : p.component;
   const Numbers numbers = numbers_of(f->array, component, ghosts_of(in, *f));
   const std::vector<double>& v = numbers.finite;
-  if (numbers.infinite > 0) ctx.warn(fmt::format("histogram: {} infinite values of '{}' are in no bin", numbers.infinite, f->name));
+  if (numbers.infinite > 0) ctx.warn(fmt::format("histogram: {} infinite values of '{}' are not in any bin", numbers.infinite, f->name));
   double lo = HUGE_VAL, hi = -HUGE_VAL;
   for (const double x : v) lo = std::min(lo, x), hi = std::max(hi, x);
   lo = p.min.value_or(lo), hi = p.max.value_or(hi);
   if (!(lo <= hi))
-    fail_usage(v.empty() ? "has no finite numbers" : fmt::format("counts from {} to {}", lo, hi), "histogram", "min must not be above max");
+    fail_usage(v.empty() ? "has no finite numbers" : fmt::format("has the range from {} to {}", lo, hi), "histogram",
+               "min must not be above max");
   if (lo == hi) hi = std::nextafter(lo + std::max(std::fabs(lo), 1.0) * 1e-6, HUGE_VAL);  // one value: the first bin holds it
   const auto bins = size_t(p.bins);
   std::vector<double> edge(bins + 1);
-  const bool far = !std::isfinite(hi - lo);  // then halves: the difference is none
+  const bool far = !std::isfinite(hi - lo);  // then halves: the difference is meaningless
   for (size_t i = 0; i <= bins; ++i) {
     const double t = double(i) / double(bins);
     edge[i] = i == bins ? hi : far ? lo * (1 - t) + hi * t : lo + (hi - lo) * t;

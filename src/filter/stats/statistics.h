@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers about fields, as tables.
+// Statistics of fields, as tables.
 #pragma once
 #include "base/context.h"
 #include "base/schema/schema.h"
@@ -12,8 +12,8 @@ struct StatisticsParams {
 };
 inline void describe(Schema& s, StatisticsParams& p) { s("fields", p.fields, "Fields to describe; default: all on points and cells."); }
 
-/// One row per component of each field (and one for the length of a vector): field, association, component, count, missing (NaN), infinite,
-/// min, quartile1, median, quartile3, max, mean, deviation (of the sample: n-1), sum, sum_of_squares: all but `missing` and
+/// One row per component of each field (and one for the magnitude of a vector): field, association, component, count, missing (NaN),
+/// infinite, min, quartile1, median, quartile3, max, mean, deviation (of the sample: n-1), sum, sum_of_squares: all but `missing` and
 /// `infinite` of the finite values; a warning names fields with infinities. Hidden and duplicate cells and points
 /// are left out. Quartiles by linear interpolation between order statistics (Hyndman and Fan 1996, type 7). Sums are exact to the last
 /// places for any number of threads (fixed chunks, each summed with Neumaier's compensation). O(n) memory for the order statistics.
@@ -27,10 +27,10 @@ struct HistogramParams {
 };
 inline void describe(Schema& s, HistogramParams& p) {
   s("field", p.field, "Field to count; default: the active scalar.");
-  s("component", p.component, "Component of the field; -1: the length of a field of several.").at_least(-1);
+  s("component", p.component, "Component of the field; -1: the magnitude of a field of several.").at_least(-1);
   s("bins", p.bins, "Number of bins.").range(1, 1 << 20);
-  s("min", p.min, "Where the first bin begins; default: the smallest value.").unit("@field");
-  s("max", p.max, "Where the last bin ends; default: the largest value.").unit("@field");
+  s("min", p.min, "Lower end of the first bin; default: the smallest value.").unit("@field");
+  s("max", p.max, "Upper end of the last bin; default: the largest value.").unit("@field");
 }
 /// Columns lo, hi, count, fraction: a value v lies in the bin with lo <= v < hi, the last bin holds its upper end too. Values outside
 /// and NaN are in no bin, nor are infinities, which a warning counts; fractions are of all finite values.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared by the operations that give tables: sums that keep their last places, columns.
+// Shared by the operations that return tables: compensated sums, and columns.
 #pragma once
 #include <cmath>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace sg {
 
-/// Neumaier's compensated sum: sums of millions of numbers keep their last places. Sums of parts add up to the same.
+/// Neumaier's compensated sum: sums of millions of numbers are accurate to the last places. Sums of parts add up to the same.
 struct ExactSum {
   double sum = 0, rest = 0;
   void add(double x) {

@@ -19,12 +19,13 @@ class Columns {
       if (!t.words(i) && t.columns[i].components() == 1) numbers_.push_back(i);
     }
   }
-  /// The column asked for, one with a usual name, or the nth column of numbers; -1 when there is none.
+  /// The requested column, one with a usual name, or the nth numeric column; -1 when there is none.
   int find(const std::string& asked, std::initializer_list<std::string_view> usual, size_t nth) const {
     if (!asked.empty()) {
       for (size_t i = 0; i < names_.size(); ++i)
         if (names_[i] == asked) {
-          if (table_.words(i)) fail_usage(fmt::format("column '{}' holds words", asked), "table_to_points", "coordinates are numbers");
+          if (table_.words(i))
+            fail_usage(fmt::format("column '{}' contains text", asked), "table_to_points", "coordinates must be numbers");
           return int(i);
         }
       fail_usage(fmt::format("there is no column '{}'", asked), "table_to_points", unknown_name_hint(asked, names_));
@@ -50,7 +51,7 @@ DatasetPtr table_to_points(const Data& in, const TableToPointsParams& p, Context
   const Columns columns(t);
   const int at[3] = {columns.find(p.x, {"x", "longitude", "lon"}, 0), columns.find(p.y, {"y", "latitude", "lat"}, 1),
                      columns.find(p.z, {"z"}, SIZE_MAX)};
-  if (at[0] < 0 || at[1] < 0) fail_usage("has fewer than two columns of numbers", "table_to_points", "name the coordinates: x=... y=...");
+  if (at[0] < 0 || at[1] < 0) fail_usage("has fewer than two numeric columns", "table_to_points", "name the coordinates: x=... y=...");
   std::vector<int64_t> rows;
   std::vector<double> xyz;
   const size_t n = t.columns[0].array.count();

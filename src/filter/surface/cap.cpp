@@ -24,7 +24,7 @@ struct BorderLoop {
   double perimeter = 0, off = 0;  // largest distance from the plane
 };
 
-// Borders as rings of points; where several meet, the first edge goes on.
+// Borders as rings of points; where several meet, the first edge continues.
 std::vector<BorderLoop> border_loops(const Edges& edges, const std::vector<Vec3>& at, size_t& open) {
   struct Side {
     uint32_t from, to, polygon;
@@ -223,11 +223,11 @@ DatasetPtr cap(const DatasetPtr& in, const CapParams& p, Context& ctx) {
   ctx.check();
   size_t open = 0;
   std::vector<BorderLoop> loops = border_loops(edges, at, open);
-  if (open > 0) ctx.warn(fmt::format("cap: {} open edges belong to no loop and stay", open));
+  if (open > 0) ctx.warn(fmt::format("cap: {} open edges do not belong to a loop and stay open", open));
   if (p.max_perimeter > 0) std::erase_if(loops, [&](const BorderLoop& l) { return l.perimeter > p.max_perimeter; });
   const double tolerance = p.tolerance * s->bounds().diagonal();
   const auto bent = size_t(std::count_if(loops.begin(), loops.end(), [&](const BorderLoop& l) { return l.off > tolerance; }));
-  if (bent > 0) ctx.info(fmt::format("cap: {} of {} holes lie in no plane and were closed in their best one", bent, loops.size()));
+  if (bent > 0) ctx.info(fmt::format("cap: {} of {} holes are not planar and were closed in their best-fitting plane", bent, loops.size()));
   if (loops.empty()) ctx.info("cap: there is no hole to close");
   const Caps caps = close_loops(loops, at, tolerance);
   return with_caps(*s, std::move(mesh), caps, p.only_cap);

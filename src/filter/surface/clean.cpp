@@ -85,7 +85,7 @@ std::vector<int64_t> good_cells(const DatasetPtr& d, const CleanParams& p, Count
 
 DatasetPtr clean(const DatasetPtr& in, const CleanParams& p, Context& ctx) {
   if (is_lattice(in->mesh())) return in;
-  if (in->as<AmrGrid>()) fail_usage("an AMR grid has nothing to clean", "clean", "take its cells first: unstructured, faces or resample");
+  if (in->as<AmrGrid>()) fail_usage("an AMR grid has nothing to clean", "clean", "convert it first: unstructured, faces or resample");
   DatasetPtr d = p.merge ? merge_points(in, {.tolerance = p.tolerance}, ctx) : in;
   if (d->as<PointCloud>()) return d;
   size_t repeats = 0;
@@ -102,7 +102,7 @@ DatasetPtr clean(const DatasetPtr& in, const CleanParams& p, Context& ctx) {
   Counts went;
   const std::vector<int64_t> cells = good_cells(d, p, went, ctx);
   const DatasetPtr r = extract_cells(d, cells, "clean");
-  ctx.info(fmt::format("clean: {} points, {} degenerate, {} flat and {} doubled cells removed", in->point_count() - r->point_count(),
+  ctx.info(fmt::format("clean: {} points, {} degenerate, {} flat and {} duplicate cells removed", in->point_count() - r->point_count(),
                        went.degenerate, went.flat, went.duplicate));
   return r;
 }

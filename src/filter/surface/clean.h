@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh without leftovers.
+// Removes unused points, degenerate and duplicate cells.
 #pragma once
 #include "base/context.h"
 #include "base/schema/schema.h"
@@ -12,16 +12,16 @@ struct CleanParams {
   bool merge = true, duplicates = true, degenerate = true, flat = false;
 };
 inline void describe(Schema& s, CleanParams& p) {
-  s("tolerance", p.tolerance, "Points up to this far apart become one; 0: only equal ones.").at_least(0).unit("length");
-  s("merge", p.merge, "Makes one of points at the same place.");
-  s("duplicates", p.duplicates, "Drops cells of the same points as an earlier cell.");
-  s("degenerate", p.degenerate, "Drops cells with too few different points, and repeated points of polygons and lines.");
-  s("flat", p.flat, "Drops also polygons without area and solids without volume, though their neighbours lean on them.");
+  s("tolerance", p.tolerance, "Merge points up to this far apart; 0: only equal ones.").at_least(0).unit("length");
+  s("merge", p.merge, "Merge points at the same position.");
+  s("duplicates", p.duplicates, "Drop cells with the same points as an earlier cell.");
+  s("degenerate", p.degenerate, "Drop cells with too few distinct points, and repeated points of polygons and lines.");
+  s("flat", p.flat, "Also drop polygons without area and solids without volume, even if neighbours depend on them.");
 }
 
-/// merge_points, then no degenerate cells, no doubled cells (in whatever order they list their points; the first stays) and no unused
-/// points. Fields are carried; the log tells what went. Grids have nothing to clean and come back as they are; point clouds are merged;
-/// AMR is refused (Error(usage)).
+/// merge_points, then no degenerate cells, no duplicate cells (in whatever order they list their points; the first stays) and no unused
+/// points. Fields are carried; the log reports what was removed. Grids have nothing to clean and come back as they are; point clouds are
+/// merged; AMR is refused (Error(usage)).
 DatasetPtr clean(const DatasetPtr& in, const CleanParams& p, Context& ctx);
 
 }  // namespace sg

@@ -75,7 +75,7 @@ void average_inside(std::vector<double>& values, const Edges& edges, const std::
     for (const auto& [p, q] : {std::pair(edges.lo[e], edges.hi[e]), std::pair(edges.hi[e], edges.lo[e])})
       if (place[p] == inside && place[q] == inside) sum[p] += sums[q].area * values[q], weight[p] += sums[q].area;
   for (size_t p = 0; p < values.size(); ++p)
-    if (weight[p] > 0) {  // a point of little area says little
+    if (weight[p] > 0) {  // a point of small area carries little information
       const double w = weight[p] / 6 + sums[p].area;
       values[p] = (sums[p].area * values[p] + sum[p] / 6) / w;
     }
@@ -96,14 +96,15 @@ void fill_border(std::vector<double>& values, const Edges& edges, const std::vec
 
 DatasetPtr curvature(const DatasetPtr& in, const CurvatureParams& p, Context& ctx) {
   if (!p.gaussian && !p.mean && !p.principal && !p.angle_defect)
-    fail_usage("nothing is asked for", "curvature", "leave gaussian or mean true");
+    fail_usage("no measure is requested", "curvature", "keep gaussian or mean true");
   const DatasetPtr s = triangle_surface(in, "curvature", ctx);
   DatasetParts out = s->parts();
   SurfaceMesh mesh = *s->as<SurfaceMesh>();
   const std::vector<Vec3> at = positions(mesh.points);
   const Edges edges = edges_of_polygons(cells_view(mesh.polygons), at.size());
   const Orientation o = orientation(cells_view(mesh.polygons), edges, at, false);
-  if (o.one_sided) ctx.warn(fmt::format("curvature: {} pieces are one-sided: the sign of the mean curvature jumps", o.one_sided));
+  if (o.one_sided)
+    ctx.warn(fmt::format("curvature: {} pieces are one-sided, so the sign of the mean curvature is not consistent", o.one_sided));
   mesh = oriented(mesh, o);
   ctx.check();
   const std::vector<PointSums> sums = sums_of(cells_view(mesh.polygons), at);

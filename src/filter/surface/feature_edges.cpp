@@ -141,7 +141,7 @@ DatasetPtr zero_set(const DatasetPtr& surface, const SilhouetteParams& p, Contex
 
 DatasetPtr silhouette(const DatasetPtr& in, const SilhouetteParams& p, Context& ctx) {
   if (!p.from && !(length(p.direction) > 0 && std::isfinite(length(p.direction))))
-    fail_usage("the direction has no length", "silhouette direction", "for example direction=0,0,1");
+    fail_usage("the direction has no length", "silhouette direction", "write e.g. direction=0,0,1");
   const DatasetPtr s = polygon_surface(in, "silhouette", ctx);
   if (!p.smooth || s->as<SurfaceMesh>()->polygons.size() == 0) return edge_silhouette(s, p);
   const DatasetPtr lines = zero_set(s, p, ctx);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edges of a surface that mean something, and its outline seen from somewhere.
+// Feature edges of a surface, and its silhouette.
 #pragma once
 #include "base/context.h"
 #include "base/schema/schema.h"
@@ -12,11 +12,11 @@ struct FeatureEdgesParams {
   double angle = 30;
 };
 inline void describe(Schema& s, FeatureEdgesParams& p) {
-  s("boundary", p.boundary, "Edges of one polygon.");
-  s("feature", p.feature, "Edges of two polygons where the surface bends by more than the angle.");
-  s("non_manifold", p.non_manifold, "Edges of three polygons and more.");
-  s("manifold", p.manifold, "All other edges of two polygons.");
-  s("angle", p.angle, "Smallest bend of a feature edge.").range(0, 180).unit("deg");
+  s("boundary", p.boundary, "Keep edges of one polygon (open edges).");
+  s("feature", p.feature, "Keep edges where two polygons meet at more than the angle.");
+  s("non_manifold", p.non_manifold, "Keep edges of three or more polygons.");
+  s("manifold", p.manifold, "Keep all other edges of two polygons.");
+  s("angle", p.angle, "Smallest angle of a feature edge.").range(0, 180).unit("deg");
 }
 
 enum EdgeKind : uint8_t { edge_boundary = 0, edge_non_manifold = 1, edge_feature = 2, edge_manifold = 3 };
@@ -33,10 +33,10 @@ struct SilhouetteParams {
   bool boundary = false;
 };
 inline void describe(Schema& s, SilhouetteParams& p) {
-  s("direction", p.direction, "Towards the viewer, for a parallel view.");
-  s("from", p.from, "Place of the viewer; then the direction is not used.").unit("length");
-  s("smooth", p.smooth, "Across the triangles, where the normals of the points turn away; else along edges between polygons.");
-  s("boundary", p.boundary, "Adds the open edges of the surface.");
+  s("direction", p.direction, "Direction towards the viewer, for parallel projection.");
+  s("from", p.from, "Position of the viewer; then 'direction' is not used.").unit("length");
+  s("smooth", p.smooth, "Draw lines across triangles, where the point normals turn away; otherwise along edges between polygons.");
+  s("boundary", p.boundary, "Add the open edges of the surface.");
 }
 
 /// Lines where the surface turns away from the viewer. smooth: the zero set of n.(viewer - x), linear in each triangle, with n the

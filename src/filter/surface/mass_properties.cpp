@@ -94,9 +94,9 @@ Row measure(const std::string& name, const DatasetPtr& in, const MassPropertiesP
       &ctx);
   const std::string whose = name.empty() ? "the surface" : fmt::format("the surface of '{}'", name);
   if (!row.closed && triangles.count > 0) {
-    const std::string what =
-        o.one_sided ? fmt::format("{} has no inside (one-sided)", whose) : fmt::format("{} is open: {} edges have no partner", whose, open);
-    if (p.must_be_closed) fail_data(what, "mass_properties", "close it first: cap");
+    const std::string what = o.one_sided ? fmt::format("{} has no inside (one-sided)", whose)
+                                         : fmt::format("{} is open: {} edges belong to one polygon only", whose, open);
+    if (p.must_be_closed) fail_data(what, "mass_properties", "close it first with cap");
     ctx.warn("mass_properties: " + what + "; no volume (cap closes holes)");
   }
   if (triangles.count == 0) ctx.info(fmt::format("mass_properties: {} has no faces", whose));

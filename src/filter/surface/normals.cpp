@@ -110,7 +110,7 @@ DatasetPtr normals(const DatasetPtr& in, const NormalsParams& p, Context& ctx) {
     if (p.orient != Facing::keep) o = orientation(cells_view(mesh.polygons), edges, at, p.orient == Facing::outward);
     else o.flip.assign(mesh.polygons.size(), 0);
     if (o.one_sided > 0) ctx.warn(fmt::format("normals: {} pieces are one-sided and cannot be oriented", o.one_sided));
-    if (o.flipped > 0) ctx.info(fmt::format("normals: {} polygons were turned round", o.flipped));
+    if (o.flipped > 0) ctx.info(fmt::format("normals: {} polygons were reversed", o.flipped));
     if (p.flip)
       for (uint8_t& f : o.flip) f ^= 1;
     o.flipped = size_t(std::count(o.flip.begin(), o.flip.end(), 1));

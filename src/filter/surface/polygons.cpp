@@ -18,7 +18,7 @@ namespace {
 
 constexpr size_t grain = 1 << 13;
 
-// A surface of other cells: `cells` tells for each new cell whose fields it has.
+// A surface of other cells: `cells` gives for each new cell the cell whose fields it has.
 DatasetPtr with_cells(const Dataset& in, SurfaceMesh mesh, const std::vector<int64_t>& cells) {
   DatasetParts out;
   for (const Field& f : in.fields())
@@ -55,13 +55,14 @@ DatasetPtr without_strips(const DatasetPtr& in) {
 }  // namespace
 
 DatasetPtr polygon_surface(const DatasetPtr& in, std::string_view who, Context& ctx) {
-  if (in->as<PointCloud>()) fail_usage("a point cloud has no faces", std::string(who), "make a surface of it first: resample and contour");
+  if (in->as<PointCloud>()) fail_usage("a point cloud has no faces", std::string(who), "make a surface first, with resample and contour");
   DatasetPtr s = surface_of(in, ctx);
   if (in->as<AmrGrid>()) s = merge_points(s, {}, ctx);
   if (s->as<SurfaceMesh>()->strips.size() > 0) s = without_strips(s);
   const SurfaceMesh& m = *s->as<SurfaceMesh>();
   if (m.polygons.size() == 0 && m.cell_count() > 0)
-    fail_usage("the mesh has only points and lines, no faces", std::string(who), "it works on surfaces, flat grids and the skin of solids");
+    fail_usage("the mesh has only points and lines, no faces", std::string(who),
+               "use a surface, a flat grid or a solid mesh (its outer surface is taken)");
   if (m.points.count() >= INT32_MAX || m.polygons.connectivity.count() >= INT32_MAX)
     fail_usage("the surface has more than 2^31 points or corners", std::string(who), "take a part of it first");
   return s;

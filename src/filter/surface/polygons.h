@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the surface helpers start from: the polygons of any mesh, their edges, and their orientation.
+// Common base of the surface operations: the polygons of any mesh, their edges, and their orientation.
 #pragma once
 #include <cstdint>
 #include <string_view>
@@ -13,7 +13,7 @@ namespace sg::surface {
 
 /// The surface of any mesh with faces: a SurfaceMesh as it is (hidden and duplicate cells removed), the skin of solids, flat grids
 /// as polygons. Strips become triangles. The patches of an AMR grid share their common points. An empty mesh stays one; throws
-/// Error(usage) naming `who` for point clouds and meshes of points and lines alone.
+/// Error(usage) naming `who` for point clouds and meshes of points and lines only.
 DatasetPtr polygon_surface(const DatasetPtr& in, std::string_view who, Context& ctx);
 
 /// The same with triangles only (tessellate_face's split), and without vertices and lines.
@@ -58,7 +58,7 @@ inline size_t previous_corner(const CellsView& polygons, size_t polygon, size_t 
 /// Vector area of each polygon: along the normal, as long as the area.
 std::vector<Vec3> vector_areas(const CellsView& polygons, const std::vector<Vec3>& at);
 
-/// How to turn polygons round so that neighbours agree.
+/// Which polygons to reverse so that neighbours agree.
 struct Orientation {
   std::vector<uint8_t> flip;        ///< per polygon
   std::vector<uint32_t> component;  ///< per polygon: pieces joined by edges of two polygons
@@ -69,7 +69,7 @@ struct Orientation {
 /// Walks over edges that two polygons share; in each component the side that most polygons face (at a tie: the first one) stays. With
 /// `outward`, closed components are turned so that the volume they enclose is positive.
 Orientation orientation(const CellsView& polygons, const Edges& edges, const std::vector<Vec3>& at, bool outward);
-/// The mesh with those polygons turned round: their first point stays the first.
+/// The mesh with those polygons reversed; their first point stays the first.
 SurfaceMesh oriented(const SurfaceMesh& mesh, const Orientation& o);
 
 }  // namespace sg::surface

@@ -309,7 +309,7 @@ double measure(const Cell& c, CellMeasure m) {
 }  // namespace
 
 DatasetPtr quality(const DatasetPtr& in, const QualityParams& p, Context& ctx) {
-  if (p.measures.empty()) fail_usage("nothing to measure", "quality measures", "for example measures=scaled_jacobian,aspect_ratio");
+  if (p.measures.empty()) fail_usage("no measure is requested", "quality measures", "write e.g. measures=scaled_jacobian,aspect_ratio");
   if (in->as<PointCloud>()) fail_usage("a point cloud has no cells to measure", "quality");
   const CellReader first(in);
   const size_t n = first.count();
@@ -331,7 +331,7 @@ DatasetPtr quality(const DatasetPtr& in, const QualityParams& p, Context& ctx) {
       },
       &ctx);
   if (const size_t bent = std::accumulate(curved.begin(), curved.end(), size_t(0)); bent > 0)
-    ctx.info(fmt::format("quality: {} curved cells were judged by their corners", bent));
+    ctx.info(fmt::format("quality: {} curved cells were assessed by their corners", bent));
   DatasetParts out = in->parts();
   for (size_t m = 0; m < values.size(); ++m) {
     const CellMeasure of = p.measures[m];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well cells are shaped.
+// Quality measures of cells.
 #pragma once
 #include <string>
 #include <vector>
@@ -26,7 +26,7 @@ constexpr auto enum_words(CellMeasure) {
 struct QualityParams {
   std::vector<CellMeasure> measures = {CellMeasure::scaled_jacobian};
 };
-inline void describe(Schema& s, QualityParams& p) { s("measures", p.measures, "What to measure, one cell field each."); }
+inline void describe(Schema& s, QualityParams& p) { s("measures", p.measures, "Measures to compute, one cell field each."); }
 
 /// Cell fields (f64) by the measures' names, after the Verdict library's definitions (Stimpson, Ernst, Knupp, Pebay, Thompson 2007):
 ///   scaled_jacobian  smallest determinant of the unit edges at a corner, 1 for the equilateral or right-angled ideal, below 0 inside out

@@ -108,7 +108,7 @@ void restore_volumes(const CellsView& polygons, const Edges& edges, const std::v
 DatasetPtr smooth(const DatasetPtr& in, const SmoothParams& p, Context& ctx) {
   if (!(p.lambda > 0) || !(p.pass_band < 1 / p.lambda))
     fail_usage(fmt::format("pass_band {} is not below 1/lambda = {}", p.pass_band, p.lambda > 0 ? 1 / p.lambda : HUGE_VAL), "smooth",
-               "lambda between 0 and 1, pass_band about 0.1");
+               "choose lambda between 0 and 1, pass_band about 0.1");
   const DatasetPtr s = polygon_surface(in, "smooth", ctx);
   SurfaceMesh mesh = *s->as<SurfaceMesh>();
   std::vector<Vec3> at = positions(mesh.points);
@@ -140,7 +140,7 @@ DatasetPtr smooth(const DatasetPtr& in, const SmoothParams& p, Context& ctx) {
   if (mesh.points.xyz.type() == ElementType::f32) write(static_cast<float*>(nullptr));
   else write(static_cast<double*>(nullptr));
   if (const Field* f = out.fields.with_role(Role::normals)) {
-    ctx.info(fmt::format("smooth: field '{}' no longer fits and is dropped", f->name));
+    ctx.info(fmt::format("smooth: field '{}' is no longer valid and is dropped", f->name));
     out.fields.remove(std::string(f->name), f->association);
   }
   out.mesh = std::move(mesh);

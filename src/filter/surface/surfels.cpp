@@ -130,7 +130,7 @@ const Field& surfel_field(const Dataset& in, const FieldName& name) {
   const Field* f = name.empty() ? in.fields().active(1) : with_context("surfels", [&] { return &in.fields().require(name.name); });
   if (!f) fail_usage("the mesh has no scalar field", "surfels", "name one: field=NAME");
   if (f->association != Association::point)
-    fail_usage(fmt::format("field '{}' does not lie on the points", f->name), "surfels", "cell_to_point makes point fields of cell fields");
+    fail_usage(fmt::format("field '{}' is not a point field", f->name), "surfels", "cell_to_point turns cell fields into point fields");
   if (f->components() != 1)
     fail_usage(fmt::format("field '{}' has {} components", f->name, f->components()), "surfels", "take its magnitude or a component first");
   return *f;
@@ -172,7 +172,7 @@ DatasetPtr assemble(const Dataset& in, const Field& field, double value, Points 
   const size_t count = normals.count();
   if (count == 0) {
     const Range r = in.range(field);
-    ctx.info(fmt::format("surfels: nothing at {} = {}; the field runs from {} to {}", field.name, short_number(value), short_number(r.lo),
+    ctx.info(fmt::format("surfels: nothing at {} = {}; the field ranges from {} to {}", field.name, short_number(value), short_number(r.lo),
                          short_number(r.hi)));
   }
   DatasetParts out;
@@ -199,14 +199,15 @@ DatasetPtr assemble(const Dataset& in, const Field& field, double value, Points 
 
 DatasetPtr surfels(const DatasetPtr& in, const SurfelsParams& p, Context& ctx) {
   if (!is_lattice(in->mesh()))
-    fail_usage(fmt::format("surfels come from grids, not from a mesh of kind {}", in->kind()), "surfels", "use contour, or resample first");
+    fail_usage(fmt::format("surfels come from grids, not from a mesh of kind {}", in->kind()), "surfels",
+               "use contour, or resample it first");
   const auto n = lattice_dims(in->mesh());
   if (std::min({n[0], n[1], n[2]}) < 2)
-    fail_usage(fmt::format("a grid of {}x{}x{} points has no solid cells", n[0], n[1], n[2]), "surfels", "flat grids have isolines");
+    fail_usage(fmt::format("a grid of {}x{}x{} points has no solid cells", n[0], n[1], n[2]), "surfels", "use isolines for flat grids");
   const Field& field = surfel_field(*in, p.field);
   const Range range = p.value ? Range() : in->range(field);
   const double value = p.value ? *p.value : range.empty() ? 0 : 0.5 * (range.lo + range.hi);
-  if (!std::isfinite(value)) fail_usage(fmt::format("{} is no isovalue", value), "surfels value", "give a finite number");
+  if (!std::isfinite(value)) fail_usage(fmt::format("{} is not a valid isovalue", value), "surfels value", "give a finite number");
   const Lattice lattice(in->mesh());
   const Array cell_ghost = in->cell_ghost().empty() ? Array() : in->cell_ghost().made_packed();
   const Array point_ghost = in->point_ghost().empty() ? Array() : in->point_ghost().made_packed();

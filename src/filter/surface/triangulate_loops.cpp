@@ -98,7 +98,7 @@ class Ring {
     for (size_t k = 0; k < n; ++k) node_.push_back({l[k], first + (k + n - 1) % n, first + (k + 1) % n});
   }
 
-  // Does the way from node a to p start inside the ring?
+  // Whether the path from node a to p starts inside the ring.
   bool locally_inside(size_t a, Place p) const {
     const Place prev = at(node_[a].before), here = at(a), next = at(node_[a].after);
     if (turn(prev, here, next) >= 0) return turn(here, p, next) <= 0 && turn(here, prev, p) <= 0;

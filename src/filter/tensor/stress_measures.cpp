@@ -17,7 +17,7 @@ std::vector<Vec3> normals_for(const DatasetPtr& in, const TensorField& t, const 
   const size_t n = t.d.size();
   const Association a = t.field.association;
   if (p.normal) {
-    if (!(length(*p.normal) > 0)) fail_usage("the normal has no direction", "traction", "any length above zero will do");
+    if (!(length(*p.normal) > 0)) fail_usage("the normal is zero or not finite", "traction", "give any vector of length above 0");
     return std::vector<Vec3>(n, normalize(*p.normal));
   }
   auto taken = [&](const Array& f) {
@@ -36,7 +36,7 @@ std::vector<Vec3> normals_for(const DatasetPtr& in, const TensorField& t, const 
   smooth.cell_normals = true;
   const DatasetPtr with = normals(make_dataset(*surface), smooth, ctx);
   const Field& f = a == Association::point ? with->fields().require("Normals", a) : with->fields().require("Cell normals", a);
-  if (f.array.count() < n) fail_usage("the surface has cells without normals", "traction", "clean it first");
+  if (f.array.count() < n) fail_usage("some cells of the surface have no normal", "traction", "apply clean first");
   return taken(f.array);
 }
 
@@ -45,18 +45,19 @@ std::vector<Vec3> normals_for(const DatasetPtr& in, const TensorField& t, const 
 void describe(Schema& s, StressMeasuresParams& p) {
   describe_tensors(s, p.tensors);
   s("measures", p.measures,
-    "von_mises; tresca (the largest less the least principal stress); mean (negative of the pressure); max_shear; principal: the three "
-    "principal stresses; directions: their unit vectors.");
+    "von_mises; tresca (largest minus smallest principal stress); mean (negative pressure); max_shear; principal: the three principal "
+    "stresses; directions: their unit vectors.");
 }
 
 void describe(Schema& s, TractionParams& p) {
   describe_tensors(s, p.tensors);
-  s("normal", p.normal, "One normal everywhere; default: the field of normals, else those of the surface.");
+  s("normal", p.normal, "One normal for all places; default: the field of normals, else those of the surface.");
 }
 
 DatasetPtr stress_measures(const DatasetPtr& in, const StressMeasuresParams& p, Context& ctx) {
   const TensorField t = read_tensors(*in, p.tensors, "stress_measures", ctx);
-  if (p.measures.empty()) fail_usage("measures names none", "stress_measures", "von_mises, tresca, mean, max_shear, principal, directions");
+  if (p.measures.empty())
+    fail_usage("measures is empty", "stress_measures", "give some of von_mises, tresca, mean, max_shear, principal, directions");
   DatasetParts parts = in->parts();
   const std::string& unit = t.field.unit;
   // Plane stress has a third principal stress of 0 across the plane.

@@ -48,7 +48,7 @@ struct Eigen3 {
 /// its entries exactly. NaN or infinity anywhere: all NaN.
 Eigen3 eigen_of(const SymTensor& d);
 
-/// Of the block xx, yy, xy alone: two values in descending order and their vectors in the plane; the third is 0 along z.
+/// Of the block xx, yy, xy only: two values in descending order and their vectors in the plane; the third is 0 along z.
 Eigen3 eigen_in_plane(const SymTensor& d);
 
 /// sum_k value[k] v_k v_k^T.

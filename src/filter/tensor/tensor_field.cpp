@@ -31,9 +31,9 @@ const Order& order_of(const Field& f, std::optional<TensorOrder> name, std::stri
   for (const Order& o : orders)
     if (o.components == n && (!name || name == o.name)) return o;
   if (!name)
-    fail_usage(fmt::format("field '{}' has {} component{}, which is no tensor", f.name, n, n == 1 ? "" : "s"), std::string(who),
+    fail_usage(fmt::format("field '{}' has {} component{}, which is not a tensor", f.name, n, n == 1 ? "" : "s"), std::string(who),
                "tensors have 9 components (rows), 6 (symmetric), 7 (with a mask), in 2D 4 or 3");
-  fail_usage(fmt::format("field '{}' has {} components, which the order '{}' does not fit", f.name, n, word_of(*name)), std::string(who),
+  fail_usage(fmt::format("field '{}' has {} components, which does not fit the order '{}'", f.name, n, word_of(*name)), std::string(who),
              "rows: 9 or 4; vtk, upper, lower, voigt, abaqus: 6; masked: 7; plane: 3");
 }
 
@@ -66,10 +66,10 @@ TensorField read_tensors(const Dataset& data, const TensorSource& source, std::s
     std::string has;
     for (const Field& g : data.fields()) has += fmt::format("{}{} ({})", has.empty() ? "" : ", ", g.name, g.components());
     fail_usage("there is no tensor field", std::string(who),
-               fmt::format("tensors have 9, 7, 6 or 4 components; here are {}", has.empty() ? "no fields" : has));
+               fmt::format("tensors have 9, 7, 6 or 4 components; fields: {}", has.empty() ? "none" : has));
   }
   if (f->association == Association::whole)
-    fail_usage(fmt::format("field '{}' lies on the whole, not on points or cells", f->name), std::string(who));
+    fail_usage(fmt::format("field '{}' belongs to the whole dataset, not to points or cells", f->name), std::string(who));
   const Order& o = order_of(*f, source.order, who);
   TensorField t{*f, o.components < 6 ? 2 : 3, std::vector<SymTensor>(f->array.count())};
   const bool masked = o.components == 7;

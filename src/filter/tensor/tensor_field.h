@@ -40,7 +40,7 @@ struct TensorField {
 ///   3  plane     xx yy xy               (2D; only when named or marked as tensors)
 /// Without a name: the field with role tensors, else the first of 9, 6, 7 or 4 components, of points before cells. Tensors whose matrix
 /// differs from its transpose by more than 1e-4 of its norm are counted in one warning; all are replaced by the mean with their transpose.
-/// Throws Error(usage) naming `who` when there is no such field, its number of components fits no tensor or not the order.
+/// Throws Error(usage) naming `who` when there is no such field, its number of components fits no tensor, or not the order.
 TensorField read_tensors(const Dataset& d, const TensorSource& source, std::string_view who, Context& ctx);
 
 /// The same on the points: a cell field is averaged to them first (cell_to_point), with a note.
@@ -54,7 +54,7 @@ TensorPlaces tensor_places(const Field& f, std::optional<TensorOrder> order, std
 /// The field that read_tensors takes; null when there is none.
 const Field* find_tensors(const Dataset& d, const FieldName& name);
 
-/// A field of `components` numbers a tuple beside the tensors; f(i, double*) fills one. Parallel.
+/// A field with `components` numbers per tuple on the same points or cells as the tensors; f(i, double*) fills one. Parallel.
 template <class F>
 Field field_beside(const TensorField& t, std::string name, int components, std::string unit, Role role, const Context& ctx, F&& f);
 

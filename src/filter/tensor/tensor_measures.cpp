@@ -67,7 +67,7 @@ std::string unit_of(TensorMeasure m, const std::string& unit) {
 
 void describe(Schema& s, TensorEigenParams& p) {
   describe_tensors(s, p.tensors);
-  s("vectors", p.vectors, "Which eigenvectors to add beside the eigenvalues.");
+  s("vectors", p.vectors, "Eigenvectors to add besides the eigenvalues.");
 }
 
 void describe(Schema& s, TensorMeasuresParams& p) {
@@ -77,19 +77,20 @@ void describe(Schema& s, TensorMeasuresParams& p) {
     "linear, planar, spherical (Westin); trace; determinant; norm.");
   s("westin", p.westin,
     "Normalisation of cl, cp, cs. trace: (l1-l2)/t, 2(l2-l3)/t, 3 l3/t with t = l1+l2+l3; largest: (l1-l2)/l1, (l2-l3)/l1, l3/l1.");
-  s("negative", p.negative, "What becomes of negative eigenvalues: kept, clipped to 0, their absolute value, or nan for the whole tensor.");
+  s("negative", p.negative,
+    "Treatment of negative eigenvalues: keep them, clip to 0, take the absolute value, or set the whole tensor to nan.");
 }
 
 void describe(Schema& s, DirectionColorsParams& p) {
   describe_tensors(s, p.tensors);
-  s("eigenvector", p.eigenvector, "Which eigenvector gives the direction; 1 belongs to the largest eigenvalue.").range(1, 3);
-  s("weight", p.weight, "What darkens the colour: FA, the linear measure cl, or nothing.");
-  s("gamma", p.gamma, "The weight is taken to the power 1/gamma: larger is brighter.").positive();
+  s("eigenvector", p.eigenvector, "Eigenvector that gives the direction; 1 belongs to the largest eigenvalue.").range(1, 3);
+  s("weight", p.weight, "What the brightness shows: FA, the linear measure cl, or nothing.");
+  s("gamma", p.gamma, "The brightness is raised to the power 1/gamma: larger is brighter.").positive();
 }
 
 void warn_negative(size_t count, size_t all, const TensorField& t, std::string_view who, std::string_view what_happens, Context& ctx) {
   if (count > 0)
-    ctx.warn(fmt::format("{}: {} of {} tensors of '{}' have negative eigenvalues, which diffusion cannot have; {}", who, count, all,
+    ctx.warn(fmt::format("{}: {} of {} tensors of '{}' have negative eigenvalues, which are impossible for diffusion; {}", who, count, all,
                          t.field.name, what_happens));
 }
 
@@ -133,7 +134,8 @@ DatasetPtr tensor_eigen(const DatasetPtr& in, const TensorEigenParams& p, Contex
 
 DatasetPtr tensor_measures(const DatasetPtr& in, const TensorMeasuresParams& p, Context& ctx) {
   const TensorField t = read_tensors(*in, p.tensors, "tensor_measures", ctx);
-  if (p.measures.empty()) fail_usage("measures names none", "tensor_measures", "FA, MD, RA, mode, cl, cp, cs, trace, determinant, norm");
+  if (p.measures.empty())
+    fail_usage("measures is empty", "tensor_measures", "give some of FA, MD, RA, mode, cl, cp, cs, trace, determinant, norm");
   const bool by_trace = p.westin == WestinNorm::trace;
   bool diffusion = false;
   for (const TensorMeasure m : p.measures) {
@@ -141,7 +143,7 @@ DatasetPtr tensor_measures(const DatasetPtr& in, const TensorMeasuresParams& p, 
     if (t.dimension == 2 &&
         (m == TensorMeasure::RA || m == TensorMeasure::mode || m == TensorMeasure::cl || m == TensorMeasure::cp || m == TensorMeasure::cs))
       fail_usage(fmt::format("'{}' is not defined for the 2D tensors of '{}'", word_of(m), t.field.name), "tensor_measures",
-                 "2D: FA, MD, trace, determinant, norm");
+                 "in 2D: FA, MD, trace, determinant, norm");
   }
   std::vector<Eigen3> eigen(t.d.size());
   const size_t negative = parallel_reduce(
@@ -158,7 +160,7 @@ DatasetPtr tensor_measures(const DatasetPtr& in, const TensorMeasuresParams& p, 
       },
       [](size_t a, size_t b) { return a + b; }, &ctx);
   warn_negative(negative, t.d.size(), t, "tensor_measures",
-                p.negative == NegativeEigenvalues::keep ? "kept (FA may exceed 1); negative=clip, absolute or nan treats them"
+                p.negative == NegativeEigenvalues::keep ? "they are kept (FA may exceed 1); negative=clip, absolute or nan handles them"
                                                         : fmt::format("negative={}", word_of(p.negative)),
                 ctx);
   std::vector<Field> fields;
@@ -178,7 +180,7 @@ void direction_color(Vec3 v, double weight, uint8_t* rgb) {
 
 DatasetPtr direction_colors(const DatasetPtr& in, const DirectionColorsParams& p, Context& ctx) {
   const TensorField t = read_tensors(*in, p.tensors, "direction_colors", ctx);
-  if (p.eigenvector > t.dimension) fail_usage("a 2D tensor has two eigenvectors", "direction_colors", "eigenvector 1 or 2");
+  if (p.eigenvector > t.dimension) fail_usage("a 2D tensor has two eigenvectors", "direction_colors", "choose eigenvector 1 or 2");
   uint8_t* out = nullptr;
   Array a = Array::make<uint8_t>(t.d.size(), 3, &out);
   parallel_for(

@@ -55,8 +55,8 @@ void describe(Schema& s, TensorMeasuresParams& p);
 
 /// Adds one field per measure, named like it (see tensor_shape.h for the formulas): FA, MD, RA, mode, cl, cp, cs, trace, determinant, norm.
 /// Diffusion has no negative eigenvalues: when FA, MD, RA, mode or the Westin measures are asked for and some are negative (below -1e-6 of
-/// the largest), one warning counts them, and `negative` says what becomes of such tensors: keep, clip (to 0), absolute, nan. 2D tensors
-/// have FA, MD, trace, determinant and norm in the plane. Throws Error(usage) for others of a 2D field.
+/// the largest), one warning counts them, and `negative` determines the treatment of such tensors: keep, clip (to 0), absolute, nan. 2D
+/// tensors have FA, MD, trace, determinant and norm in the plane. Throws Error(usage) for others of a 2D field.
 DatasetPtr tensor_measures(const DatasetPtr& in, const TensorMeasuresParams& p, Context& ctx);
 
 enum class ColorWeight { FA, cl, none };

@@ -42,8 +42,7 @@ void take_logarithms(TensorField& t, std::string_view who, Context& ctx) {
       },
       [](size_t a, size_t b) { return a + b; }, &ctx);
   if (raised > 0)
-    ctx.warn(fmt::format("{}: {} of {} tensors have no logarithm: their eigenvalues below {:.3g} count as that", who, raised, t.d.size(),
-                         floor));
+    ctx.warn(fmt::format("{}: {} of {} tensors have no logarithm: their eigenvalues are raised to {:.3g}", who, raised, t.d.size(), floor));
 }
 
 // Eigenvectors in the plane across `n`, then n itself.
@@ -86,8 +85,8 @@ TensorSampler::TensorSampler(const DatasetPtr& dataset, const TensorSource& sour
                              Context& ctx)
     : dataset_(dataset), tensors_(read_point_tensors(dataset, source, who, ctx)), dimension_(dimension_of_cells(dataset)) {
   if (dimension_ < 2)
-    fail_usage(fmt::format("there is nothing between the points of a {} mesh whose cells have dimension {}", dataset->kind(), dimension_),
-               who, "a grid, or cells of surfaces or volume");
+    fail_usage(fmt::format("a {} mesh with cells of dimension {} has nothing between its points", dataset->kind(), dimension_), who,
+               "use a grid, or a mesh with surface or volume cells");
   logarithmic_ = interpolation == TensorInterpolation::log;
   if (logarithmic_) take_logarithms(tensors_, who, ctx);
   locator_ = std::make_unique<const CellLocator>(dataset, ctx);

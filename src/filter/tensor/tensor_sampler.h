@@ -11,8 +11,8 @@
 namespace sg {
 
 /// Shared and immutable. Between the points tensors are interpolated by the cells' shape functions: component by component, or (log) their
-/// logarithms, which keeps determinants monotone and tensors positive (log-Euclidean; Arsigny et al. 2006). On meshes of surfaces a 3D
-/// tensor counts by its part in the surface: two eigenvectors lie in it, the third is its normal.
+/// logarithms, which keeps determinants monotone and tensors positive (log-Euclidean; Arsigny et al. 2006). On surface meshes only a 3D
+/// tensor's part in the surface counts: two eigenvectors lie in it, the third is its normal.
 class TensorSampler {
  public:
   /// For log, eigenvalues below 1e-6 of the largest of the field count as that, with one warning.

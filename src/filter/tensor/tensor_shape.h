@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers that tell the shape of a tensor from its eigenvalues, in descending order: l[0] >= l[1] >= l[2].
+// Measures of a tensor's shape from its eigenvalues, in descending order: l[0] >= l[1] >= l[2].
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 namespace sg {
 
 namespace {
-// Columns as many as keep the list of buckets small beside the items, and the row and column that are looked into short.
+// As many columns as keep the list of buckets small relative to the items, and the row and column to be searched short.
 size_t columns_for(size_t items) { return std::clamp<size_t>(size_t(std::cbrt(double(items)) * 2), 1, 512); }
 }  // namespace
 

@@ -70,7 +70,7 @@ Spans cell_spans(const Dataset& mesh, const Array& samples, size_t group, const 
       return make(cells.count, group, context, length_of_cells, [&](size_t c, Bounds& b) { add(cells, c, b); });
     }
     const auto* m = mesh.as<SurfaceMesh>();
-    if (!m) fail_internal("cell_spans takes unstructured and surface meshes");
+    if (!m) fail_internal("cell_spans works on unstructured and surface meshes only");
     const CellsView kinds[4] = {cells_view(m->vertices), cells_view(m->lines), cells_view(m->polygons), cells_view(m->strips)};
     return make(mesh.cell_count(), group, context, length_of_cells, [&](size_t c, Bounds& b) {
       size_t kind = 0;

@@ -47,31 +47,31 @@ void take_format(std::string_view& line, const Fab& f, OpenFab& o) {
       --i;
     }
   }
-  if (i == line.size() || n.size() < 10 || n[0] != 8) fail_fab(f, "the format of the numbers is not understood");
+  if (i == line.size() || n.size() < 10 || n[0] != 8) fail_fab(f, "the number format is not recognised");
   const int64_t bits = n[1], order = n[9];
   if ((bits != 64 && bits != 32) || order != bits / 8 || int64_t(n.size()) != 10 + order)
-    fail_fab(f, fmt::format("numbers of {} bits are not read", bits));
+    fail_fab(f, fmt::format("numbers of {} bits are not supported", bits));
   o.bytes = size_t(order);
   bool up = true, down = true;
   for (int64_t k = 0; k < order; ++k) up = up && n[size_t(10 + k)] == k + 1, down = down && n[size_t(10 + k)] == order - k;
-  if (!up && !down) fail_fab(f, "a mixed byte order is not read");
+  if (!up && !down) fail_fab(f, "a mixed byte order is not supported");
   o.big_endian = up;
   line.remove_prefix(i + 1);
 }
 
 OpenFab open_fab(const MappedFile& file, const Fab& f, const Box& box, int dimension, size_t components) {
   OpenFab o;
-  if (f.offset >= file.size()) fail_fab(f, fmt::format("is due, the file has {} bytes", file.size()));
+  if (f.offset >= file.size()) fail_fab(f, fmt::format("was expected, but the file has {} bytes", file.size()));
   std::string_view text = file.text().substr(f.offset);
   const size_t end = text.substr(0, 4096).find('\n');
-  if (end == std::string_view::npos || !text.starts_with("FAB")) fail_fab(f, "no FAB begins here");
+  if (end == std::string_view::npos || !text.starts_with("FAB")) fail_fab(f, "expected a FAB here");
   std::string_view line = text.substr(3, end - 3);
   take_format(line, f, o);
   Box have;
-  if (!take_box(line, dimension, have)) fail_fab(f, "the box of the FAB is not understood");
+  if (!take_box(line, dimension, have)) fail_fab(f, "the box of the FAB is not valid");
   const auto n = parse_int(line);
   if (!n || *n < 0 || uint64_t(*n) != components)
-    fail_fab(f, fmt::format("'{}' components, {} are due", trim(line).substr(0, 20), components));
+    fail_fab(f, fmt::format("'{}' components, expected {}", trim(line).substr(0, 20), components));
   uint64_t need = o.bytes;
   if (!multiply(need, components, need)) fail_fab(f, "too many components");
   for (size_t a = 0; a < 3; ++a) {
@@ -80,7 +80,7 @@ OpenFab open_fab(const MappedFile& file, const Fab& f, const Box& box, int dimen
     o.first[a] = size_t(box.lo[a] - have.lo[a]);
     if (!multiply(need, o.cells[a], need)) fail_fab(f, "the box of the FAB is too large");
   }
-  if (need > text.size() - end - 1) fail_fab(f, fmt::format("the FAB needs {} bytes, {} are left", need, text.size() - end - 1));
+  if (need > text.size() - end - 1) fail_fab(f, fmt::format("the FAB needs {} bytes, but {} are left", need, text.size() - end - 1));
   o.data = file.data() + f.offset + end + 1;
   return o;
 }
@@ -147,8 +147,8 @@ AmrGrid make_grid(const Plotfile& p, const std::string& path) {
       const auto n = patch.cells();
       uint64_t c = 1, q = 1;
       for (size_t a = 0; a < size_t(p.dimension); ++a)
-        if (!multiply(c, n[a], c) || !multiply(q, n[a] + 1, q)) fail_data("a box is too large to be counted", path);
-      if (!add(cells, c, cells) || !add(points, q, points)) fail_data("the boxes are too large to be counted", path);
+        if (!multiply(c, n[a], c) || !multiply(q, n[a] + 1, q)) fail_data("a box has too many cells to count", path);
+      if (!add(cells, c, cells) || !add(points, q, points)) fail_data("the boxes have too many cells to count", path);
       level.patches.push_back(patch);
     }
     g.levels.push_back(std::move(level));
@@ -171,7 +171,7 @@ std::vector<double> times_amrex(const std::string& path, const ReadOptions&, Con
 Data read_amrex(const std::string& path, const ReadOptions& options, Context& context) {
   const Plotfile p = read_headers(path);
   chosen_step({p.time}, options, path);  // refuses a step that is not there
-  if (p.names.empty()) fail_data("names no variable", path + "/Header");
+  if (p.names.empty()) fail_data("names no variables", path + "/Header");
   AmrGrid g = make_grid(p, path + "/Header");
   const size_t cells = cell_count(g);
 
@@ -179,7 +179,7 @@ Data read_amrex(const std::string& path, const ReadOptions& options, Context& co
   for (size_t i = 0; i < p.names.size(); ++i)
     if (is_wanted(options.fields, p.names[i])) wanted.push_back(i);
 
-  // All FABs are found and measured before memory is asked for: their bytes back every cell.
+  // All FABs are found and measured before memory is allocated: their bytes back every cell.
   struct Work {
     OpenFab fab;
     AmrGrid::Patch patch;

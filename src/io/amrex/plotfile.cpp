@@ -26,7 +26,7 @@ class Text {
     fail_data(fmt::format("line {}: {}", line_number(file_.text(), file_.size() - rest_.size()), problem), file_.path());
   }
   std::string_view line(std::string_view what) {
-    if (rest_.empty()) fail(fmt::format("ends where {} is due", what));
+    if (rest_.empty()) fail(fmt::format("ends where {} was expected", what));
     const size_t end = std::min(rest_.find('\n'), rest_.size());
     const std::string_view l = trim(rest_.substr(0, end));
     rest_.remove_prefix(std::min(end + 1, rest_.size()));
@@ -37,7 +37,7 @@ class Text {
     while (b < rest_.size() && is_space(rest_[b])) ++b;
     size_t e = b;
     while (e < rest_.size() && !is_space(rest_[e])) ++e;
-    if (b == e) fail(fmt::format("ends where {} is due", what));
+    if (b == e) fail(fmt::format("ends where {} was expected", what));
     const std::string_view w = rest_.substr(b, e - b);
     rest_.remove_prefix(e);
     return w;
@@ -45,13 +45,13 @@ class Text {
   double real(std::string_view what) {
     const std::string_view w = word(what);
     const auto v = parse_double(w);
-    if (!v) fail(fmt::format("'{}' is no number ({})", w.substr(0, 40), what));
+    if (!v) fail(fmt::format("'{}' is not a number ({})", w.substr(0, 40), what));
     return *v;
   }
   int64_t integer(std::string_view what, int64_t least, int64_t most) {
     const std::string_view w = word(what);
     const auto v = parse_int(w);
-    if (!v || *v < least || *v > most) fail(fmt::format("'{}' where {} is due ({} to {})", w.substr(0, 40), what, least, most));
+    if (!v || *v < least || *v > most) fail(fmt::format("found '{}' where {} was expected ({} to {})", w.substr(0, 40), what, least, most));
     return *v;
   }
   size_t size() const { return file_.size(); }
@@ -72,7 +72,7 @@ void take_ratios(Text& t, Plotfile& p) {
     if (line.starts_with('(')) {
       const size_t end = line.find(')');
       const auto parts = split(line.substr(1, std::min(end, line.size()) - 1), ',');
-      if (end == std::string_view::npos || int(parts.size()) != p.dimension) t.fail("a refinement ratio is no (x,y,z)");
+      if (end == std::string_view::npos || int(parts.size()) != p.dimension) t.fail("a refinement ratio is not of the form (x,y,z)");
       for (size_t a = 0; a < parts.size(); ++a) r[a] = int(parse_int(parts[a]).value_or(0));
       line.remove_prefix(end + 1);
     } else {
@@ -82,7 +82,7 @@ void take_ratios(Text& t, Plotfile& p) {
       line.remove_prefix(size_t(w[0].data() - line.data()) + w[0].size());
     }
     for (size_t a = 0; a < size_t(p.dimension); ++a)
-      if (r[a] < 1 || r[a] > 1024) t.fail(fmt::format("a refinement ratio of {}", r[a]));
+      if (r[a] < 1 || r[a] > 1024) t.fail(fmt::format("a refinement ratio is {}", r[a]));
   }
 }
 
@@ -91,7 +91,7 @@ void take_domains(Text& t, Plotfile& p) {
     std::string_view rest = t.rest();
     Box b;
     while (!rest.empty() && is_space(rest[0])) rest.remove_prefix(1);
-    if (!take_box(rest, p.dimension, b)) t.fail(fmt::format("the domain of level {} is due, like ((0,0,0) (7,7,7) (0,0,0))", l));
+    if (!take_box(rest, p.dimension, b)) t.fail(fmt::format("expected the domain of level {}, like ((0,0,0) (7,7,7) (0,0,0))", l));
     t.drop(rest);
     if (l == 0) p.domain = b;
   }
@@ -107,20 +107,20 @@ void read_cell_header(const std::string& path, const Plotfile& p, Level& level, 
   (void)ghosts;
   const std::string_view count = t.word("'(boxes 0'");
   const auto n = count.starts_with('(') ? parse_int(count.substr(1)) : std::nullopt;
-  if (!n || *n < 0 || uint64_t(*n) != boxes) t.fail(fmt::format("'{}' where '({} 0' is due", count.substr(0, 40), boxes));
+  if (!n || *n < 0 || uint64_t(*n) != boxes) t.fail(fmt::format("found '{}' where '({} 0' was expected", count.substr(0, 40), boxes));
   t.word("0");
   for (size_t b = 0; b < boxes; ++b) {
     std::string_view rest = t.rest();
     while (!rest.empty() && is_space(rest[0])) rest.remove_prefix(1);
     Box box;
-    if (!take_box(rest, p.dimension, box)) t.fail(fmt::format("box {} is due, like ((0,0,0) (7,7,7) (0,0,0))", b));
+    if (!take_box(rest, p.dimension, box)) t.fail(fmt::format("expected box {}, like ((0,0,0) (7,7,7) (0,0,0))", b));
     t.drop(rest);
     level.boxes.push_back(box);
   }
-  if (t.word("')'") != ")") t.fail("more boxes than were promised");
+  if (t.word("')'") != ")") t.fail("has more boxes than announced");
   if (uint64_t(t.integer("the number of FABs", 0, INT64_MAX)) != boxes) t.fail(fmt::format("{} boxes need as many FABs", boxes));
   for (size_t b = 0; b < boxes; ++b) {
-    if (t.word("'FabOnDisk:'") != "FabOnDisk:") t.fail("'FabOnDisk: FILE BYTE' is due");
+    if (t.word("'FabOnDisk:'") != "FabOnDisk:") t.fail("expected 'FabOnDisk: FILE BYTE'");
     Fab f;
     f.file = named_file(path, t.word("a file name"));
     f.offset = uint64_t(t.integer("a byte", 0, INT64_MAX));
@@ -163,7 +163,7 @@ Plotfile read_headers(const std::string& folder) {
   t.line("the end of the line");
   for (int64_t i = 0; i < names; ++i) p.names.emplace_back(t.line("the name of a variable"));
   p.dimension = int(t.integer("the dimension", 1, 3));
-  if (p.dimension == 1) t.fail("plotfiles of one dimension are not read");
+  if (p.dimension == 1) t.fail("plotfiles of one dimension are not supported");
   p.time = t.real("the time");
   const int64_t finest = t.integer("the finest level", 0, 63);
   p.levels.resize(size_t(finest) + 1);
@@ -176,7 +176,7 @@ Plotfile read_headers(const std::string& folder) {
   for (Level& l : p.levels)
     for (int a = 0; a < p.dimension; ++a) {
       l.spacing[a] = t.real("the spacing");
-      if (!(l.spacing[a] > 0) || !std::isfinite(l.spacing[a])) t.fail(fmt::format("a spacing of {}", l.spacing[a]));
+      if (!(l.spacing[a] > 0) || !std::isfinite(l.spacing[a])) t.fail(fmt::format("a spacing is {}", l.spacing[a]));
     }
   const int64_t coordinates = t.integer("the kind of coordinates", 0, 2);
   (void)coordinates;  // 1 cylindrical (r, z), 2 spherical: drawn as they are counted

@@ -69,8 +69,8 @@ void GzipStream::read(std::byte* to, size_t bytes) {
     const size_t n = state_->some(to ? to + got : rubbish.get(), want);
     got += n;
     if (n < want) {
-      if (state_->damaged) fail_data(fmt::format("the packed data are damaged or cut off near byte {}", state_->at), state_->where);
-      fail_data(fmt::format("unpacks to {} bytes, {} more are needed", state_->made, bytes - got), state_->where);
+      if (state_->damaged) fail_data(fmt::format("the compressed data is damaged or truncated near byte {}", state_->at), state_->where);
+      fail_data(fmt::format("decompresses to {} bytes; {} more are needed", state_->made, bytes - got), state_->where);
     }
   }
 }

@@ -22,7 +22,7 @@ constexpr size_t slack = size_t(64) << 20;
 struct Decompressor {
   libdeflate_decompressor* d = libdeflate_alloc_decompressor();
   Decompressor() {
-    if (!d) fail_data("not enough memory to unpack");
+    if (!d) fail_data("not enough memory to decompress");
   }
   ~Decompressor() { libdeflate_free_decompressor(d); }
   Decompressor(const Decompressor&) = delete;
@@ -54,7 +54,7 @@ struct Bunzip {
   bool open = false;
   void start() {
     stop();
-    if (BZ2_bzDecompressInit(&s, 0, 0) != BZ_OK) fail_data("not enough memory to unpack");
+    if (BZ2_bzDecompressInit(&s, 0, 0) != BZ_OK) fail_data("not enough memory to decompress");
     open = true;
   }
   void stop() {
@@ -104,13 +104,14 @@ void check_ratio(Codec codec, size_t packed, size_t need, const std::string& whe
   // deflate codes at most 258 bytes in 2 bits; a bzip2 block of some 40 bytes holds at most 900000 run-coded bytes (45.9 MB).
   const size_t ratio = codec == Codec::bzip2 ? size_t(1) << 21 : 1032;
   if (need / ratio > packed + 64)
-    fail_data(fmt::format("{} bytes of {} data cannot hold the {} bytes that the header promises", packed, name(codec), need), where);
+    fail_data(fmt::format("{} bytes of {} data cannot hold the {} bytes announced by the header", packed, name(codec), need), where);
 }
 
 void unpack(Codec codec, std::span<const std::byte> in, Window window, std::byte* out, size_t need, const std::string& where) {
-  auto damaged = [&] { fail_data(fmt::format("the {} data are damaged or cut off", name(codec)), where); };
+  auto damaged = [&] { fail_data(fmt::format("the {} data is damaged or truncated", name(codec)), where); };
   auto too_short = [&](size_t got) {
-    fail_data(fmt::format("unpacks to {} bytes, {} are needed", got, window.from_end ? need + window.after : window.skip + need), where);
+    fail_data(fmt::format("decompresses to {} bytes, but {} are needed", got, window.from_end ? need + window.after : window.skip + need),
+              where);
   };
   size_t got = 0;
   if (window.skip == 0 && !window.from_end) {
@@ -132,7 +133,7 @@ void unpack(Codec codec, std::span<const std::byte> in, Window window, std::byte
     if (r == Outcome::damaged) damaged();
     if (r == Outcome::full && room < limit) continue;
     if (r == Outcome::full)
-      fail_data(fmt::format("unpacks to more than {}, though the header promises {}", human_bytes(limit), human_bytes(need)), where);
+      fail_data(fmt::format("decompresses to more than {}, though the header announces {}", human_bytes(limit), human_bytes(need)), where);
     size_t begin = window.skip;
     if (window.from_end) {
       if (got < need) too_short(got);

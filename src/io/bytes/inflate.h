@@ -22,7 +22,7 @@ struct Window {
 /// damaged, too short or absurdly long streams.
 void unpack(Codec codec, std::span<const std::byte> in, Window window, std::byte* out, size_t need, const std::string& where);
 
-/// Throws Error(data) when `packed` bytes can by no means unpack to `need` bytes: a check before memory is asked for.
+/// Throws Error(data) when `packed` bytes can by no means unpack to `need` bytes: a check before memory is allocated.
 void check_ratio(Codec codec, size_t packed, size_t need, const std::string& where);
 
 /// One gzip member.

@@ -60,13 +60,13 @@ class Parser {
       } else if (section == "FILE") {
         file_set(key, value);
       } else if (section.empty()) {
-        fail("stands before the first section", "the first word of a case file is FORMAT");
+        fail("precedes the first section", "the first word of a case file is FORMAT");
       } else if (list_once_ != section) {
         case_.left_out.push_back("section " + section), list_once_ = section;
       }
     }
     number_ = 0;
-    if (!gold) fail("says nothing of its type", "a section FORMAT with 'type: ensight gold'");
+    if (!gold) fail("does not state its type", "expected a section FORMAT with 'type: ensight gold'");
     finish();
     return std::move(case_);
   }
@@ -79,7 +79,8 @@ class Parser {
   bool check_type(std::string_view value) const {
     std::string type;
     for (std::string_view w : words(value)) type += (type.empty() ? "" : " ") + to_lower(w);
-    if (type != "ensight gold") fail(fmt::format("type '{}' is not read", value), "EnSight Gold is: 'type: ensight gold'");
+    if (type != "ensight gold")
+      fail(fmt::format("type '{}' is not supported", value), "only EnSight Gold is supported: 'type: ensight gold'");
     return true;
   }
 
@@ -89,7 +90,7 @@ class Parser {
     for (int k = 0; k < 2 && w.size() > needed; ++k) {
       const auto n = parse_int(w.front());
       if (!n) break;
-      if (*n < 1 || *n > 1'000'000) fail(fmt::format("'{}' is no number of a set", w.front()));
+      if (*n < 1 || *n > 1'000'000) fail(fmt::format("'{}' is not a set number", w.front()));
       *sets[k] = int(*n);
       w.erase(w.begin());
     }
@@ -111,18 +112,18 @@ class Parser {
     }
     FileRef ref;
     take_sets(w, 1, ref);
-    if (w.empty()) fail(fmt::format("'{}:' names no file", key));
+    if (w.empty()) fail(fmt::format("'{}:' does not name a file", key));
     ref.name = w[0];
     if (key == "model") case_.model = ref;
     else case_.measured = ref;
   }
 
   void variable(const std::string& key, std::string_view value) {
-    if (key.empty() && !case_.variables.empty() && case_.variables.back().kind == VariableKind::constant) {  // a long list goes on
+    if (key.empty() && !case_.variables.empty() && case_.variables.back().kind == VariableKind::constant) {  // a long list continues
       for (std::string_view w : words(value)) case_.variables.back().constants.push_back(number(w));
       return;
     }
-    if (key.empty()) fail("is no variable", "for example 'scalar per node: pressure p.****'");
+    if (key.empty()) fail("is not a variable", "write e.g. 'scalar per node: pressure p.****'");
     Variable v;
     const std::vector<std::string_view> k = words(key);
     auto has = [&](std::string_view word) { return std::find(k.begin(), k.end(), word) != k.end(); };
@@ -137,7 +138,7 @@ class Parser {
     else if (has("tensor")) v.kind = has("asym") || has("asymm") ? VariableKind::tensor_asym : VariableKind::tensor_symm;
     else return void(case_.left_out.push_back("variable '" + key + "'"));
     take_sets(w, v.complex ? 3 : 2, v.file);
-    if (w.size() < (v.complex ? 3u : 2u)) fail("a variable needs a name and a file", "for example 'scalar per node: pressure p.****'");
+    if (w.size() < (v.complex ? 3u : 2u)) fail("a variable needs a name and a file", "write e.g. 'scalar per node: pressure p.****'");
     v.name = w[0];
     v.file.name = w[1];
     if (v.complex) v.imaginary = v.file, v.imaginary.name = w[2];
@@ -153,7 +154,7 @@ class Parser {
     if (from_file) {
       v.file.name = w[1];
       read_list(w[1], v.constants);
-      if (v.constants.empty()) fail(fmt::format("'{}' holds no values", w[1]));
+      if (v.constants.empty()) fail(fmt::format("'{}' has no values", w[1]));
     } else {
       for (size_t i = 1; i < w.size(); ++i) v.constants.push_back(number(w[i]));
     }
@@ -162,12 +163,13 @@ class Parser {
 
   double number(std::string_view word) const {
     const auto v = parse_double(word);
-    if (!v) fail(fmt::format("'{}' is no number", word.substr(0, 40)));
+    if (!v) fail(fmt::format("'{}' is not a number", word.substr(0, 40)));
     return *v;
   }
   int64_t integer(std::string_view word) const {
     const auto v = parse_int(word);
-    if (!v || *v < -most_steps * 100 || *v > most_steps * 100) fail(fmt::format("'{}' is no whole number of use here", word.substr(0, 40)));
+    if (!v || *v < -most_steps * 100 || *v > most_steps * 100)
+      fail(fmt::format("'{}' is not a valid whole number here", word.substr(0, 40)));
     return *v;
   }
 
@@ -207,7 +209,7 @@ class Parser {
       for (std::string_view w : words(value)) list_->push_back(number(w));
     else if (numbers_)
       for (std::string_view w : words(value)) numbers_->push_back(integer(w));
-    else if (key.empty()) fail(fmt::format("'{}' belongs to nothing", value.substr(0, 40)));
+    else if (key.empty()) fail(fmt::format("'{}' does not belong to anything", value.substr(0, 40)));
   }
 
   void file_set(const std::string& key, std::string_view value) {
@@ -220,19 +222,19 @@ class Parser {
     if (key == "filename index") index_ = integer(value);
     else if (key == "number of steps") {
       const int64_t n = integer(value);
-      if (n < 1 || n > most_steps) fail(fmt::format("{} steps in a file", n));
+      if (n < 1 || n > most_steps) fail(fmt::format("has {} steps in a file", n));
       case_.file_sets.back().index.push_back(index_);
       case_.file_sets.back().steps.push_back(n);
     } else fail(fmt::format("unknown key '{}' in section FILE", key));
   }
 
   void finish() {
-    if (case_.model.name.empty()) fail("names no geometry", "a section GEOMETRY with 'model: FILE'");
+    if (case_.model.name.empty()) fail("does not name a geometry", "expected a section GEOMETRY with 'model: FILE'");
     for (size_t i = 0; i < case_.time_sets.size(); ++i) {
       TimeSet& t = case_.time_sets[i];
       const std::string what = fmt::format("time set {}: ", t.number);
       if (count_[i] >= 0 && uint64_t(count_[i]) > t.times.size())
-        fail(what + fmt::format("{} steps, but {} time values", count_[i], t.times.size()));
+        fail(what + fmt::format("has {} steps, but {} time values", count_[i], t.times.size()));
       if (count_[i] >= 0) t.times.resize(size_t(count_[i]));
       if (t.times.empty()) fail(what + "has no time values");
       for (const double v : t.times)
@@ -240,14 +242,14 @@ class Parser {
       if (t.file_numbers.empty() && start_[i])
         for (size_t k = 0; k < t.times.size(); ++k) t.file_numbers.push_back(*start_[i] + int64_t(k) * step_[i]);
       if (!t.file_numbers.empty() && t.file_numbers.size() < t.times.size())
-        fail(what + fmt::format("{} file numbers for {} steps", t.file_numbers.size(), t.times.size()));
+        fail(what + fmt::format("has {} file numbers for {} steps", t.file_numbers.size(), t.times.size()));
     }
     auto check = [&](FileRef& ref) {
       // A pattern without a set uses the only one there is.
       if (ref.time_set == 0 && ref.name.find('*') != std::string::npos && !case_.time_sets.empty())
         ref.time_set = case_.time_sets[0].number;
       if (ref.time_set && !find_time_set(case_, ref.time_set))
-        fail(fmt::format("'{}' uses time set {}, which is not there", ref.name, ref.time_set));
+        fail(fmt::format("'{}' uses time set {}, which does not exist", ref.name, ref.time_set));
       if (ref.name.find('*') != std::string::npos && !ref.time_set) fail(fmt::format("'{}' has a pattern but no time set", ref.name));
     };
     check(case_.model);
@@ -321,7 +323,7 @@ FileStep file_at(const CaseFile& c, const FileRef& ref, std::optional<double> ti
   const FileSet* files = nullptr;
   for (const FileSet& f : c.file_sets)
     if (ref.file_set && f.number == ref.file_set) files = &f;
-  if (ref.file_set && !files) fail_data(fmt::format("'{}' uses file set {}, which is not there", ref.name, ref.file_set), c.path);
+  if (ref.file_set && !files) fail_data(fmt::format("'{}' uses file set {}, which does not exist", ref.name, ref.file_set), c.path);
   if (files) {
     auto left = int64_t(step);
     size_t k = 0;
@@ -332,7 +334,7 @@ FileStep file_at(const CaseFile& c, const FileRef& ref, std::optional<double> ti
   } else if (set && name.find('*') != std::string::npos) {
     if (set->file_numbers.empty())
       fail_data(fmt::format("time set {} gives no numbers for '{}'", set->number, name), c.path,
-                "'filename start number:' and 'filename increment:', or 'filename numbers:'");
+                "expected 'filename start number:' and 'filename increment:', or 'filename numbers:'");
     name = with_number(name, set->file_numbers[step]);
   }
   r.path = named_file(c.path, name);

@@ -23,7 +23,7 @@ struct FileSet {
   std::vector<int64_t> index, steps;
 };
 
-/// A file name, perhaps with a pattern ("p.****"), and the sets that say what it holds at a time; 0 = none.
+/// A file name, perhaps with a pattern ("p.****"), and the sets that determine its content at a time; 0 = none.
 struct FileRef {
   std::string name;
   int time_set = 0, file_set = 0;

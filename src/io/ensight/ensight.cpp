@@ -36,13 +36,13 @@ Stream open_at(const CaseFile& c, const FileRef& ref, std::optional<double> time
   return s;
 }
 
-/// The particles of a measured geometry as one more part; their numbers stand in `particles`.
+/// The particles of a measured geometry as one more part; their numbers are in `particles`.
 void add_measured(const CaseFile& c, std::optional<double> time, Geometry& g) {
   Stream s = open_at(c, *c.measured, time, {});
   if (s.form() != Form::ascii) s.line("the form");
   s.line("a description");
   const std::string k = to_lower(s.keyword("particle coordinates"));
-  if (k != "particle coordinates") s.fail(fmt::format("'{}' where 'particle coordinates' is due", k.substr(0, 40)));
+  if (k != "particle coordinates") s.fail(fmt::format("found '{}' where 'particle coordinates' was expected", k.substr(0, 40)));
   const size_t n = s.count("particles", 16);
   PointCloud cloud;
   if (s.form() == Form::ascii) {

@@ -94,7 +94,7 @@ class CellCollector {
  private:
   int32_t id(int32_t one_based) const {
     if (one_based < 1 || size_t(one_based) > part_.points)
-      s_.fail(fmt::format("part {}: an element before here has the node {}, there are 1 to {}", part_.number, one_based, part_.points));
+      s_.fail(fmt::format("part {}: an earlier element has the node {}, but nodes are 1 to {}", part_.number, one_based, part_.points));
     return one_based - 1;
   }
 
@@ -190,7 +190,7 @@ class Reader {
       context_.check();
     }
     const std::string k = s_.peek();
-    if (!s_.at_end() && k != "END TIME STEP") s_.fail(fmt::format("'{}' where a part is due", k.substr(0, 40)));
+    if (!s_.at_end() && k != "END TIME STEP") s_.fail(fmt::format("found '{}' where a part was expected", k.substr(0, 40)));
     return g;
   }
 
@@ -198,11 +198,11 @@ class Reader {
   bool listed(const std::string& what) {
     const std::string k = to_lower(s_.keyword(what));
     if (!k.starts_with(what))
-      s_.fail(fmt::format("'{}' where '{} ...' is due", k.substr(0, 40), what), "is this an EnSight Gold geometry?");
+      s_.fail(fmt::format("found '{}' where '{} ...' was expected", k.substr(0, 40), what), "is this an EnSight Gold geometry?");
     const auto w = words(k);
     const std::string_view how = w.back();
     if (how != "off" && how != "given" && how != "assign" && how != "ignore")
-      s_.fail(fmt::format("'{}' says nothing of {}s", k, what), "off, given, assign or ignore");
+      s_.fail(fmt::format("'{}' does not state the {}s", k, what), "use off, given, assign or ignore");
     return how == "given" || how == "ignore";
   }
 
@@ -261,7 +261,7 @@ class Reader {
       const std::vector<int32_t> r = s_.integers(6, "the range of a block");
       for (size_t a = 0; a < 3; ++a) {
         const int32_t lo = r[2 * a], hi = r[2 * a + 1];
-        if (lo < 1 || hi < lo || hi > size[a]) s_.fail(fmt::format("a range of {} to {} in {} nodes", lo, hi, size[a]));
+        if (lo < 1 || hi < lo || hi > size[a]) s_.fail(fmt::format("a range from {} to {} in {} nodes", lo, hi, size[a]));
         dims[a] = size_t(hi - lo) + 1, start[a] = lo - 1;
       }
     }

@@ -72,7 +72,7 @@ void Stream::fail(const std::string& problem, const std::string& hint) const {
   fail_data(where + ": " + problem, path_, hint);
 }
 
-// Copies what stands between the marks, so that the rest is read like C binary.
+// Copies what is between the record markers, so that the rest is read like C binary.
 void Stream::unframe() {
   const std::string_view t = file_.text();
   if (t.size() < 4) fail_data("is too short for Fortran records", path_);
@@ -85,7 +85,7 @@ void Stream::unframe() {
     if (t.size() - at < 8) fail_data(fmt::format("byte {}: a Fortran record is cut off", at), path_);
     const uint64_t n = load<uint32_t>(t.data() + at, big_endian_);
     if (n > t.size() - at - 8 || load<uint32_t>(t.data() + at + 4 + n, big_endian_) != n)
-      fail_data(fmt::format("byte {}: a Fortran record of {} bytes does not end in that number", at, n), path_);
+      fail_data(fmt::format("byte {}: a Fortran record of {} bytes does not end with that length", at, n), path_);
     std::memcpy(out + used, t.data() + at + 4, n);
     used += n, at += n + 8;
   }
@@ -97,7 +97,7 @@ void Stream::seek_step(int64_t k) {
   size_t at = 0;
   for (int64_t i = 0;; ++i) {
     const void* found = at < all_.size() ? ::memmem(all_.data() + at, all_.size() - at, begin_step.data(), begin_step.size()) : nullptr;
-    if (!found) fail(fmt::format("there is no time step {}", k), fmt::format("it has {} marks '{}'", i, begin_step));
+    if (!found) fail(fmt::format("there is no time step {}", k), fmt::format("it has {} markers '{}'", i, begin_step));
     at = size_t(static_cast<const char*>(found) - all_.data());
     if (i == k) break;
     at += begin_step.size();
@@ -114,7 +114,7 @@ bool Stream::at_end() {
 
 std::string Stream::line(std::string_view what) {
   if (form_ != Form::ascii) return std::string(until_zero({take(line_bytes, what), line_bytes}));
-  if (at_ >= all_.size()) fail(fmt::format("ends where {} is due", what));
+  if (at_ >= all_.size()) fail(fmt::format("ends where {} was expected", what));
   const size_t end = std::min(all_.find('\n', at_), all_.size());
   const std::string_view s = trim(all_.substr(at_, end - at_));
   at_ = std::min(end + 1, all_.size());
@@ -135,7 +135,8 @@ std::string Stream::keyword(std::string_view what) {
 }
 
 const char* Stream::take(size_t n, std::string_view what) {
-  if (n > all_.size() - at_) fail(fmt::format("ends where {} is due: {} bytes are needed, there are {}", what, n, all_.size() - at_));
+  if (n > all_.size() - at_)
+    fail(fmt::format("ends where {} was expected: {} bytes are needed, but there are {}", what, n, all_.size() - at_));
   at_ += n;
   return all_.data() + at_ - n;
 }
@@ -168,7 +169,7 @@ void Stream::read_text(size_t n, T* out, std::string_view what) {
     if (!scan_column(p, end, out[i])) {
       at_ = size_t(word - all_.data());
       fail(word == end ? fmt::format("ends within {}: number {} of {}", what, i, n)
-                       : fmt::format("'{}' is no number ({}, {} of {})",
+                       : fmt::format("'{}' is not a number ({}, {} of {})",
                                      std::string_view(word, std::min<size_t>(30, size_t(skip_word(word, end) - word))), what, i, n));
     }
   }

@@ -23,7 +23,7 @@ class Stream {
   static Form form_of(const MappedFile& file);
   Stream(MappedFile file, Form form);
 
-  /// The byte order of another file of the case, until an integer of this one tells its own.
+  /// The byte order of another file of the case, until an integer of this one reveals its own.
   void take_order(const Stream& other) {
     if (!order_known_) big_endian_ = other.big_endian_;
   }

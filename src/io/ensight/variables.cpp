@@ -26,7 +26,7 @@ class Values {
  public:
   Values(size_t count, int components, bool look_only) : count_(count), components_(components), look_only_(look_only) {}
 
-  /// `n` tuples from `first` on; the line that begins them may say undef or partial.
+  /// `n` tuples from `first` on; the line that begins them may contain undef or partial.
   void read(Stream& s, VariableKind kind, const std::string& line, size_t first, size_t n) {
     const auto w = words(line);
     const bool undef = std::find(w.begin(), w.end(), "undef") != w.end(), partial = std::find(w.begin(), w.end(), "partial") != w.end();
@@ -36,7 +36,7 @@ class Values {
       const size_t m = s.count("partial values", 4);
       which = s.integers(m, "places of partial values");
       for (const int32_t p : which)
-        if (p < 1 || size_t(p) > n) s.fail(fmt::format("a partial value for place {} of {}", p, n));
+        if (p < 1 || size_t(p) > n) s.fail(fmt::format("a partial value for position {} of {}", p, n));
       n = m;
     }
     if (look_only_) {
@@ -101,7 +101,7 @@ void read_elements(Stream& s, const Variable& v, const Part& part, Values& value
     const std::string_view type = words(line)[0];
     size_t k = 0;
     while (k < done.size() && (done[k] || words(part.sections[k].type)[0] != type)) ++k;
-    if (k == done.size()) s.fail(fmt::format("part {} has no elements '{}' (any more)", part.number, type));
+    if (k == done.size()) s.fail(fmt::format("part {} has no (further) elements '{}'", part.number, type));
     done[k] = true;
     values.read(s, v.kind, line, part.sections[k].first, part.sections[k].count);
   }
@@ -115,7 +115,7 @@ void read_variable(Stream& s, const Variable& v, const std::string& name, Geomet
   for (;;) {
     const std::string k = s.peek();
     if (!to_lower(k).starts_with("part")) {
-      if (k != "END TIME STEP" && !s.at_end()) s.fail(fmt::format("'{}' where a part is due", k.substr(0, 40)));
+      if (k != "END TIME STEP" && !s.at_end()) s.fail(fmt::format("found '{}' where a part was expected", k.substr(0, 40)));
       return;
     }
     s.keyword("part");
@@ -125,10 +125,10 @@ void read_variable(Stream& s, const Variable& v, const std::string& name, Geomet
     if (on_cells && !part.structured) {
       read_elements(s, v, part, values);
     } else {
-      const std::string line = to_lower(s.keyword("'coordinates' or 'block'"));
+      const std::string line = to_lower(s.keyword("expected 'coordinates' or 'block'"));
       if (!line.starts_with(part.structured ? "block" : "coordinates"))
-        s.fail(
-            fmt::format("'{}' where '{}' is due in part {}", line.substr(0, 40), part.structured ? "block" : "coordinates", part.number));
+        s.fail(fmt::format("found '{}' where '{}' was expected in part {}", line.substr(0, 40), part.structured ? "block" : "coordinates",
+                           part.number));
       values.read(s, v.kind, line, 0, on_cells ? part.cells : part.points);
     }
     Role role = Role::none;

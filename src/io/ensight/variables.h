@@ -7,8 +7,8 @@
 namespace sg::ensight {
 
 /// Reads one file (one step of it) and adds a field of that name, real or imaginary part, to each part that the file has values
-/// for. What the file leaves out (undef, partial, missing elements) is NaN. With `look_only` values are passed over and stand-ins
-/// are added. Throws Error(data).
+/// for. What the file leaves out (undef, partial, missing elements) is NaN. With `look_only` values are skipped and placeholders are added.
+/// Throws Error(data).
 void read_variable(Stream& s, const Variable& v, const std::string& name, Geometry& geometry, bool look_only);
 
 /// Puts the real and imaginary scalars name_r and name_i together as one field of two components.

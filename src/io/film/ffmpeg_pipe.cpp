@@ -23,8 +23,9 @@ namespace sg {
 FfmpegPipe::FfmpegPipe(std::string path, int width, int height, double fps)
     : path_(std::move(path)), partial_(path_), log_(partial_.folder() + "log"), width_(width), height_(height) {
   int ends[2];
-  // A socket and not a pipe: writing to one that nobody reads can be told not to raise a signal.
-  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) fail_data(fmt::format("no pipe: {}", std::strerror(errno)), path_);
+  // A socket and not a pipe: writing to one without a reader can be made not to raise a signal.
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+    fail_data(fmt::format("cannot create a pipe: {}", std::strerror(errno)), path_);
   socket_ = ends[0];
   // It takes "a:b" for a protocol and "-a" for an option.
   const std::string target = "file:" + partial_.name();
@@ -79,8 +80,8 @@ FfmpegPipe::FfmpegPipe(std::string path, int width, int height, double fps)
   ::close(ends[1]);
   if (failed != 0) {
     ::close(socket_);
-    fail_data(fmt::format("ffmpeg, which writes .{} films, does not start: {}", extension_of(path_), std::strerror(failed)), path_,
-              "apt-get install ffmpeg, or write a .webm, which needs no other program");
+    fail_data(fmt::format("cannot start ffmpeg, which writes .{} films: {}", extension_of(path_), std::strerror(failed)), path_,
+              "install it (apt-get install ffmpeg), or write a .webm, which needs no other program");
   }
   child_ = child;
   remember_partial(log_);
@@ -115,7 +116,7 @@ void FfmpegPipe::add(const Image& rgb) {
   for (size_t sent = 0; sent < bytes.size();) {
     const ssize_t n = ::send(socket_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
     if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) fail_data(fmt::format("ffmpeg takes no more pictures: {}", last_words()), path_);
+    if (n <= 0) fail_data(fmt::format("ffmpeg stopped accepting pictures: {}", last_words()), path_);
     sent += size_t(n);
   }
 }
@@ -129,7 +130,7 @@ void FfmpegPipe::finish() {
   forget_partial(log_);
   if (status == 0) return partial_.commit();
   const std::string said = last_words();
-  fail_data(fmt::format("ffmpeg did not write the film: {}", said.empty() ? "it says nothing" : said), path_);
+  fail_data(fmt::format("ffmpeg did not write the film: {}", said.empty() ? "it gave no reason" : said), path_);
 }
 
 }  // namespace sg

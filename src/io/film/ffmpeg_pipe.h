@@ -10,14 +10,14 @@ namespace sg {
 
 class FfmpegPipe {
  public:
-  /// Starts `ffmpeg`, found along PATH, which writes beside `path`. Throws Error(data) when it is not there.
+  /// Starts `ffmpeg`, found on PATH, which writes to a temporary file next to `path`. Throws Error(data) when it is not there.
   FfmpegPipe(std::string path, int width, int height, double fps);
   ~FfmpegPipe();  ///< without finish(): stops it and removes what it wrote
   FfmpegPipe(const FfmpegPipe&) = delete;
   FfmpegPipe& operator=(const FfmpegPipe&) = delete;
   /// A picture of at most that size, RGB; the last row and column are repeated.
   void add(const Image& rgb);
-  /// Waits for it and renames the file. Throws Error(data) with the last of what it said when it failed.
+  /// Waits for it and renames the file. Throws Error(data) with the end of its output when it failed.
   void finish();
 
  private:

@@ -33,8 +33,8 @@ Image in_rgb(const Image& image) {
 }  // namespace
 
 MovieWriter::MovieWriter(std::string path, MovieSettings settings) : path_(std::move(path)), settings_(settings) {
-  if (!is_movie(path_)) fail_usage(fmt::format("'{}' is no format of films", extension_of(path_)), path_, "can write: .webm .mp4");
-  AtomicFile probe(path_);  // a film that cannot be written is found out before it is drawn
+  if (!is_movie(path_)) fail_usage(fmt::format("'{}' is not a film format", extension_of(path_)), path_, "supported: .webm .mp4");
+  AtomicFile probe(path_);  // detects a film that cannot be written before it is drawn
   if (extension_of(path_) == "webm") plugin_format("vpx", "webm");
 }
 
@@ -48,14 +48,14 @@ void MovieWriter::add(const Image& picture) {
     else other_ = std::make_unique<FfmpegPipe>(path_, settings_.width, settings_.height, settings_.fps);
   }
   if (picture.width != width_ || picture.height != height_)
-    fail_usage(fmt::format("a picture of {} x {} pixels after one of {} x {}", picture.width, picture.height, width_, height_), path_,
-               "all pictures of a film have one size");
+    fail_usage(fmt::format("a picture of {} x {} pixels follows one of {} x {}", picture.width, picture.height, width_, height_), path_,
+               "all pictures of a film must have the same size");
   if (other_) return other_->add(in_rgb(picture));
   for (VideoFrame& f : encoder_(&picture)) frames_.push_back(std::move(f));
 }
 
 void MovieWriter::finish() {
-  if (width_ == 0) fail_usage("has no picture", path_);
+  if (width_ == 0) fail_usage("has no pictures", path_);
   if (other_) return other_->finish();
   for (VideoFrame& f : encoder_(nullptr)) frames_.push_back(std::move(f));
   WebmTrack track;

@@ -22,10 +22,10 @@ struct MovieSettings {
 /// Takes a picture (null: there are no more) and gives the encoded ones that are ready.
 using MovieEncoder = std::function<std::vector<VideoFrame>(const Image* picture)>;
 
-/// Is it the name of a film (.webm, .mp4)?
+/// Whether it is the name of a film (.webm, .mp4).
 bool is_movie(const std::string& path);
 
-/// The file is written beside and renamed by finish(). Encoded pictures of .webm are kept in memory until then; its bytes are the same for
+/// Written to a temporary file, which finish() renames. Encoded pictures of .webm are kept in memory until then; its bytes are the same for
 /// any number of threads.
 class MovieWriter {
  public:

@@ -36,14 +36,14 @@ Source find_bytes(const GltfDocument& d, int view, uint64_t offset, uint64_t cou
 void put_sparse(const GltfDocument& d, const GltfAccessor& a, int accessor, std::byte* out, size_t size) {
   const GltfSparse& s = *a.sparse;
   if (is_float(s.indices_type) || s.indices_type == ElementType::i8 || s.indices_type == ElementType::i16)
-    fail_data(fmt::format("accessor {}: sparse indices are no unsigned integers", accessor), d.path);
+    fail_data(fmt::format("accessor {}: sparse indices are not unsigned integers", accessor), d.path);
   const size_t index_size = element_size(s.indices_type);
   const Source indices = find_bytes(d, s.indices_view, s.indices_offset, s.count, index_size, 0, accessor);
   const Source values = find_bytes(d, s.values_view, s.values_offset, s.count, size, 0, accessor);
   for (uint64_t k = 0; k < s.count; ++k) {
     uint32_t i = 0;
     std::memcpy(&i, indices.data + k * index_size, index_size);
-    if (i >= a.count) fail_data(fmt::format("accessor {}: sparse value {} of {}", accessor, i, a.count), d.path);
+    if (i >= a.count) fail_data(fmt::format("accessor {}: sparse value {} of {} does not exist", accessor, i, a.count), d.path);
     std::memcpy(out + i * size, values.data + k * size, size);
   }
 }
@@ -68,7 +68,7 @@ Array gltf_array(const GltfDocument& d, int accessor, bool keep_integers) {
   const GltfAccessor& a = d.accessors[size_t(accessor)];
   const size_t size = element_size(a.type) * size_t(a.components);
   if (a.components > 4 && element_size(a.type) < 4)
-    fail_data(fmt::format("accessor {}: matrices of {} are not read", accessor, element_name(a.type)), d.path);
+    fail_data(fmt::format("accessor {}: matrices of {} are not supported", accessor, element_name(a.type)), d.path);
   if (a.view < 0 && (!a.sparse || a.count > d.backed + free_zeros))
     fail_data(fmt::format("accessor {}: {} elements without a bufferView", accessor, a.count), d.path);
   Source from{};

@@ -46,9 +46,9 @@ GltfChunks gltf_chunks(const MappedFile& file) {
   if (!text.starts_with("glTF")) return {text, {}};
   if (text.size() < 20) fail_data(fmt::format("the file ends at byte {}, in the header", text.size()), file.path());
   const auto version = load<uint32_t>(text.data() + 4), length = load<uint32_t>(text.data() + 8);
-  if (version != 2) fail_data(fmt::format("is binary glTF of version {}", version), file.path(), "version 2 is read");
+  if (version != 2) fail_data(fmt::format("is binary glTF of version {}", version), file.path(), "version 2 is supported");
   if (length > text.size())
-    fail_data(fmt::format("the file has {} bytes, but its header says {}", text.size(), length), file.path(), "it has been cut");
+    fail_data(fmt::format("the file has {} bytes, but its header says {}", text.size(), length), file.path(), "it is truncated");
   GltfChunks r;
   for (size_t p = 12, n = 0; p + 8 <= length; ++n) {
     const auto bytes = load<uint32_t>(text.data() + p), type = load<uint32_t>(text.data() + p + 4);
@@ -82,7 +82,7 @@ GltfBuffer gltf_uri(const std::string& uri, const std::string& path, const std::
   }
   const std::string name = without_percents(uri);
   if (name.empty() || name.find(':') != std::string::npos)
-    fail_data(fmt::format("{}: '{}' is not read", where, uri), path, "buffers lie in files beside it, or in the file itself");
+    fail_data(fmt::format("{}: '{}' is not supported", where, uri), path, "buffers must be in files beside it, or in the file itself");
   const MappedFile file(named_file(path, name));
   return {file.owner(), file.text()};
 }

@@ -22,7 +22,7 @@ bool is_harmless(std::string_view name) {
   return name == "KHR_mesh_quantization" || name == "KHR_animation_pointer" || name == "KHR_xmp_json_ld";
 }
 
-// Walks the JSON; says where it is when something is wrong.
+// Walks the JSON; reports its location when something is wrong.
 struct Parser {
   const std::string& path;
   const Json& root;
@@ -34,9 +34,9 @@ struct Parser {
     if (!v) return otherwise;
     if (v->is_whole()) return v->whole();
     if (v->is_real() && v->number() >= 0 && v->number() < 9e15 && std::floor(v->number()) == v->number()) return uint64_t(v->number());
-    fail(where, fmt::format("'{}' is no whole number from 0", key));
+    fail(where, fmt::format("'{}' is not a whole number of 0 or more", key));
   }
-  // A place in the list `of`, or -1 when there is none.
+  // An index into the list `of`, or -1 when there is none.
   int place(const Json& o, const char* key, const char* of, const std::string& where) const {
     if (!o.contains(key)) return -1;
     return checked(whole(o, key, 0, where), of, where, key);
@@ -52,11 +52,11 @@ struct Parser {
   void each(const char* list, const char* one, F&& f) const {
     const Json* found = root.find(list);
     if (!found) return;
-    if (!found->is_list()) fail(list, "is no list");
+    if (!found->is_list()) fail(list, "is not a list");
     size_t n = 0;
     for (const Json& o : found->items()) {
       const std::string where = fmt::format("{} {}", one, n++);
-      if (!o.is_object()) fail(where, "is no object");
+      if (!o.is_object()) fail(where, "is not an object");
       f(o, where);
     }
   }
@@ -64,10 +64,10 @@ struct Parser {
   bool numbers(const Json& o, const char* key, double (&out)[n], const std::string& where) const {
     const Json* list = o.find(key);
     if (!list) return false;
-    if (!list->is_list() || list->size() != n) fail(where, fmt::format("'{}' is no list of {} numbers", key, n));
+    if (!list->is_list() || list->size() != n) fail(where, fmt::format("'{}' is not a list of {} numbers", key, n));
     for (size_t i = 0; i < n; ++i) {
       const Json& v = (*list)[i];
-      if (!v.is_number() || !std::isfinite(v.number())) fail(where, fmt::format("'{}' holds something that is no number", key));
+      if (!v.is_number() || !std::isfinite(v.number())) fail(where, fmt::format("'{}' contains something that is not a number", key));
       out[i] = v.number();
     }
     return true;
@@ -82,7 +82,7 @@ struct Parser {
       case 5125: return ElementType::u32;
       case 5126: return ElementType::f32;
     }
-    fail(where, "'componentType' is none of 5120, 5121, 5122, 5123, 5125, 5126");
+    fail(where, "'componentType' is not one of 5120, 5121, 5122, 5123, 5125, 5126");
   }
 
   GltfAccessor accessor(const Json& o, const std::string& where) const {
@@ -109,7 +109,7 @@ struct Parser {
       sparse.indices_offset = whole(i, "byteOffset", 0, where);
       sparse.values_offset = whole(v, "byteOffset", 0, where);
       sparse.indices_type = type(i, where);
-      if (sparse.indices_view < 0 || sparse.values_view < 0) fail(where, "'sparse' names no bufferView");
+      if (sparse.indices_view < 0 || sparse.values_view < 0) fail(where, "'sparse' does not name a bufferView");
       if (sparse.count > a.count) fail(where, fmt::format("{} sparse values of {}", sparse.count, a.count));
     }
     return a;
@@ -120,9 +120,9 @@ struct Parser {
     n.name = name(o);
     n.mesh = place(o, "mesh", "meshes", where);
     if (const Json* c = o.find("children")) {
-      if (!c->is_list()) fail(where, "'children' is no list");
+      if (!c->is_list()) fail(where, "'children' is not a list");
       for (const Json& child : c->items()) {
-        if (!child.is_whole()) fail(where, "'children' holds something that is no number of a node");
+        if (!child.is_whole()) fail(where, "'children' contains something that is not a node number");
         n.children.push_back(checked(child.whole(), "nodes", where, "children"));
       }
     }
@@ -136,7 +136,7 @@ struct Parser {
     numbers(o, "rotation", q, where);
     numbers(o, "scale", s, where);
     const double l = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    if (!(l > 0) || !std::isfinite(l)) fail(where, "'rotation' is no rotation");
+    if (!(l > 0) || !std::isfinite(l)) fail(where, "'rotation' is not a rotation");
     const double x = q[0] / l, y = q[1] / l, z = q[2] / l, w = q[3] / l;
     const double r[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
                             {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
@@ -157,7 +157,7 @@ struct Parser {
       if (!p["attributes"].is_object()) fail(here, "has no 'attributes'");
       GltfPrimitive& r = m.primitives.emplace_back();
       for (const auto& [key, value] : p["attributes"].members()) {
-        if (!value.is_whole()) fail(here, fmt::format("attribute '{}' is no number of an accessor", key));
+        if (!value.is_whole()) fail(here, fmt::format("attribute '{}' is not an accessor number", key));
         r.attributes.emplace_back(key, checked(value.whole(), "accessors", here, key.c_str()));
       }
       r.indices = place(p, "indices", "accessors", here);
@@ -177,11 +177,11 @@ struct Parser {
     for (const Json& e : root["extensionsRequired"].items()) {
       const std::string extension = e.is_text() ? e.text() : e.dump();
       if (!is_harmless(extension))
-        fail_data(fmt::format("needs the extension {}, which is not read", extension), path,
-                  extension.find("compression") != std::string::npos ? "write it again without compression" : "");
+        fail_data(fmt::format("needs the extension {}, which is not supported", extension), path,
+                  extension.find("compression") != std::string::npos ? "save it without compression" : "");
     }
     for (const char* list : {"animations", "skins"})
-      if (root.contains(list)) context.info(fmt::format("{}: {} are not read; the mesh is drawn as it stands", path, list));
+      if (root.contains(list)) context.info(fmt::format("{}: {} are ignored; the mesh is drawn without them", path, list));
   }
 
   GltfDocument document(std::string_view chunk, const MappedFile& file) const {
@@ -202,13 +202,13 @@ struct Parser {
     each("bufferViews", "bufferView", [&](const Json& o, const std::string& where) {
       GltfView v;
       v.buffer = place(o, "buffer", "buffers", where);
-      if (v.buffer < 0) fail(where, "names no buffer");
+      if (v.buffer < 0) fail(where, "does not name a buffer");
       v.offset = whole(o, "byteOffset", 0, where);
       v.length = whole(o, "byteLength", 0, where);
       v.stride = whole(o, "byteStride", 0, where);
       const uint64_t size = d.buffers[size_t(v.buffer)].bytes.size();
       if (v.offset > size || v.length > size - v.offset)
-        fail(where, fmt::format("bytes {} + {} lie beyond the {} of its buffer", v.offset, v.length, size));
+        fail(where, fmt::format("bytes {} + {} lie beyond the {} bytes of its buffer", v.offset, v.length, size));
       d.views.push_back(v);
     });
     each("accessors", "accessor", [&](const Json& o, const std::string& where) { d.accessors.push_back(accessor(o, where)); });
@@ -231,9 +231,9 @@ struct Parser {
     if (!scenes.empty()) {
       const int scene = std::max(place(root, "scene", "scenes", "the scene"), 0);
       const Json& s = scenes[size_t(scene)];
-      if (!s.is_object()) fail("the scene", "is no object");
+      if (!s.is_object()) fail("the scene", "is not an object");
       for (const Json& n : s["nodes"].items()) {
-        if (!n.is_whole()) fail("the scene", "'nodes' holds something that is no number of a node");
+        if (!n.is_whole()) fail("the scene", "'nodes' contains something that is not a node number");
         d.roots.push_back(checked(n.whole(), "nodes", "the scene", "nodes"));
       }
       return;
@@ -252,10 +252,10 @@ GltfDocument read_gltf_document(const std::string& path, Context& context) {
   const MappedFile file(path);
   const GltfChunks chunks = gltf_chunks(file);
   const Json root = parse_json(chunks.json, path);
-  if (!root["asset"].is_object()) fail_data("is JSON, but has no 'asset': it is no glTF", path);
+  if (!root["asset"].is_object()) fail_data("is JSON, but has no 'asset': it is not glTF", path);
   const Json& v = root["asset"]["version"];
   const std::string version = v.is_text() ? v.text() : "?";
-  if (!version.starts_with("2")) fail_data(fmt::format("is glTF {}", version), path, "version 2.0 is read");
+  if (!version.starts_with("2")) fail_data(fmt::format("is glTF {}", version), path, "version 2.0 is supported");
   const Parser parser{path, root};
   parser.check_extensions(context);
   return parser.document(chunks.binary, file);

@@ -78,13 +78,13 @@ struct Reader {
     }
     const GltfAccessor& a = doc.accessors[size_t(p.indices)];
     if (a.components != 1 || (a.type != ElementType::u8 && a.type != ElementType::u16 && a.type != ElementType::u32))
-      fail_data(fmt::format("{}: indices are no unsigned integers", where), doc.path);
+      fail_data(fmt::format("{}: indices are not unsigned integers", where), doc.path);
     const Array indices = gltf_array(doc, p.indices, true);
     ids.resize(indices.count());
     dispatch(indices, [&](auto v) {
       for (size_t i = 0; i < v.count; ++i) {
         if (!(double(v[i]) < double(points)))
-          fail_data(fmt::format("{}: index {} at place {} of {} points", where, v[i], i, points), doc.path);
+          fail_data(fmt::format("{}: index {} at position {} is out of range for {} points", where, v[i], i, points), doc.path);
         ids[i] = int32_t(v[i]);
       }
     });
@@ -95,7 +95,7 @@ struct Reader {
     const size_t n = ids.size(), least = mode == 0 ? 0 : mode < 4 ? 2 : 3;
     if (n < least && n > 0) fail_data(fmt::format("{}: {} corners are too few for its mode {}", where, n, mode), doc.path);
     if ((mode == 1 && n % 2) || (mode == 4 && n % 3))
-      fail_data(fmt::format("{}: {} corners are no multiple of {}", where, n, mode == 1 ? 2 : 3), doc.path);
+      fail_data(fmt::format("{}: {} corners are not a multiple of {}", where, n, mode == 1 ? 2 : 3), doc.path);
     auto cells = [](std::vector<int32_t> list, int fixed) {
       CellArray c;
       c.connectivity = Array::from_vector(std::move(list));
@@ -166,7 +166,7 @@ struct Reader {
     mesh.points.xyz = gltf_array(doc, position).converted(ElementType::f32);
     taken += mesh.points.xyz.bytes();
     if (taken > (uint64_t(1) << 28) && taken / most_copies > doc.backed)
-      fail_data("places its meshes so often that they would fill more than a quarter of a GiB", doc.path);
+      fail_data("instances its meshes so often that they would fill more than 256 MiB", doc.path);
     if (!l.identity) mesh.points.xyz = moved(mesh.points.xyz, [&](Vec3 v) { return l.points * v + Vec3(m.m[0][3], m.m[1][3], m.m[2][3]); });
     const auto xyz = mesh.points.xyz.view<float>();
     for (size_t i = 0; i < xyz.count; ++i)
@@ -212,7 +212,8 @@ struct Reader {
       stack.pop_back();
       const GltfNode& node = doc.nodes[size_t(v.node)];
       if (seen[size_t(v.node)])
-        fail_data(fmt::format("node {} has several parents, or is below itself", v.node), doc.path, "the nodes of a scene are a tree");
+        fail_data(fmt::format("node {} has several parents or is its own ancestor", v.node), doc.path,
+                  "the nodes of a scene must form a tree");
       seen[size_t(v.node)] = true;
       if (v.depth > deepest_node) fail_data(fmt::format("nodes are nested more than {} deep", deepest_node), doc.path);
       const Mat4 m = v.matrix == Mat4() ? node.matrix : v.matrix * node.matrix;
@@ -221,7 +222,7 @@ struct Reader {
     }
   }
 
-  // Names of parts tell them apart.
+  // Names of parts distinguish them.
   void number_names() {
     std::vector<std::string> names;
     for (const auto& p : parts) names.push_back(p.name);

@@ -167,7 +167,7 @@ void write_gltf(const std::string& path, const Data& data, const WriteOptions&, 
   if (!binary) return write_file(path, json);
   while (json.size() % 4) json += ' ';
   if (w.bytes.size() + json.size() > UINT32_MAX - 28)
-    fail_usage(fmt::format("{} bytes do not fit into one .glb", w.bytes.size()), path, "4 GiB is its limit; write .vtp");
+    fail_usage(fmt::format("{} bytes do not fit into one .glb file", w.bytes.size()), path, "its limit is 4 GiB; write .vtp instead");
   std::string head = "glTF";
   for (const size_t v : {size_t(2), 28 + json.size() + w.bytes.size(), json.size()}) append_word(head, uint32_t(v));
   head += "JSON" + json;

@@ -40,7 +40,7 @@ const Shape& shape_of(CellType type) {
     case CellType::tetra: return tetra;
     case CellType::hexahedron: return hexahedron;
     case CellType::wedge: return wedge;
-    default: fail_internal("gmsh: a shape without nodes");
+    default: fail_internal("gmsh: a shape has no nodes");
   }
 }
 

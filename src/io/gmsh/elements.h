@@ -16,7 +16,7 @@ struct ElementType {
   CellType cell = CellType::empty;  ///< what it becomes
   std::vector<uint32_t> from;       ///< of each node of the cell, its place in the file's list
 };
-/// Null for a number that is no type, or a type that no cell of ours is equal to (high-order ones without inner nodes, pyramids above
+/// Null for a number that is not a type, or a type without an equivalent cell of ours (high-order ones without inner nodes, pyramids above
 /// order 2, cut and bordered elements). The 14-node pyramid loses the node in the middle of its base.
 const ElementType* element_type(int64_t number);
 

@@ -13,7 +13,7 @@
 namespace sg::gmsh {
 
 const char* MshInput::raw(size_t bytes, const char* what) {
-  if (text.left() < bytes) fail_data(fmt::format("byte {}: the file ends where {} should be", text.position(), what), text.where());
+  if (text.left() < bytes) fail_data(fmt::format("byte {}: the file ends where {} was expected", text.position(), what), text.where());
   const char* p = text.text().data() + text.position();
   text.seek(text.position() + bytes);
   return p;
@@ -49,7 +49,7 @@ void parse_format(MshInput& in) {
   const int64_t binary = in.text.integer("the file type");
   const int64_t size = in.text.integer("the size of numbers");
   if (!((version >= 2 && version < 3) || (version >= 4 && version < 4.2)))
-    in.text.fail(fmt::format("version {}", version), "versions 2.x, 4.0 and 4.1 are read; Gmsh converts: gmsh -save -format msh41");
+    in.text.fail(fmt::format("version {}", version), "versions 2.x, 4.0 and 4.1 are supported; Gmsh converts: gmsh -save -format msh41");
   in.version = int(std::lround(version * 10));
   if (binary < 0 || binary > 1) in.text.fail(fmt::format("file type {}", binary), "0 is ASCII, 1 is binary");
   if (size != 8) in.text.fail(fmt::format("numbers of {} bytes", size), "8");
@@ -58,7 +58,7 @@ void parse_format(MshInput& in) {
   in.end_line();
   const int64_t one = in.integer("the number one");
   if (one == 0x01000000) in.swapped = true;
-  else if (one != 1) in.text.fail("the number one is missing behind the format of a binary file");
+  else if (one != 1) in.text.fail("the number one is missing after the format of a binary file");
 }
 
 void parse_names(MshInput& in, MshFile& f) {
@@ -139,9 +139,10 @@ void parse_nodes(MshInput& in, MshFile& f) {
 const ElementType& checked_type(MshInput& in, int64_t number) {
   const ElementType* type = element_type(number);
   if (!type)
-    fail_data(fmt::format("element type {} is not read", number),
-              fmt::format("{}, {} {}", in.text.where(), in.binary ? "byte" : "line", in.binary ? in.text.position() : in.text.line_now()),
-              "points, and complete lines, triangles, quads, tetrahedra, hexahedra and prisms up to order 10, pyramids up to 2 are");
+    fail_data(
+        fmt::format("element type {} is not supported", number),
+        fmt::format("{}, {} {}", in.text.where(), in.binary ? "byte" : "line", in.binary ? in.text.position() : in.text.line_now()),
+        "supported: points, complete lines, triangles, quads, tetrahedra, hexahedra and prisms up to order 10, pyramids up to order 2");
   return *type;
 }
 
@@ -181,7 +182,7 @@ void parse_elements_2(MshInput& in, MshFile& f) {
     const int64_t type = in.integer("an element type");
     const ElementType& t = checked_type(in, type);
     const int64_t block = in.count("the number of elements", 8, false), count = in.count("the number of tags", 4, false);
-    if (block < 1 || uint64_t(block) > n - e) in.text.fail(fmt::format("a block of {} elements where {} are left", block, n - e));
+    if (block < 1 || uint64_t(block) > n - e) in.text.fail(fmt::format("a block has {} elements, but {} are left", block, n - e));
     for (int64_t i = 0; i < block; ++i, ++e) {
       f.element_tags.push_back(in.integer("the number of an element"));
       read_tags(count);
@@ -236,7 +237,7 @@ void parse_data(MshInput& in, MshFile& f, DataSection::Kind kind) {
     if (i < 3) tags[i] = v;
   }
   d.step = tags[0], d.components = tags[1], d.entries = tags[2];
-  if (integers < 3) in.text.fail("a data section needs three integer tags", "time step, components, number of values");
+  if (integers < 3) in.text.fail("a data section needs three integer tags", "time step, components and number of values");
   if (d.components < 1 || d.components > 64) in.text.fail(fmt::format("{} components", d.components), "1, 3 or 9");
   if (d.entries < 0 || uint64_t(d.entries) > in.text.left() / 4 + 1)
     in.text.fail(fmt::format("{} values, but only {} bytes follow", d.entries, in.text.left()));
@@ -273,8 +274,8 @@ MshFile parse_msh(MshInput& in) {
     else if (name == "$ElementData") parse_data(in, f, DataSection::element);
     else if (name == "$ElementNodeData") parse_data(in, f, DataSection::element_node);
   }
-  if (f.node_tags.empty()) fail_data("has no nodes", in.text.where(), "a section $Nodes");
-  if (f.element_tags.empty()) fail_data("has no elements", in.text.where(), "a section $Elements");
+  if (f.node_tags.empty()) fail_data("has no nodes", in.text.where(), "expected a section $Nodes");
+  if (f.element_tags.empty()) fail_data("has no elements", in.text.where(), "expected a section $Elements");
   return f;
 }
 

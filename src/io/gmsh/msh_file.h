@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a Gmsh file holds, before it becomes a mesh.
+// Contents of a Gmsh file, before conversion to a mesh.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -11,7 +11,7 @@
 
 namespace sg::gmsh {
 
-/// One $NodeData, $ElementData or $ElementNodeData section; its values are read when they are asked for.
+/// One $NodeData, $ElementData or $ElementNodeData section; its values are read on demand.
 struct DataSection {
   enum Kind : uint8_t { node, element, element_node } kind;
   std::string name;

@@ -35,7 +35,7 @@ void CarryWriter::array(const Array& a) {
   for (const Place& p : same)
     if (alike(p.array, a)) return number(uint64_t(p.offset));
   number(uint64_t(array_bytes_));
-  same.push_back({a, array_bytes_});  // keeps the bytes alive, so that no other array comes to lie at their address
+  same.push_back({a, array_bytes_});  // keeps the bytes alive, so that no other array can reuse their address
   arrays.push_back(one ? a.slice(0, 1).component(0).made_packed() : a.made_packed());
   array_bytes_ += rounded(arrays.back().bytes());
 }
@@ -107,7 +107,7 @@ CarryReader::CarryReader(Buffer file, size_t begin, size_t end, size_t arrays, s
   if (begin > end || end > file_.size || arrays > file_.size) nonsense();
 }
 
-void CarryReader::nonsense() const { fail_data("is damaged: the process that reads it left nonsense", path_); }
+void CarryReader::nonsense() const { fail_data("is damaged: the process that reads it returned invalid data", path_); }
 
 template <class E>
 E CarryReader::one_of(E last) {

@@ -37,7 +37,7 @@ class CarryWriter {
   std::map<const std::byte*, std::vector<Place>> placed_;
 };
 
-/// Understands it again. Throws Error(data) naming `path` for what no writer says: who wrote may have lost its senses.
+/// Understands it again. Throws Error(data) naming `path` for anything no writer produces: the writing process may have been corrupted.
 class CarryReader {
  public:
   /// The description is file[begin, end), the arrays lie from `arrays` on.

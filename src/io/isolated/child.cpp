@@ -52,7 +52,7 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 
 [[noreturn]] void fail_time(const std::string& took, double seconds, const std::string& path) {
   fail_data(fmt::format("reading it takes more than {:.0f} s {}", std::ceil(seconds), took), path,
-            fmt::format("the file is damaged, or allow more: {}=SECONDS in the environment", seconds_variable));
+            fmt::format("the file may be damaged; otherwise allow more with {}=SECONDS in the environment", seconds_variable));
 }
 
 // Until the child ends or that many milliseconds have passed. Without a descriptor of the process (old systems) it looks again and again.
@@ -65,7 +65,7 @@ void wait_a_little(int process, int milliseconds) {
   ::poll(&ends, 1, milliseconds);
 }
 
-/// Is every thread of a process in a wait without end for a lock of the process itself? Then nobody will ever wake it.
+/// Whether every thread of a process waits without timeout for a lock of the process itself, so that nothing will ever wake it.
 bool waits_for_itself(pid_t process) {
   const std::string folder = fmt::format("/proc/{}/task", process);
   DIR* tasks = ::opendir(folder.c_str());
@@ -87,7 +87,7 @@ bool waits_for_itself(pid_t process) {
   return any && all;
 }
 
-/// Looks one after the other at which it does that before it counts: threads may wake each other in between.
+/// Number of consecutive checks in which it does so before it counts: threads may wake each other in between.
 constexpr int most_looks = 5;
 /// Starts of a child, of which each may meet a lock that is held.
 constexpr int most_starts = 20;
@@ -135,7 +135,7 @@ void become_child(const ChildLimits& limits) {
 
 namespace {
 
-/// run_child() for one child. Sets `stuck`, where that is asked for, when it had to be killed because it waits for itself.
+/// run_child() for one child. Sets `stuck`, if given, when it had to be killed because it waits for itself.
 int wait_for(pid_t child, const ChildLimits& limits, const std::string& path, const Context& context, bool* stuck) {
   const auto begin = std::chrono::steady_clock::now();
 #ifdef SYS_pidfd_open
@@ -158,13 +158,13 @@ int wait_for(pid_t child, const ChildLimits& limits, const std::string& path, co
   }
   if (process >= 0) ::close(process);
   context.check();
-  if (late) fail_time("by the clock", limits.wall, path);
+  if (late) fail_time("of wall-clock time", limits.wall, path);
   if (stuck && *stuck) return status;
-  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM) fail_time("by the clock", limits.wall, path);
-  // The processor's limit ends a child by SIGXCPU, or by SIGKILL where both limits are one; nobody else but the system short of memory
-  // kills it so.
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM) fail_time("of wall-clock time", limits.wall, path);
+  // The processor's limit ends a child by SIGXCPU, or by SIGKILL where both limits are one; only the system, when short of memory, kills it
+  // like this.
   if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL))
-    fail_time("of the processor", limits.processor, path);
+    fail_time("of processor time", limits.processor, path);
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ) fail_child_memory(limits, path);
   return status;
 }
@@ -173,10 +173,10 @@ int wait_for(pid_t child, const ChildLimits& limits, const std::string& path, co
 
 int run_child(const ChildLimits& limits, const std::string& path, const Context& context, const std::function<void()>& work) {
   for (int start = 1;; ++start) {
-    // The child must not say again what the parent has still to say.
+    // The child must not print again what the parent still has to print.
     std::fflush(nullptr);
     const pid_t child = ::fork();
-    if (child < 0) fail_data(fmt::format("no process for reading can be started: {}", std::strerror(errno)), path);
+    if (child < 0) fail_data(fmt::format("cannot start a process for reading: {}", std::strerror(errno)), path);
     if (child == 0) {
       become_child(limits);
       work();
@@ -189,9 +189,9 @@ int run_child(const ChildLimits& limits, const std::string& path, const Context&
 }
 
 void fail_child_memory(const ChildLimits& limits, const std::string& path) {
-  fail_data(fmt::format("reading it needs more memory than the {} that are allowed for a file of {}", human_bytes(limits.memory),
+  fail_data(fmt::format("reading it needs more memory than the {} allowed for a file of {}", human_bytes(limits.memory),
                         human_bytes(bytes_at(path))),
-            path, "the file is damaged, or allow more: --memory SIZE, like 16G");
+            path, "the file may be damaged; otherwise allow more with --memory SIZE, e.g. 16G");
 }
 
 }  // namespace sg

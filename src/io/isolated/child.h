@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Child processes for libraries that a damaged file may kill, send round and round, or make ask for all memory: what they may take, and
+// Child processes for libraries that a damaged file may crash, trap in a loop, or make allocate all memory: what they may take, and
 // how they ended.
 #pragma once
 #include <sys/types.h>
@@ -19,9 +19,9 @@ struct ChildLimits {
   double wall = 0;       ///< seconds from its start, also when it waits for what never comes
 };
 
-/// For reading a file of that size: twice what its numbers may fill (plausible_memory(); what the user states with --memory stands instead,
-/// where it is more), 256 MiB for the library; 5 s of the processor, one for each 512 MiB of that memory and one for each MiB of the file,
-/// or $SIGHTGLASS_READ_SECONDS instead; ten times as long by the clock.
+/// For reading a file of that size: twice what its numbers may fill (plausible_memory(); a larger limit given with --memory applies
+/// instead), 256 MiB for the library; 5 s of the processor, one for each 512 MiB of that memory and one for each MiB of the file, or
+/// $SIGHTGLASS_READ_SECONDS instead; ten times as long by the clock.
 ChildLimits reading_limits(size_t file_bytes);
 /// The size of a file, or of all files in a folder; 0 when there is none.
 size_t bytes_at(const std::string& path);

@@ -89,7 +89,7 @@ struct FileState {
     struct stat now {};
     if (!known || ::stat(path.c_str(), &now) != 0 || now.st_ino != st.st_ino || now.st_dev != st.st_dev) return;
     if (now.st_size != st.st_size || now.st_mtim.tv_sec != st.st_mtim.tv_sec || now.st_mtim.tv_nsec != st.st_mtim.tv_nsec)
-      fail_data("the file changed while it was read", path, "read it again when it is written completely");
+      fail_data("the file changed while it was being read", path, "read it again once it has been written completely");
   }
   const std::string& path;
   struct stat st {};
@@ -102,7 +102,7 @@ Data take_result(int fd, const std::string& path, Context& context) {
   uint64_t head[2]{};
   if (::fstat(fd, &s) != 0 || ::pread(fd, head, sizeof head, 0) != ssize_t(sizeof head) || head[0] != finished ||
       head[1] > size_t(s.st_size) - front)
-    fail_data("is damaged: the library that reads it gave up", path);
+    fail_data("is damaged: the library that reads it failed", path);
   const auto size = size_t(s.st_size);
   detail::claim_memory(size);
   void* map = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, fd, 0);
@@ -136,7 +136,7 @@ Data take_result(int fd, const std::string& path, Context& context) {
 Data read_isolated(const std::string& path, const ChildLimits& limits, const std::function<Data(Context&)>& read, Context& context) {
   const FileState state(path);
   const int fd = ::memfd_create("sightglass", MFD_CLOEXEC);
-  if (fd < 0) fail_data("no memory can be shared with a process that reads it", path);
+  if (fd < 0) fail_data("cannot share memory with a process that reads it", path);
   const std::shared_ptr<const void> closer(nullptr, [fd](const void*) { ::close(fd); });
   const int status = run_child(limits, path, context, [&] { work(fd, read, context.memory_limit); });
   state.check();
@@ -159,7 +159,7 @@ std::vector<double> times_isolated(const std::string& path, const std::function<
       context);
   const auto* table = std::get_if<TablePtr>(&column);
   if (!table || (*table)->columns.size() != 1 || (*table)->columns[0].array.type() != ElementType::f64)
-    fail_data("is damaged: the process that reads it left nonsense", path);
+    fail_data("is damaged: the process that reads it returned invalid data", path);
   const Array& a = (*table)->columns[0].array;
   std::vector<double> times(a.count());
   for (size_t i = 0; i < times.size(); ++i) times[i] = a.get(i);
@@ -173,13 +173,13 @@ void try_in_child(const std::string& path, std::string_view library, const std::
       read();
     } catch (const std::bad_alloc&) {
       ::_exit(end_no_memory);
-    } catch (...) {  // said again, and heard, in the parent
+    } catch (...) {  // reported again in the parent
     }
     ::_exit(end_good);
   });
   if (WIFEXITED(status) && WEXITSTATUS(status) == end_no_memory) fail_child_memory(limits, path);
   if (!WIFEXITED(status) || WEXITSTATUS(status) != end_good)
-    fail_data(fmt::format("the {} library does not survive reading it", library), path, "the file is damaged");
+    fail_data(fmt::format("the {} library crashed while reading it", library), path, "the file is damaged");
 }
 
 }  // namespace sg

@@ -59,14 +59,14 @@ size_t number_patches(AmrGrid& grid) {
       uint64_t n = 1, m = 1;
       for (size_t a = 0; a < 3; ++a) {
         if (p.hi[a] < p.lo[a] || std::abs(p.lo[a]) > (1ll << 40) || std::abs(p.hi[a]) > (1ll << 40))
-          fail_data(fmt::format("a patch of level {} runs from {} to {} along {}", l, p.lo[a], p.hi[a], "xyz"[a]));
+          fail_data(fmt::format("a patch of level {} extends from {} to {} along {}", l, p.lo[a], p.hi[a], "xyz"[a]));
         const auto c = uint64_t(p.hi[a] - p.lo[a] + 1);
         if (!multiply(n, c, n) || !multiply(m, grid.dimension == 2 && a == 2 ? 1 : c + 1, m) || m > (uint64_t(1) << 60))
-          fail_data(fmt::format("a patch of level {} has more cells than can be counted", l));
+          fail_data(fmt::format("a patch of level {} has too many cells to count", l));
       }
       p.cell_offset = cells, p.point_offset = points;
       if (!add(cells, n, cells) || !add(points, m, points) || points > (uint64_t(1) << 62))
-        fail_data("the grid has more cells than can be counted");
+        fail_data("the grid has too many cells to count");
     }
   return cells;
 }

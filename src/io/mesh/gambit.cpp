@@ -61,27 +61,27 @@ void read_header(TextCursor& in, GambitMesh& m) {
 }
 
 void read_nodes(TextCursor& in, GambitMesh& m) {
-  if (!m.node_ids.empty()) in.fail("a second list of nodes");
+  if (!m.node_ids.empty()) in.fail("has a second list of nodes");
   for (size_t i = 0; i < m.nodes; ++i) {
     m.node_ids.push_back(in.integer("the number of a node"));
     for (int64_t a = 0; a < 3; ++a) {
       m.xyz.push_back(a < m.dimension ? in.number("a coordinate") : 0);
-      if (!std::isfinite(m.xyz.back())) in.fail("a coordinate that is not finite");
+      if (!std::isfinite(m.xyz.back())) in.fail("a coordinate is not finite");
     }
   }
   m.condition.assign(m.nodes, 0);
 }
 
 void read_elements(TextCursor& in, GambitMesh& m) {
-  if (m.node_ids.empty()) in.fail("elements before nodes");
-  if (!m.element_ids.empty()) in.fail("a second list of elements");
+  if (m.node_ids.empty()) in.fail("the elements precede the nodes");
+  if (!m.element_ids.empty()) in.fail("has a second list of elements");
   const TagIndex index(m.node_ids);
   std::vector<int64_t> nodes, points;
   for (size_t e = 0; e < m.elements; ++e) {
     m.element_ids.push_back(in.integer("the number of an element"));
     const int64_t type = in.integer("an element type"), n = in.integer("the number of nodes");
     const GambitType* t = gambit_type(type, n);
-    if (!t) in.fail(fmt::format("an element of type {} with {} nodes is not read", type, n), "linear elements are");
+    if (!t) in.fail(fmt::format("an element of type {} with {} nodes is not supported", type, n), "linear elements are supported");
     nodes.clear(), points.clear();
     for (int64_t k = 0; k < n; ++k) {
       const int64_t id = in.integer("a node");
@@ -117,7 +117,7 @@ void read_group(TextCursor& in, GambitMesh& m, const TagIndex& elements) {
 // "name type entries values ...", then entries: nodes (type 0) or elements with a side (type 1).
 void read_conditions(TextCursor& in, GambitMesh& m, const TagIndex& nodes) {
   const std::vector<std::string_view> head = words(in.line());
-  if (head.size() < 4) in.fail("a set without its header", "name type entries values");
+  if (head.size() < 4) in.fail("a set has no header", "expected: name type entries values");
   const auto type = parse_int(head[1]), entries = parse_int(head[2]), values = parse_int(head[3]);
   if (!type || !entries || !values || *entries < 0 || *values < 0 || uint64_t(*entries) > in.left() / 2 + 1)
     in.fail(fmt::format("a set of {} entries", head[2]));
@@ -127,7 +127,7 @@ void read_conditions(TextCursor& in, GambitMesh& m, const TagIndex& nodes) {
     in.skip_empty_lines();
     const std::vector<std::string_view> entry = words(in.line());
     const auto id = entry.empty() ? std::nullopt : parse_int(entry[0]);
-    if (!id) in.fail("a set that ends early");
+    if (!id) in.fail("a set ends early");
     if (*type != 0) continue;
     const int64_t at = nodes.find(*id);
     if (at < 0) in.fail(fmt::format("node {} does not exist", *id));

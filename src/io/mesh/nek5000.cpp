@@ -33,7 +33,7 @@ struct NekHeader {
 
 NekHeader parse_nek_header(std::string_view bytes, const std::string& where) {
   if (!bytes.starts_with("#std") || bytes.size() < 136)
-    fail_data("does not begin with a header '#std'", where, "132 bytes of text, then numbers");
+    fail_data("does not begin with the header '#std'", where, "a field file has 132 bytes of text, then numbers");
   NekHeader h;
   const auto w = words(bytes.substr(4, 128));
   auto number = [&](size_t k, const char* what, int64_t lo, int64_t hi) {
@@ -43,9 +43,10 @@ NekHeader parse_nek_header(std::string_view bytes, const std::string& where) {
     return *v;
   };
   h.word = int(number(0, "size of numbers", 4, 8));
-  if (h.word != 4 && h.word != 8) fail_data(fmt::format("numbers of {} bytes", h.word), where, "4 or 8");
+  if (h.word != 4 && h.word != 8) fail_data(fmt::format("has numbers of {} bytes", h.word), where, "4 or 8");
   for (size_t a = 0; a < 3; ++a) h.n[a] = size_t(number(1 + a, "number of points", 1, 64));
-  if (h.n[0] < 2 || h.n[1] < 2) fail_data(fmt::format("elements of {} x {} points", h.n[0], h.n[1]), where, "2 or more along each axis");
+  if (h.n[0] < 2 || h.n[1] < 2)
+    fail_data(fmt::format("has elements of {} x {} points", h.n[0], h.n[1]), where, "2 or more along each axis are needed");
   h.elements = size_t(number(4, "number of elements", 0, int64_t(1) << 40));
   const auto time = w.size() > 6 ? parse_double(w[6]) : std::nullopt;
   if (!time) fail_data("the header has no time", where);
@@ -82,7 +83,7 @@ NekCase parse_case(const std::string& path, std::string_view text) {
   }
   if (c.format.empty()) fail_data("has no 'filetemplate:'", path);
   if (c.steps < 1 || c.steps > 10000000 || c.first < 0 || c.first > int64_t(1) << 40)
-    fail_data(fmt::format("{} steps from {}", c.steps, c.first), path, "firsttimestep: and numtimesteps: are whole numbers");
+    fail_data(fmt::format("has {} steps from {}", c.steps, c.first), path, "firsttimestep: and numtimesteps: must be whole numbers");
   return c;
 }
 
@@ -101,7 +102,8 @@ std::string file_of(const std::string& path, const std::string& format, size_t w
     size_t digits = 0, j = i + 1;
     while (j < format.size() && format[j] >= '0' && format[j] <= '9')
       digits = std::min<size_t>(digits * 10 + size_t(format[j++] - '0'), 20);
-    if (j == format.size() || format[j] != 'd') fail_data(fmt::format("the file template '{}' is odd", format), path, "name%01d.f%05d");
+    if (j == format.size() || format[j] != 'd')
+      fail_data(fmt::format("the file template '{}' is not supported", format), path, "name%01d.f%05d");
     name += fmt::format("{:0{}}", k == places.size() ? step : int64_t(writer), std::max<size_t>(digits, 1));
     i = j;
   }
@@ -173,12 +175,12 @@ std::vector<NekBlock> blocks_of(const NekHeader& h, const std::string& where) {
       case 'T': r.push_back({"temperature", 1, 1}); break;
       case 'S': {
         const auto n = parse_int(std::string_view(h.content).substr(i + 1, 2));
-        if (!n || *n < 0 || *n > 99) fail_data(fmt::format("the content '{}' has scalars without their number", h.content), where);
+        if (!n || *n < 0 || *n > 99) fail_data(fmt::format("the content code '{}' has scalars without a count", h.content), where);
         for (int64_t k = 1; k <= *n; ++k) r.push_back({fmt::format("s{:02}", k), 1, 1});
         i += 2;
         break;
       }
-      default: fail_data(fmt::format("the content '{}' has the unknown letter '{}'", h.content, h.content[i]), where, "X U P T S");
+      default: fail_data(fmt::format("the content code '{}' has the unknown letter '{}'", h.content, h.content[i]), where, "X U P T S");
     }
   return r;
 }
@@ -227,14 +229,14 @@ NekStep read_step(const std::string& path, const NekCase& c, int64_t number, con
 }
 
 DatasetPtr dataset_of(NekStep& step, const std::string& where) {
-  if (step.xyz.size() != 3 * step.nodes) fail_data("has values of other elements than positions", where);
+  if (step.xyz.size() != 3 * step.nodes) fail_data("has values and positions of different elements", where);
   for (double x : step.xyz)
-    if (!std::isfinite(x)) fail_data("a position that is not finite", where);
+    if (!std::isfinite(x)) fail_data("a position is not finite", where);
   const auto& n = step.header.n;
   const size_t nodes = step.header.nodes(), layers = std::max<size_t>(n[2] - 1, 1);
   const size_t corners = n[2] > 1 ? 8 : 4;
   std::vector<int32_t> ids, element;
-  if (step.nodes > size_t(INT32_MAX)) fail_data("more than 2^31 points", where);
+  if (step.nodes > size_t(INT32_MAX)) fail_data("has more than 2^31 points", where);
   for (size_t e = 0; e < step.element.size(); ++e)
     for (size_t k = 0; k < layers; ++k)
       for (size_t j = 0; j + 1 < n[1]; ++j)
@@ -288,7 +290,7 @@ Data read_nek5000(const std::string& path, const ReadOptions& options, Context& 
   if (is_field_file(file.text())) {
     NekStep step;
     read_file(path, options, false, step);
-    if (step.xyz.empty()) fail_data("has no positions", path, "open the .nek5000 file: another step has them");
+    if (step.xyz.empty()) fail_data("has no positions", path, "open the .nek5000 file, since another step has them");
     return dataset_of(step, path);
   }
   const NekCase c = parse_case(path, file.text());

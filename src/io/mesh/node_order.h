@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order of a cell's nodes, told by corners: a node in the middle of an edge, face or cell is known by the corners around it.
+// The order of a cell's nodes, given by corners: a node in the middle of an edge, face or cell is known by the corners around it.
 // Exodus II and CGNS number the corners as VTK does, but the nodes between them in other orders.
 #pragma once
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace sg {
 
-/// Bit k is set when corner k is one of those in whose middle the node lies; a corner has its own bit alone.
+/// Bit k is set when corner k is one of those in whose middle the node lies; a corner has only its own bit.
 using NodeMask = uint8_t;
 
 /// The nodes of a VTK type, linear to quadratic (lines, triangles, quads, tetrahedra, pyramids, wedges, hexahedra); empty for others.

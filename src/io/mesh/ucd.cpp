@@ -73,9 +73,9 @@ void read_text_data(TextCursor& in, UcdMesh& m, const ReadOptions& options, cons
   for (size_t f = 0; f < fields; ++f) {
     width.push_back(in.count("the number of components", 1));
     sum += width.back();
-    if (width.back() < 1 || width.back() > 64) in.fail(fmt::format("a field of {} components", width.back()));
+    if (width.back() < 1 || width.back() > 64) in.fail(fmt::format("a field has {} components", width.back()));
   }
-  if (sum != numbers) in.fail(fmt::format("fields of {} numbers where the header promises {}", sum, numbers));
+  if (sum != numbers) in.fail(fmt::format("the fields have {} numbers where the header announces {}", sum, numbers));
   in.line();
   std::vector<std::pair<std::string_view, std::string_view>> labels;
   for (size_t f = 0; f < fields; ++f) {
@@ -84,12 +84,13 @@ void read_text_data(TextCursor& in, UcdMesh& m, const ReadOptions& options, cons
     labels.emplace_back(parts.empty() ? "" : parts[0], parts.size() < 2 ? "" : parts[1]);
   }
   uint64_t total = 0;
-  if (!multiply(n, sum, total) || total > in.left()) in.fail(fmt::format("{} values, but only {} bytes follow", total, in.left()));
+  if (!multiply(n, sum, total) || total > in.left())
+    in.fail(fmt::format("{} values are announced, but only {} bytes follow", total, in.left()));
   std::vector<std::vector<float>> values(fields);
   for (size_t f = 0; f < fields; ++f) values[f].assign(n * width[f], std::nanf(""));
   for (size_t i = 0; i < n; ++i) {
     const int64_t id = in.integer("a number"), at = index.find(id);
-    if (at < 0) in.fail(fmt::format("data of {} {}, which does not exist", association == Association::point ? "node" : "cell", id));
+    if (at < 0) in.fail(fmt::format("has data of {} {}, which does not exist", association == Association::point ? "node" : "cell", id));
     for (size_t f = 0; f < fields; ++f)
       for (size_t c = 0; c < width[f]; ++c) values[f][size_t(at) * width[f] + c] = float(in.number("a value"));
   }
@@ -116,7 +117,7 @@ void read_ucd_text(const MappedFile& file, const ReadOptions& options, UcdMesh& 
     const UcdType* type = nullptr;
     for (const UcdType& t : ucd_types())
       if (name == t.name) type = &t;
-    if (!type) in.fail(fmt::format("cell type '{}'", name.substr(0, 40)), "pt, line, tri, quad, tet, pyr, prism or hex");
+    if (!type) in.fail(fmt::format("cell type '{}'", name.substr(0, 40)), "use pt, line, tri, quad, tet, pyr, prism or hex");
     points.clear();
     for (size_t k = 0; k < type->from.size(); ++k) {
       const int64_t id = in.integer("a node");
@@ -153,7 +154,7 @@ class UcdBinary {
       const int64_t n = integer(), t = integer();
       if (t < 0 || t >= int64_t(ucd_types().size()) || n != int64_t(ucd_types()[size_t(t)].from.size()))
         fail_data(fmt::format("cell {} has type {} and {} nodes", c, t, n), path_);
-      if (ids + 4 * size_t(n) > ids_end) fail_data(fmt::format("the nodes of cell {} run out of the list", c), path_);
+      if (ids + 4 * size_t(n) > ids_end) fail_data(fmt::format("the nodes of cell {} extend beyond the list", c), path_);
       points.clear();
       for (int64_t k = 0; k < n; ++k, ids += 4) {
         const int64_t id = load<int32_t>(bytes_.data() + ids, big_endian_);
@@ -207,10 +208,10 @@ class UcdBinary {
     for (size_t k = 0; k < numbers; ++k) {
       const int64_t w = integer();
       if (k >= size_t(fields)) continue;
-      if (w < 1 || w > 64) fail_data(fmt::format("a field of {} components", w), path_);
+      if (w < 1 || w > 64) fail_data(fmt::format("a field has {} components", w), path_);
       width.push_back(size_t(w)), sum += size_t(w);
     }
-    if (sum != numbers) fail_data(fmt::format("fields of {} numbers where the header promises {}", sum, numbers), path_);
+    if (sum != numbers) fail_data(fmt::format("the fields have {} numbers where the header announces {}", sum, numbers), path_);
     at_ += 8 * numbers;
     for (size_t f = 0; f < size_t(fields); ++f) {
       std::vector<float> v(n * width[f]);
@@ -270,7 +271,7 @@ Data read_ucd(const std::string& path, const ReadOptions& options, Context&) {
   if (is_binary(file.text())) UcdBinary(file).read(options, m);
   else read_ucd_text(file, options, m);
   for (float x : m.xyz)
-    if (!std::isfinite(x)) fail_data("a coordinate that is not finite", path);
+    if (!std::isfinite(x)) fail_data("a coordinate is not finite", path);
   UnstructuredMesh mesh;
   m.cells.finish(mesh);
   mesh.points.xyz = Array::from_vector(std::move(m.xyz), 3);

@@ -67,7 +67,7 @@ double power(double x, int n) {
   return r;
 }
 
-/// Does the element use simplex coordinates along (0, 1), (0, 1, 2), or none?
+/// Whether the element uses simplex coordinates along (0, 1), (0, 1, 2), or none.
 int simplex_axes(Geometry g) { return g == Geometry::triangle || g == Geometry::prism ? 2 : g == Geometry::tetrahedron ? 3 : 1; }
 
 /// Position of the node at a lattice place: 1D points along tensor axes, their normalised products (Warburton's blend) on simplices.
@@ -237,8 +237,8 @@ NodeMatrix node_matrix(Geometry g, const FeCollection& c, int q, const std::stri
   }
   if (g == Geometry::pyramid) {
     if (p > 1 || q > 1 || c.family != Family::h1)
-      fail_data(fmt::format("the mesh has pyramids, and '{}' or another of its spaces is above order 1 on them", c.name), where,
-                "pyramids are read with continuous spaces of order 1");
+      fail_data(fmt::format("the mesh has pyramids on which '{}' or another of its spaces is above order 1", c.name), where,
+                "pyramids are supported only with continuous spaces of order 1");
     for (size_t k = 0; k < 5; ++k) r.m[k * 5 + k] = 1;
     return r;
   }

@@ -103,12 +103,13 @@ bool take(std::string_view& s, std::string_view prefix) {
   return true;
 }
 
-constexpr const char* readable = "read are H1_, H1Pos_, L2_, L2_T1_, DG_, ND_, RT_, Linear, Quadratic, Cubic, Const and NURBS collections";
+constexpr const char* readable =
+    "supported: H1_, H1Pos_, L2_, L2_T1_, DG_, ND_, RT_, Linear, Quadratic, Cubic, Const and NURBS collections";
 
 Basis basis_of(int64_t number, std::string_view name, const std::string& where) {
   constexpr Basis by_number[] = {Basis::gauss_legendre, Basis::gauss_lobatto,  Basis::bernstein,
                                  Basis::open_uniform,   Basis::closed_uniform, Basis::open_half};
-  if (number < 0 || number > 5) fail_data(fmt::format("the basis of the collection '{}' is not known", name), where, readable);
+  if (number < 0 || number > 5) fail_data(fmt::format("the basis of the collection '{}' is unknown", name), where, readable);
   return by_number[number];
 }
 
@@ -149,11 +150,11 @@ FeCollection parse_collection(std::string_view name, const std::string& where) {
   c.name = std::string(name);
   if (parse_fixed(name, c)) return c;
   std::string_view s = name;
-  auto unknown = [&]() { fail_data(fmt::format("the finite element collection '{}' is not read", name), where, readable); };
+  auto unknown = [&]() { fail_data(fmt::format("the finite element collection '{}' is not supported", name), where, readable); };
   auto number = [&](std::string_view digits) {
     const auto n = parse_int(digits);
     if (!n || *n < 0) unknown();
-    if (*n > 10) fail_data(fmt::format("the collection '{}' has order {}", name, *n), where, "orders up to 10 are read");
+    if (*n > 10) fail_data(fmt::format("the collection '{}' has order {}", name, *n), where, "orders up to 10 are supported");
     return int(*n);
   };
   if (take(s, "NURBS")) {

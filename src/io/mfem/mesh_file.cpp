@@ -14,10 +14,10 @@ void parse_elements(TextCursor& in, Topology& t, bool keep) {
   for (size_t e = 0; e < n; ++e) {
     const int64_t attribute = in.integer("an attribute");
     const int64_t g = in.integer("a geometry");
-    if (g < 0 || g >= geometry_count) in.fail(fmt::format("there is no geometry {}", g), "0 is a point, ... 7 a pyramid");
+    if (g < 0 || g >= geometry_count) in.fail(fmt::format("there is no geometry {}", g), "geometries run from 0, a point, to 7, a pyramid");
     const GeometryInfo& i = info(Geometry(g));
     if (keep && i.dimension != t.dimension)
-      in.fail(fmt::format("an element of dimension {} in a mesh of dimension {}", i.dimension, t.dimension));
+      in.fail(fmt::format("an element has dimension {} in a mesh of dimension {}", i.dimension, t.dimension));
     for (int k = 0; k < i.corners; ++k) {
       const int64_t v = in.integer("a vertex");
       if (v < 0) in.fail(fmt::format("vertex {} does not exist", v));
@@ -43,7 +43,7 @@ FeSpace parse_space(TextCursor& in) {
   s.collection = parse_collection(in.word(), fmt::format("{}, line {}", in.where(), in.line_now()));
   in.expect("VDim:");
   const int64_t vdim = in.integer("the number of components");
-  if (vdim < 1 || vdim > 64) in.fail(fmt::format("VDim is {}", vdim), "1 to 64 components are read");
+  if (vdim < 1 || vdim > 64) in.fail(fmt::format("VDim is {}", vdim), "1 to 64 components are supported");
   s.vdim = int(vdim);
   in.expect("Ordering:");
   const int64_t ordering = in.integer("the ordering");
@@ -51,13 +51,13 @@ FeSpace parse_space(TextCursor& in) {
   s.by_vdim = ordering == 1;
   while (versioned) {
     const std::string_view w = in.word();
-    if (w.empty()) in.fail("the space has no end", "a line 'End: MFEM FiniteElementSpace v1.0'");
+    if (w.empty()) in.fail("the space has no end line", "expected the line 'End: MFEM FiniteElementSpace v1.0'");
     if (w == "End:") {
       in.line();
       break;
     }
     if (w.starts_with("NURBS") || w.starts_with("Element") || w.starts_with("Variable"))
-      in.fail(fmt::format("the space has '{}'", w), "spaces of one order for all elements are read");
+      in.fail(fmt::format("the space has '{}'", w), "only spaces with one order for all elements are supported");
   }
   return s;
 }
@@ -72,8 +72,8 @@ size_t space_size(const Topology& t, const FeCollection& c, const std::string& w
     }
     case Family::nurbs: fail_data(fmt::format("the space '{}' needs a NURBS mesh", c.name), where);
     default:
-      fail_data(fmt::format("the vector-valued collection '{}' is not read", c.name), where,
-                "project it on an L2 or H1 space of several components before it is written");
+      fail_data(fmt::format("the vector-valued collection '{}' is not supported", c.name), where,
+                "project it onto an L2 or H1 space of several components before writing it");
   }
 }
 
@@ -97,7 +97,7 @@ void parse_nodes(TextCursor& in, MeshFile& mesh) {
   f.space = parse_space(in);
   if (f.space.vdim > 3) in.fail(fmt::format("positions have {} components", f.space.vdim));
   const FeCollection& c = f.space.collection;
-  if (c.family == Family::l2 && c.order == 0) in.fail("positions are constant on each element");
+  if (c.family == Family::l2 && c.order == 0) in.fail("the positions are constant on each element");
   f.values = parse_values(in, space_size(mesh.topology, c, in.where()) * size_t(f.space.vdim));
   mesh.space_dimension = f.space.vdim;
   mesh.nodes = std::move(f);
@@ -146,9 +146,9 @@ MeshFile parse_mesh(TextCursor& in) {
   const bool nurbs = kind == "NURBS", nonconforming = kind == "NC";
   if (nurbs || nonconforming) in.expect("mesh");
   else if (kind != "mesh")
-    in.fail(fmt::format("'MFEM {}' is no mesh that is read", kind), "'MFEM mesh', 'MFEM NC mesh', 'MFEM NURBS mesh'");
+    in.fail(fmt::format("'MFEM {}' is not a supported mesh", kind), "supported: 'MFEM mesh', 'MFEM NC mesh', 'MFEM NURBS mesh'");
   const std::string_view version = in.word();
-  if (!version.starts_with("v1.")) in.fail(fmt::format("version '{}'", version), "versions v1.0 to v1.3 are read");
+  if (!version.starts_with("v1.")) in.fail(fmt::format("version '{}'", version), "versions v1.0 to v1.3 are supported");
   in.expect("dimension");
   Topology& t = mesh.topology;
   const int64_t d = in.integer("the dimension");
@@ -186,10 +186,10 @@ MeshFile parse_mesh(TextCursor& in) {
       in.word();
       parse_vertices(in, mesh);
       if (refined && mesh.nodes)
-        in.fail("a non-conforming mesh with curved elements", "save it with linear elements, or as a conforming mesh");
+        in.fail("non-conforming meshes with curved elements are not supported", "save it with linear elements, or as a conforming mesh");
       return mesh;
     } else {
-      in.fail(fmt::format("'{}' where a section should begin", w.substr(0, 40)), "boundary, vertices");
+      in.fail(fmt::format("found '{}' where a section was expected", w.substr(0, 40)), "use boundary or vertices");
     }
   }
   in.fail("the mesh has no vertices");

@@ -33,7 +33,7 @@ struct KnotVector {
   size_t control_points() const { return knots.size() - size_t(order) - 1; }
 };
 
-/// What a NURBS mesh has beside its topology: one knot vector per edge direction, and weights per control point, or whole patches.
+/// What a NURBS mesh has besides its topology: one knot vector per edge direction, and weights per control point, or whole patches.
 struct NurbsMesh {
   std::vector<std::array<int64_t, 2>> edge_vertices;  ///< as the file lists them
   std::vector<int> edge_knots;                        ///< knot vector of each edge; it runs from the first vertex to the second

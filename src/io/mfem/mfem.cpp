@@ -91,8 +91,8 @@ std::string mesh_beside(const std::string& path) {
   for (const std::string& name : folder_entries(folder.empty() ? "." : folder))
     if (name.ends_with(".mesh")) meshes.push_back(folder + name);
   if (meshes.size() == 1) return meshes[0];
-  fail_data("a grid function without its mesh", path,
-            fmt::format("put the mesh beside it as '{}.mesh', or leave one mesh alone in the folder", file_name_of(stem)));
+  fail_data("the mesh of the grid function is missing", path,
+            fmt::format("put the mesh beside it as '{}.mesh', or keep only one mesh in the folder", file_name_of(stem)));
 }
 
 MeshFile mesh_of(const std::string& path) {
@@ -148,10 +148,10 @@ Data read_glvis(const std::string& path, const ReadOptions& options, Context& co
   if (in.peek() == "mfem_mesh_end") in.word();
   std::vector<mfem::GridFunction> fields;
   if (kind == "quadrature" || in.peek() == "QuadratureSpace")
-    in.fail("quadrature functions are not read", "project them on an L2 space before they are saved");
+    in.fail("quadrature functions are not supported", "project them onto an L2 space before saving");
   const bool more = !in.at_end();
   if (more && mfem::starts_function(in.text().substr(in.position()))) mfem::parse_function(in, mesh, "solution", options, fields);
-  else if (kind != "mesh") in.fail("the grid function is missing", "a line 'FiniteElementSpace' behind the mesh");
+  else if (kind != "mesh") in.fail("the grid function is missing", "expected a line 'FiniteElementSpace' after the mesh");
   return mfem::make(mesh, fields, path, context);
 }
 

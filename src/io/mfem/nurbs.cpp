@@ -13,20 +13,20 @@ namespace {
 KnotVector parse_knots(TextCursor& in) {
   KnotVector k;
   const int64_t order = in.integer("the order of a knot vector");
-  if (order < 1 || order > 10) in.fail(fmt::format("a knot vector of order {}", order), "orders 1 to 10 are read");
+  if (order < 1 || order > 10) in.fail(fmt::format("a knot vector has order {}", order), "orders 1 to 10 are supported");
   k.order = int(order);
   const size_t points = in.count("the number of control points", 2), n = points + size_t(order) + 1;
-  if (points < size_t(order) + 1) in.fail(fmt::format("{} control points for order {}", points, order));
+  if (points < size_t(order) + 1) in.fail(fmt::format("a knot vector has {} control points for order {}", points, order));
   k.knots = parse_values(in, n);
   const auto& u = k.knots;
   for (size_t i = 0; i + 1 < n; ++i)
-    if (!(u[i] <= u[i + 1])) in.fail("a knot vector that falls");
+    if (!(u[i] <= u[i + 1])) in.fail("a knot vector decreases");
   const auto p = size_t(order);
   if (!(u[0] == u[p]) || !(u[n - 1] == u[n - 1 - p]))
-    in.fail("a knot vector whose end is not repeated", fmt::format("order {} repeats the first and last knot {} times", order, p + 1));
+    in.fail("the end of a knot vector is not repeated", fmt::format("order {} needs the first and last knot {} times", order, p + 1));
   for (size_t i = 1; i + p + 1 < n; ++i)
     if (u[i] == u[i + p] && u[i] > u[0] && u[i] < u[n - 1])
-      in.fail("a knot that is repeated so often that the patch falls apart", fmt::format("at most {} times inside", p));
+      in.fail("a knot is repeated so often that the patch falls apart", fmt::format("interior knots may occur at most {} times", p));
   return k;
 }
 
@@ -58,7 +58,7 @@ void parse_patches(TextCursor& in, const Topology& t, NurbsMesh& n, int& space_d
     space_dimension = int(d);
     const std::string_view kind = in.word();
     if (kind != "controlpoints" && kind != "controlpoints_homogeneous" && kind != "controlpoints_cartesian")
-      in.fail(fmt::format("'{}' where controlpoints should begin", kind));
+      in.fail(fmt::format("found '{}' where 'controlpoints' was expected", kind));
     patch.points = parse_values(in, size_t(points) * size_t(d + 1));
     if (kind != "controlpoints_cartesian")
       for (size_t i = 0; i < patch.points.size(); i += size_t(d + 1))
@@ -78,7 +78,8 @@ void parse_nurbs(TextCursor& in, MeshFile& mesh) {
     if (numbered) return;
     if (t.size() == 0) in.fail("the mesh has no elements");
     for (Geometry g : t.geometry)
-      if (g != Geometry::segment && g != Geometry::square && g != Geometry::cube) in.fail("a NURBS patch is a segment, square or cube");
+      if (g != Geometry::segment && g != Geometry::square && g != Geometry::cube)
+        in.fail("a NURBS patch must be a segment, square or cube");
     for (int64_t v : t.corners)
       if (v >= t.vertices) in.fail(fmt::format("a patch has vertex {}, but there are {} (from 0)", v, t.vertices));
     number_entities(t);
@@ -109,15 +110,15 @@ void parse_nurbs(TextCursor& in, MeshFile& mesh) {
       parse_patches(in, t, n, mesh.space_dimension);
       return;
     } else {
-      in.fail(fmt::format("the section '{}' of a NURBS mesh is not read", w.substr(0, 40)),
-              "elements, boundary, edges, vertices, knotvectors, weights, patches");
+      in.fail(fmt::format("the section '{}' of a NURBS mesh is not supported", w.substr(0, 40)),
+              "supported: elements, boundary, edges, vertices, knotvectors, weights, patches");
     }
   }
   finish_topology();
   GridFunction f;
   f.space = parse_space(in);
   if (f.space.collection.family != Family::nurbs || f.space.vdim > 3)
-    in.fail("the positions of a NURBS mesh are NURBS of up to 3 components");
+    in.fail("the positions of a NURBS mesh must be NURBS of up to 3 components");
   const size_t points = nurbs_size(mesh, in.where());
   if (n.weights.empty()) n.weights.assign(points, 1.0);
   f.values = parse_values(in, points * size_t(f.space.vdim));

@@ -78,7 +78,7 @@ class PatchNumbering {
   void advance(uint64_t& next, uint64_t a, uint64_t b, uint64_t c) const {
     uint64_t n = 0;
     if (!multiply(a, b, n) || !multiply(n, c, n) || !add(next, n, next) || next > (uint64_t(1) << 40))
-      fail_data("the knot vectors ask for more than 2^40 control points", where_);
+      fail_data("the knot vectors need more than 2^40 control points", where_);
   }
   /// Edges 0-1, 0-3 and 0-4 of squares and cubes.
   static size_t axis_local_edge(int a) { return a == 0 ? 0 : a == 1 ? 3 : 8; }
@@ -150,10 +150,10 @@ void PatchNumbering::ids(size_t e, std::vector<int64_t>& out) const {
     for (size_t k = 0; k < 4; ++k) own[k] = v[size_t(g.faces[f][k])];
     const int c0 = corner_in(own, base[0]), c1 = corner_in(own, base[1]), c3 = corner_in(own, base[3]);
     if (c0 < 0 || c1 < 0 || c3 < 0 || (c0 + c1) % 2 == 0 || (c0 + c3) % 2 == 0)
-      fail_data(fmt::format("face {} of patch {} does not fit the face of its neighbour", f, e), where_);
+      fail_data(fmt::format("face {} of patch {} does not match the face of its neighbour", f, e), where_);
     const int p0 = g.faces[f][size_t(c0)], p1 = g.faces[f][size_t(c1)], p3 = g.faces[f][size_t(c3)];
     const std::array<size_t, 2> n{s[size_t(axis(e, p0, p1))] - 2, s[size_t(axis(e, p0, p3))] - 2};
-    if (n != face_size_[id]) fail_data(fmt::format("face {} of patch {} has other control points than its neighbour's", f, e), where_);
+    if (n != face_size_[id]) fail_data(fmt::format("face {} of patch {} has different control points from its neighbour's", f, e), where_);
     for (int64_t j = 1; j <= int64_t(n[1]); ++j)
       for (int64_t i = 1; i <= int64_t(n[0]); ++i)
         slot(moved(moved(corner(p0), step(p0, p1), i), step(p0, p3), j)) = face_first_[id] + (j - 1) * int64_t(n[0]) + i - 1;
@@ -294,7 +294,7 @@ std::vector<double> patch_points(const MeshFile& mesh, const std::vector<GridFun
     const auto id = size_t(ids[i]);
     const double* listed = n.patches.empty() ? nullptr : n.patches[e].points.data() + i * (d + 1);
     const double w = listed ? listed[d] : n.weights[id];
-    if (!(w > 0)) fail_data(fmt::format("control point {} has the weight {}", id, w), where, "weights are positive");
+    if (!(w > 0)) fail_data(fmt::format("control point {} has the weight {}", id, w), where, "weights must be positive");
     for (size_t a = 0; a < d; ++a) o[a] = w * (listed ? listed[a] : mesh.nodes->get(id, int(a)));
     o[3] = w;
     size_t c = 4;
@@ -379,15 +379,16 @@ DatasetPtr nurbs_dataset(const MeshFile& mesh, const std::vector<GridFunction>& 
   for (const KnotVector& k : knots) order = std::max(order, k.order);
   std::vector<size_t> along;
   for (const KnotVector& k : knots) along.push_back(extract(k, order).rows.size());
-  if (listed && !fields.empty()) fail_data("fields on a NURBS mesh that lists its patches are not read", where);
+  if (listed && !fields.empty()) fail_data("fields on a NURBS mesh that lists its patches are not supported", where);
   const PatchNumbering from(mesh, control_points(knots), where), to(mesh, along, where);
   if (to.size() > 100 * from.size() + 1000000)
     fail_data(fmt::format("{} control points become {} at order {}", from.size(), to.size(), order), where,
-              "orders that differ less, or fewer knot spans");
+              "use orders that differ less, or fewer knot spans");
   BezierNet net;
   for (const GridFunction& f : fields) {
     if (f.space.collection.family != Family::nurbs)
-      fail_data(fmt::format("a field of the space '{}' on a NURBS mesh is not read", f.space.collection.name), where, "NURBS fields are");
+      fail_data(fmt::format("a field of the space '{}' on a NURBS mesh is not supported", f.space.collection.name), where,
+                "NURBS fields are supported");
     net.width += size_t(f.space.vdim);
   }
   net.all.assign(to.size() * net.width, std::nan(""));
@@ -395,7 +396,7 @@ DatasetPtr nurbs_dataset(const MeshFile& mesh, const std::vector<GridFunction>& 
   for (size_t e = 0; e < t.size(); ++e) {
     std::array<size_t, 3> size = from.sizes(e), spans{1, 1, 1};
     if (listed && n.patches[e].points.size() != size[0] * size[1] * size[2] * size_t(mesh.space_dimension + 1))
-      fail_data(fmt::format("patch {} has other knot vectors than its edges", e), where);
+      fail_data(fmt::format("patch {} has different knot vectors from its edges", e), where);
     from.ids(e, ids);
     std::vector<double> h = patch_points(mesh, fields, e, ids, net.width, where);
     for (int a = 0; a < t.dimension; ++a) {
@@ -405,7 +406,7 @@ DatasetPtr nurbs_dataset(const MeshFile& mesh, const std::vector<GridFunction>& 
       spans[size_t(a)] = x.spans;
       h = apply(x, h, size, size_t(a), net.width);
     }
-    if (size != to.sizes(e)) fail_data(fmt::format("patch {} has other knot spans than its edges", e), where);
+    if (size != to.sizes(e)) fail_data(fmt::format("patch {} has different knot spans from its edges", e), where);
     to.ids(e, ids);
     for (size_t i = 0; i < ids.size(); ++i)
       if (std::isnan(net.all[size_t(ids[i]) * net.width + 3]))

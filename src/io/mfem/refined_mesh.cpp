@@ -74,19 +74,19 @@ void drop_unused(MeshFile& mesh) {
   mesh.coordinates = std::move(kept);
 }
 
-// "rank attribute geometry refinement nodes", or children where refined: only leaves are kept.
+// "expected: rank attribute geometry refinement nodes", or children where refined: only leaves are kept.
 void parse_tree_element(TextCursor& in, Topology& t) {
   std::vector<int64_t> v;
   for (std::string_view word : words(in.line())) {
     const auto i = parse_int(word);
-    if (!i) in.fail(fmt::format("'{}' in an element", word.substr(0, 40)), "rank attribute geometry refinement nodes");
+    if (!i) in.fail(fmt::format("'{}' in an element", word.substr(0, 40)), "expected: rank attribute geometry refinement nodes");
     v.push_back(*i);
   }
   if (v.size() < 4 || v[3] != 0) return;  // not used any more, or refined
   if (v[2] < 0 || v[2] >= geometry_count || info(Geometry(v[2])).dimension != t.dimension)
-    in.fail(fmt::format("an element of geometry {} in a mesh of dimension {}", v[2], t.dimension));
+    in.fail(fmt::format("an element has geometry {} in a mesh of dimension {}", v[2], t.dimension));
   const auto corners = size_t(info(Geometry(v[2])).corners);
-  if (v.size() != 4 + corners) in.fail(fmt::format("an element with {} nodes", v.size() - 4), fmt::format("it needs {}", corners));
+  if (v.size() != 4 + corners) in.fail(fmt::format("an element has {} nodes", v.size() - 4), fmt::format("it needs {}", corners));
   for (size_t k = 4; k < v.size(); ++k) {
     if (v[k] < 0 || uint64_t(v[k]) > in.text().size()) in.fail(fmt::format("node {} does not exist", v[k]));
     t.corners.push_back(v[k]);
@@ -129,14 +129,15 @@ void parse_nonconforming(TextCursor& in, MeshFile& mesh) {
       const int64_t d = in.integer("the dimension of space");
       if (d < 1 || d > 3) in.fail(fmt::format("space has dimension {}", d), "1, 2 or 3");
       mesh.space_dimension = int(d);
-      if (!elements) in.fail("coordinates before elements");
+      if (!elements) in.fail("the coordinates precede the elements");
       place_nodes(in, mesh, parents, parse_values(in, n * size_t(d)));
       drop_unused(mesh);
       return;
     } else if (w == "nodes") {
-      in.fail("a non-conforming mesh with curved elements", "save it with linear elements, or as a conforming mesh");
+      in.fail("non-conforming meshes with curved elements are not supported", "save it with linear elements, or as a conforming mesh");
     } else {
-      in.fail(fmt::format("'{}' where a section should begin", w.substr(0, 40)), "elements, boundary, vertex_parents, coordinates");
+      in.fail(fmt::format("found '{}' where a section was expected", w.substr(0, 40)),
+              "use elements, boundary, vertex_parents or coordinates");
     }
   }
   in.fail("the mesh has no coordinates");
@@ -219,18 +220,18 @@ void parse_inline(TextCursor& in, MeshFile& mesh) {
                                    {"hex", Geometry::cube},        {"tet", Geometry::tetrahedron}, {"wedge", Geometry::prism},
                                    {"pyramid", Geometry::pyramid}};
   const auto* kind = std::find_if(std::begin(kinds), std::end(kinds), [&](const Kind& k) { return type == k.name; });
-  if (kind == std::end(kinds)) in.fail(fmt::format("type '{}'", type), "segment, tri, quad, tet, hex, wedge or pyramid");
+  if (kind == std::end(kinds)) in.fail(fmt::format("type '{}'", type), "use segment, tri, quad, tet, hex, wedge or pyramid");
   Topology& t = mesh.topology;
   const GeometryInfo& g = info(kind->geometry);
   const int d = t.dimension = mesh.space_dimension = g.dimension;
   uint64_t cells = 1;
   for (int a = 0; a < 3; ++a) {
     if (a >= d) n[size_t(a)] = 0;
-    else if (n[size_t(a)] < 1 || n[size_t(a)] > 100000) in.fail(fmt::format("n{} is {}", char('x' + a), n[size_t(a)]), "1 or more");
+    else if (n[size_t(a)] < 1 || n[size_t(a)] > 100000) in.fail(fmt::format("n{} is {}", char('x' + a), n[size_t(a)]), "give 1 or more");
     else cells *= uint64_t(n[size_t(a)]);
-    if (!(std::fabs(size[size_t(a)]) <= 1e300)) in.fail("a length that is not finite");
+    if (!(std::fabs(size[size_t(a)]) <= 1e300)) in.fail("a length is not finite");
   }
-  if (cells > 4000000) in.fail(fmt::format("{} elements made from a few numbers", cells), "at most 4 million");
+  if (cells > 4000000) in.fail(fmt::format("the few numbers of the file describe {} elements", cells), "at most 4 million are allowed");
 
   fill_box(mesh, kind->geometry, type, n, size);
 }

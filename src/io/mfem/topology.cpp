@@ -115,7 +115,7 @@ int64_t Numbering::face_node(const Topology& t, size_t e, const LocalNode& n) co
   const size_t corners = base[3] < 0 ? 3 : 4;
   std::array<int64_t, 4> v{};
   for (size_t k = 0; k < local.size(); ++k) v[k] = t.element(e)[size_t(local[k])];
-  auto odd = [&]() { fail_data(fmt::format("face {} of element {} does not fit the face of its neighbour", int(n.entity), e), where_); };
+  auto odd = [&]() { fail_data(fmt::format("face {} of element {} does not match the face of its neighbour", int(n.entity), e), where_); };
   if (local.size() != corners) odd();
   const std::span<const int64_t> own(v.data(), corners);
   const int c0 = corner_in(own, base[0]), c1 = corner_in(own, base[1]), c2 = corner_in(own, base[corners - 1]);

@@ -17,7 +17,7 @@ struct Topology {
   std::vector<size_t> begin{0};  ///< elements + 1 places in `corners`
   std::vector<int64_t> corners;
 
-  // Numbered by number_entities(), in the order of first appearance, when somebody needs them: not for linear meshes.
+  // Numbered by number_entities(), in the order of first appearance, when needed: not for linear meshes.
   mutable bool numbered = false;
   mutable size_t edges = 0, faces = 0;
   mutable std::vector<size_t> edge_begin, face_begin;  ///< elements + 1 places in ...

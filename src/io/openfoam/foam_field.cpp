@@ -16,7 +16,7 @@ namespace sg::openfoam {
 
 namespace {
 
-/// A value as it stands in the file.
+/// A value as written in the file.
 struct Value {
   bool given = false, uniform = false;
   std::vector<double> one;
@@ -69,9 +69,9 @@ class FieldReader {
     if (kind_.components == 3) r.inner.role = Role::vectors;
     if (!inner_.given) {
       const std::string why = f_.directive().empty() ? "" : fmt::format("; '{}' is not expanded", f_.directive());
-      f_.fail(fmt::format("has no internalField{}", why), "'uniform VALUE' or 'nonuniform List<TYPE> N(...)'");
+      f_.fail(fmt::format("has no internalField{}", why), "use 'uniform VALUE' or 'nonuniform List<TYPE> N(...)'");
     }
-    // An empty list stands for no values at all: a processor without cells.
+    // An empty list means no values at all: a processor without cells.
     type_ = inner_.uniform || inner_.list.empty() ? ElementType::f32 : inner_.list.type();
     r.inner.array = array_of(inner_, count, "internalField");
     if (kind_.only_inner) return r;
@@ -106,8 +106,8 @@ class FieldReader {
     std::vector<double> e;
     while (f_.peek() != "]") {
       if (const auto v = parse_double(f_.next())) e.push_back(*v);
-      else f_.fail("dimensions are seven numbers");
-      if (e.size() > 7) f_.fail("dimensions are seven numbers");
+      else f_.fail("dimensions must be seven numbers");
+      if (e.size() > 7) f_.fail("dimensions must be seven numbers");
     }
     f_.next();
     f_.expect(";", "the dimensions");
@@ -140,7 +140,7 @@ class FieldReader {
       f_.skip_entry();
       return v;
     } else {
-      f_.fail(fmt::format("'{}' where uniform or nonuniform is due", how.substr(0, 40)));
+      f_.fail(fmt::format("found '{}' where uniform or nonuniform was expected", how.substr(0, 40)));
     }
     f_.expect(";", "an entry");
     v.given = true;
@@ -181,7 +181,7 @@ class FieldReader {
     if (look_only_) return unread_values(look_type_, count, kind_.components);
     Array a;
     if (v.uniform) a = filled(v.one, type_, count);
-    else if (v.list.count() != count) f_.fail(fmt::format("{} has {} values, {} are due", what, v.list.count(), count));
+    else if (v.list.count() != count) f_.fail(fmt::format("{} has {} values, expected {}", what, v.list.count(), count));
     else a = v.list.converted(type_);
     return kind_.components == 6 ? in_our_order(a) : a;
   }
@@ -203,7 +203,7 @@ class FieldReader {
     // Patches of no extent (empty) may keep a list of no values.
     if (e && e->value.given && (e->value.uniform || e->value.list.count() == p.count)) return array_of(e->value, p.count, p.name);
     if (e && e->value.given && e->value.list.count() != 0)
-      f_.fail(fmt::format("patch '{}' has {} values, {} are due", p.name, e->value.list.count(), p.count));
+      f_.fail(fmt::format("patch '{}' has {} values, expected {}", p.name, e->value.list.count(), p.count));
     std::vector<int64_t> cells(p.count);
     for (size_t i = 0; i < p.count; ++i) cells[i] = mesh_.owner[p.start + i];
     return gather(inner, cells);

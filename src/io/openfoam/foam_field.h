@@ -14,7 +14,7 @@ struct FoamField {
   std::vector<Field> patches;  ///< one per patch of the mesh
 };
 
-/// What the header says that a file holds; components 0 = no field that is read (a surface field, a dictionary).
+/// Contents of a file according to its header; components 0 = no field that is read (a surface field, a dictionary).
 struct FieldClass {
   int components = 0;
   bool on_points = false, only_inner = false;
@@ -22,7 +22,7 @@ struct FieldClass {
 FieldClass field_class(const std::string& class_name);
 
 /// Reads a field. Patches without a value of their own (zeroGradient, empty, ...) have that of the cells behind them. With `look_only`
-/// stand-ins are given. Throws Error(data), also for values that hang on an #include or a $macro.
+/// placeholders are returned. Throws Error(data), also for values that depend on an #include or a $macro.
 FoamField read_field(const std::string& path, const std::string& name, const FoamMesh& mesh, bool look_only);
 
 /// "m/s", "kg/(m s^2)" from the seven exponents of mass, length, time, temperature, quantity, current, luminosity.

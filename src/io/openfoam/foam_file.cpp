@@ -80,7 +80,7 @@ void FoamFile::read_header() {
     std::string value(next());
     if (key == "class") class_ = value;
     if (key == "format") {
-      if (value != "ascii" && value != "binary") fail(fmt::format("format '{}' is not read", value), "ascii or binary");
+      if (value != "ascii" && value != "binary") fail(fmt::format("format '{}' is not supported", value), "use ascii or binary");
       binary_ = value == "binary";
     }
     if (key == "arch") {
@@ -115,7 +115,7 @@ std::string_view FoamFile::next() {
   if (text_[at_] == '"') {
     for (++at_; at_ < text_.size() && text_[at_] != '"'; ++at_)
       if (text_[at_] == '\\') ++at_;
-    if (at_ >= text_.size()) fail("a string does not end");
+    if (at_ >= text_.size()) fail("a string has no end");
     return ++at_, text_.substr(begin, at_ - begin);
   }
   // Words may hold balanced parentheses: "div(phi,U)"; a list begins behind a number.
@@ -140,7 +140,7 @@ std::string_view FoamFile::peek() {
 
 void FoamFile::expect(std::string_view token, std::string_view what) {
   const std::string_view t = next();
-  if (t != token) fail(fmt::format("'{}' where '{}' of {} is due", t.substr(0, 40), token, what));
+  if (t != token) fail(fmt::format("found '{}' where '{}' of {} was expected", t.substr(0, 40), token, what));
 }
 
 void FoamFile::skip_entry() {
@@ -150,7 +150,7 @@ void FoamFile::skip_entry() {
     if (t.empty()) fail("ends within an entry");
     if (t == "{" || t == "(" || t == "[") ++depth;
     else if (t == "}" || t == ")" || t == "]") {
-      if (depth == 0) fail(fmt::format("'{}' closes nothing", t));
+      if (depth == 0) fail(fmt::format("'{}' does not close anything", t));
       if (--depth == 0 && t == "}") {
         if (peek() == ";") next();
         return;
@@ -178,14 +178,14 @@ void FoamFile::skip_directive() { at_ = std::min(text_.find('\n', at_), text_.si
 size_t FoamFile::count(std::string_view what) {
   const std::string_view t = next();
   const auto n = parse_int(t);
-  if (!n || *n < 0) fail(fmt::format("'{}' where {} is due", t.substr(0, 40), what));
+  if (!n || *n < 0) fail(fmt::format("found '{}' where {} was expected", t.substr(0, 40), what));
   return size_t(*n);
 }
 
 double FoamFile::real(std::string_view what) {
   const std::string_view t = next();
   const auto v = parse_double(t);
-  if (!v) fail(fmt::format("'{}' is no number ({})", t.substr(0, 40), what));
+  if (!v) fail(fmt::format("'{}' is not a number ({})", t.substr(0, 40), what));
   return *v;
 }
 
@@ -195,7 +195,7 @@ bool FoamFile::open_list(size_t& n, bool& uniform, std::string_view what) {
   const std::string_view t = peek();
   uniform = t == "{";
   if (n == 0 && t != "(" && t != "{") return false;
-  if (t != "(" && t != "{") fail(fmt::format("'{}' where '(' of {} is due", t.substr(0, 40), what));
+  if (t != "(" && t != "{") fail(fmt::format("found '{}' where '(' of {} was expected", t.substr(0, 40), what));
   next();
   return true;
 }
@@ -226,10 +226,10 @@ std::vector<int32_t> FoamFile::labels(std::string_view what) {
       v[i] =
           label_bytes_ == 8 ? narrow(load<int64_t>(bytes.data() + 8 * i, big_endian_)) : load<int32_t>(bytes.data() + 4 * i, big_endian_);
   } else if (uniform) {
-    // One number stands for all: a list of any length from a few bytes, so it must be in proportion to the file.
+    // One number applies to all: a list of any length from a few bytes, so it must be in proportion to the file.
     const std::string_view t = next();
     const auto x = parse_int(t);
-    if (!x) fail(fmt::format("'{}' is no whole number ({})", t.substr(0, 40), what));
+    if (!x) fail(fmt::format("'{}' is not a whole number ({})", t.substr(0, 40), what));
     if (n > file_.size() * 1000) fail(fmt::format("{} of {} equal numbers is too long for its file", what, n));
     v.assign(n, narrow(*x));
   } else {
@@ -285,7 +285,7 @@ ElementType FoamFile::text_type() {
   return *text_type_;
 }
 
-// Null when the text is no n tuples.
+// Null when the text does not hold n tuples.
 template <class T>
 const char* FoamFile::scan_tuples(const char* p, const char* end, size_t n, int components, T* out) const {
   auto blanks = [&] {
@@ -340,7 +340,7 @@ void FoamFile::read_text(size_t n, int components, T* out, std::string_view what
     }
   }
   const char* p = scan_tuples(begin, end, n, components, out);
-  if (!p) fail(fmt::format("{} is no list of {} values of {} numbers", what, n, components));
+  if (!p) fail(fmt::format("{} is not a list of {} values of {} numbers", what, n, components));
   at_ = size_t(p - text_.data());
 }
 
@@ -348,11 +348,11 @@ void FoamFile::faces(std::vector<int64_t>& begin, std::vector<int32_t>& ids) {
   begin.assign(1, 0);
   ids.clear();
   if (class_ == "faceCompactList") {
-    const std::vector<int32_t> offsets = labels("the begins of faces");
+    const std::vector<int32_t> offsets = labels("the starts of faces");
     ids = labels("the points of faces");
     begin.assign(offsets.begin(), offsets.end());
     if (begin.empty()) begin.assign(1, 0);
-    if (begin.front() != 0 || begin.back() != int64_t(ids.size())) fail("the begins of faces do not fit their points");
+    if (begin.front() != 0 || begin.back() != int64_t(ids.size())) fail("the starts of faces do not match their points");
     for (size_t i = 1; i < begin.size(); ++i)
       if (begin[i] < begin[i - 1]) fail(fmt::format("face {} ends before it begins", i - 1));
     return;
@@ -377,7 +377,7 @@ void FoamFile::faces(std::vector<int64_t>& begin, std::vector<int32_t>& ids) {
       if (k > (text_.size() - at_) / 2 + 1) fail(fmt::format("a face of {} points does not fit", k));
       ids.resize(ids.size() + k);
       const char* p = scan_tuples(text_.data() + at_, text_.data() + text_.size(), k, 1, ids.data() + ids.size() - k);
-      if (!p) fail("a face is no list of whole numbers");
+      if (!p) fail("a face is not a list of whole numbers");
       at_ = size_t(p - text_.data());
     }
     expect(")", "a face");

@@ -25,7 +25,7 @@ class FoamFile {
   const std::string& path() const { return path_; }
   const std::string& class_name() const { return class_; }
   bool binary() const { return binary_; }
-  /// The type of the real numbers of a list that stands next.
+  /// The type of the real numbers of the list that follows.
   ElementType list_type() { return !binary_ ? text_type() : scalar_bytes_ == 8 ? ElementType::f64 : ElementType::f32; }
   [[noreturn]] void fail(const std::string& problem, const std::string& hint = {}) const;
 

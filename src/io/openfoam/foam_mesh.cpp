@@ -41,8 +41,8 @@ void read_boundary(const std::string& path, FoamMesh& m) {
       else f.skip_entry();
     }
     if (p.start > m.faces() || p.count > m.faces() - p.start)
-      f.fail(fmt::format("patch '{}' has the faces {} to {}, there are {}", p.name, p.start, p.start + p.count, m.faces()));
-    if (p.count > 0 && p.start < m.neighbour.size()) f.fail(fmt::format("patch '{}' begins among the inner faces", p.name));
+      f.fail(fmt::format("patch '{}' has the faces {} to {}, but there are {}", p.name, p.start, p.start + p.count, m.faces()));
+    if (p.count > 0 && p.start < m.neighbour.size()) f.fail(fmt::format("patch '{}' begins among the internal faces", p.name));
     m.patches.push_back(std::move(p));
   }
   f.expect(")", "the patches");
@@ -70,7 +70,7 @@ void read_zones(const std::string& path, FoamMesh& m) {
       }
     }
     for (const int32_t c : z.cells)
-      if (c < 0 || size_t(c) >= m.cells) f.fail(fmt::format("zone '{}' has the cell {}, there are {}", z.name, c, m.cells));
+      if (c < 0 || size_t(c) >= m.cells) f.fail(fmt::format("zone '{}' has the cell {}, but there are {}", z.name, c, m.cells));
     m.zones.push_back(std::move(z));
   }
 }
@@ -78,7 +78,7 @@ void read_zones(const std::string& path, FoamMesh& m) {
 void check_mesh(const FoamMesh& m, const std::string& faces, const std::string& owner) {
   const size_t points = m.points.count();
   for (const int32_t p : m.face_ids)
-    if (p < 0 || size_t(p) >= points) fail_data(fmt::format("a face has the point {}, there are {}", p, points), faces);
+    if (p < 0 || size_t(p) >= points) fail_data(fmt::format("a face has the point {}, but there are {}", p, points), faces);
   if (m.face_begin.size() != m.owner.size() + 1)
     fail_data(fmt::format("{} owners for {} faces", m.owner.size(), m.face_begin.size() - 1), owner);
   if (m.neighbour.size() > m.owner.size()) fail_data(fmt::format("{} neighbours for {} faces", m.neighbour.size(), m.owner.size()), owner);
@@ -228,7 +228,7 @@ FoamMesh read_mesh(const std::function<std::string(const std::string&)>& find) {
   auto need = [&](const char* name) {
     std::string path = find(name);
     if (path.empty())
-      fail_data(fmt::format("the mesh has no file '{}'", name), {}, "a polyMesh has points, faces, owner, neighbour and boundary");
+      fail_data(fmt::format("the mesh lacks the file '{}'", name), {}, "a polyMesh needs points, faces, owner, neighbour and boundary");
     return path;
   };
   const std::string faces = need("faces"), owner = need("owner");
@@ -250,7 +250,7 @@ FoamMesh read_mesh(const std::function<std::string(const std::string&)>& find) {
   m.cells = size_t(most + 1);
   // Every cell has faces, so more cells than faces have sides are a wrong number.
   if (m.cells > m.owner.size() + m.neighbour.size())
-    fail_data(fmt::format("a face belongs to cell {}, but {} faces cannot make that many cells", most, m.owner.size()), owner);
+    fail_data(fmt::format("a face belongs to cell {}, but {} faces cannot bound that many cells", most, m.owner.size()), owner);
   check_mesh(m, faces, owner);
   if (const std::string path = find("boundary"); !path.empty()) read_boundary(path, m);
   if (const std::string path = find("cellZones"); !path.empty()) read_zones(path, m);

@@ -96,7 +96,7 @@ class Part {
   }
 
  private:
-  // Meshes may move: the last time folder up to now that has the file goes before constant.
+  // Meshes may move: the last time folder so far that has the file takes precedence over constant.
   std::string find(const std::string& name) const {
     for (size_t i = times_.empty() ? 0 : step_ + 1; i-- > 0;)
       if (std::string p = existing(folder_ + times_[i].name + "/" + region_ + "polyMesh/" + name); !p.empty()) return p;
@@ -133,7 +133,7 @@ class Part {
         patches_[i].fields.add(std::move(f.patches[i]));
       }
     } catch (const Error& e) {
-      // A field that hangs on another file's macros must not keep the rest from being seen, unless it was asked for.
+      // A field that depends on another file's macros must not hide the rest, unless it was requested.
       if (!o_.fields.empty() || e.problem().find("is not expanded") == std::string::npos) throw;
       context_.warn(fmt::format("field '{}' is left out: {}", name, e.what()));
     }
@@ -226,12 +226,12 @@ Data read_openfoam(const std::string& path, const ReadOptions& options, Context&
   const auto n = int64_t(processors.size());
   for (int64_t i = n * options.piece / pieces; i < n * (options.piece + 1) / pieces; ++i) {
     const std::string at = folder + processors[size_t(i)] + "/";
-    if (regions_of(at).empty()) fail_data("has no mesh", at + "constant/polyMesh", "each processor folder needs one");
+    if (regions_of(at).empty()) fail_data("has no mesh", at + "constant/polyMesh", "every processor folder needs one");
     const std::vector<TimeFolder> own = time_folders(at);
     size_t k = 0;
     while (k < own.size() && !times.empty() && own[k].time != times[step].time) ++k;
     if (k == own.size() && !times.empty())
-      fail_data(fmt::format("has no time folder '{}'", times[step].name), at, "all processors need the same times");
+      fail_data(fmt::format("has no time folder '{}'", times[step].name), at, "all processor folders need the same times");
     r->parts.push_back({processors[size_t(i)], read_folder(at, own, k, options, context)});
   }
   return r;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLOT3D files say nothing of themselves: byte order, record marks, precision, dimensions, blanking and the number of grids are
+// PLOT3D files do not describe themselves: byte order, record marks, precision, dimensions, blanking and the number of grids are
 // found by trying every combination against the length of the file. Source: Walatka, Buning, Pierce, Elson, "PLOT3D User's Manual",
 // NASA TM 101067 (1990), chapter 8.
 //
@@ -27,7 +27,7 @@ struct Layout {
   int real_bytes = 4;                        ///< 4 or 8
   std::vector<std::array<size_t, 3>> sizes;  ///< points per axis of each grid
   std::vector<int> fields;                   ///< of each grid: 5 (2D: 4) of a solution, nvar of a function
-  std::vector<size_t> begin;                 ///< place of each grid's first real number: byte, in a text the number before it
+  std::vector<size_t> begin;                 ///< place of each grid's first real number: byte; in text, the number before it
   std::string describe() const;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLOT3D: a grid file, and beside it a solution (q) and a function file. Layout: see layout.h.
+// PLOT3D: a grid file, and next to it a solution (q) and a function file. Layout: see layout.h.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ struct Files {
   bool named = false;  // by a meta file: they must be right
 };
 
-/// Files beside a grid: NAME.q and NAME.f (.fun), or for NAMExyz.EXT also NAMEq.EXT and NAMEf.EXT.
+/// Files next to a grid: NAME.q and NAME.f (.fun), or for NAMExyz.EXT also NAMEq.EXT and NAMEf.EXT.
 std::string companion(const std::string& grid, const std::vector<std::string>& extensions, const std::string& letter) {
   const std::string name = file_name_of(grid);
   const size_t dot = name.rfind('.');
@@ -84,7 +84,7 @@ DatasetParts read_grid(const Numbers& n, const Layout& l, size_t g, const ReadOp
   return d;
 }
 
-// What the solution stands for, for a perfect gas with the format's ratio of specific heats and gas constant 1 (Walatka et al. 1990,
+// Quantities of the solution, for a perfect gas with the format's ratio of specific heats and gas constant 1 (Walatka et al. 1990,
 // PLOT3D User's Manual: functions 200, 110, 120): u = m / rho, p = (gamma - 1)(E - rho u.u / 2), T = p / rho.
 void add_derived(const ReadOptions& o, DatasetParts& d) {
   constexpr double gamma = 1.4;
@@ -143,7 +143,7 @@ void add_functions(const Numbers& n, const Layout& l, size_t g, const ReadOption
   }
 }
 
-/// A file beside the grid, open, with its layout; nothing when it does not belong to it.
+/// A file next to the grid, open, with its layout; nothing when it does not belong to it.
 struct Opened {
   Numbers numbers;
   Layout layout;
@@ -153,7 +153,7 @@ std::optional<Opened> open_beside(const std::string& path, Kind kind, const Layo
   Numbers n{MappedFile(path)};
   std::optional<Layout> l = find_layout(n, kind, &grid);
   if (l) return Opened{std::move(n), std::move(*l)};
-  const std::string what = fmt::format("its length and sizes do not fit the grid ({})", grid.describe());
+  const std::string what = fmt::format("its length and sizes do not match the grid ({})", grid.describe());
   if (must) fail_data(what, path);
   context.warn(fmt::format("{} is left out: {}", path, what));
   return {};
@@ -164,7 +164,8 @@ Data read_files(const Files& files, std::optional<double> time, const ReadOption
   const std::optional<Layout> l = find_layout(n, Kind::grid);
   if (!l)
     fail_data(
-        "is no PLOT3D grid: its length fits no combination of byte order, records, precision, dimensions, blanking and number of grids",
+        "is not a PLOT3D grid: its length matches no combination of byte order, records, precision, dimensions, blanking and number of "
+        "grids",
         files.grid, "a grid file begins with its sizes; for raw numbers give --dims and --type");
   context.info(fmt::format("{}: {}", files.grid, l->describe()));
   const auto q = open_beside(files.solution, Kind::solution, *l, files.named, context);
@@ -196,7 +197,7 @@ std::vector<MetaStep> read_meta(const std::string& path) {
   const Json j = parse_json(file.text(), path);
   std::vector<MetaStep> steps;
   if (!j["filenames"].is_list())
-    fail_data("is no PLOT3D meta file", path, R"(like {"filenames": [{"time": 0, "xyz": "a.xyz", "q": "a.q"}]})");
+    fail_data("is not a PLOT3D meta file", path, R"(like {"filenames": [{"time": 0, "xyz": "a.xyz", "q": "a.q"}]})");
   for (const Json& e : j["filenames"].items()) {
     MetaStep s;
     auto name = [&](const char* key) { return e[key].is_text() ? named_file(path, e[key].text()) : std::string(); };

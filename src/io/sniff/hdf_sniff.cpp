@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the files of the netCDF and CGNS plug-ins begin. HDF5 is the shell of both: extensions tell them apart.
+// How the files of the netCDF and CGNS plug-ins begin. HDF5 is the shell of both: extensions distinguish them.
 #include "io/formats.h"
 
 #include <cstring>

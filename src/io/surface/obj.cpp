@@ -69,7 +69,7 @@ void parse(const MappedFile& file, ObjFile& o, Context& context) {
     o.corners[k] = count(o.first_corner[k], [k](const ObjChunk& c) { return c.cells[k].v.size(); });
   }
   if (o.v > size_t(INT32_MAX) || o.corners[0] + o.corners[1] + o.corners[2] > size_t(INT32_MAX))
-    fail_data("more than 2^31 vertices or corners", o.path);
+    fail_data("has more than 2^31 vertices or corners", o.path);
 }
 
 // Makes the indices of one chunk absolute; fails for those out of range.
@@ -119,13 +119,13 @@ void resolve_all(ObjFile& o, Context& context) {
     if (e) std::rethrow_exception(e);
   o.has_t = std::find(t_used.begin(), t_used.end(), 1) != t_used.end();
   o.has_n = std::find(n_used.begin(), n_used.end(), 1) != n_used.end();
-  if (o.has_t && drop_t) context.warn(o.path + ": faces name texture coordinates but there are none");
-  if (o.has_n && drop_n) context.warn(o.path + ": faces name normals but there are none");
+  if (o.has_t && drop_t) context.warn(o.path + ": faces refer to texture coordinates, but there are none");
+  if (o.has_n && drop_n) context.warn(o.path + ": faces refer to normals, but there are none");
   o.has_t = o.has_t && !drop_t;
   o.has_n = o.has_n && !drop_n;
 }
 
-// Does every corner take the texture coordinate and normal of its vertex's own number?
+// Whether every corner takes the texture coordinate and normal with its vertex's number.
 bool same_indices(const ObjFile& o) {
   if (!o.has_t && !o.has_n) return true;
   return parallel_reduce(
@@ -330,7 +330,7 @@ Array fit(const Array& a, size_t count) {
   return r;
 }
 
-// What write_obj() makes of a surface without points; any other text without a vertex is no OBJ file.
+// What write_obj() makes of a surface without points; any other text without a vertex is not an OBJ file.
 bool only_comments(std::string_view text) {
   bool comment = false;
   while (!text.empty()) {
@@ -349,7 +349,7 @@ Data read_obj(const std::string& path, const ReadOptions& options, Context& cont
   ObjFile o;
   parse(file, o, context);
   resolve_all(o, context);
-  if (o.v == 0 && !only_comments(o.text)) fail_data("there is no vertex", path, "an OBJ file has lines like 'v 1 2 3' and 'f 1 2 3'");
+  if (o.v == 0 && !only_comments(o.text)) fail_data("there are no vertices", path, "an OBJ file has lines like 'v 1 2 3' and 'f 1 2 3'");
 
   DatasetParts parts;
   SurfaceMesh mesh;

@@ -55,7 +55,7 @@ struct Parser {
       if (p == end || *p == '#') break;
       const char* word = p;
       if (!scan_number(p, end, v[n]) || (p < end && !is_blank(*p)))
-        fail(fmt::format("'{}' is no number", std::string_view(word, std::min<size_t>(40, size_t(skip_word(word, end) - word)))));
+        fail(fmt::format("'{}' is not a number", std::string_view(word, std::min<size_t>(40, size_t(skip_word(word, end) - word)))));
       ++n;
     }
     return n;
@@ -64,7 +64,7 @@ struct Parser {
   void vertex(const char* p, const char* end) {
     float v[8];
     const int n = numbers(p, end, v, 8);
-    if (n < 3) fail(fmt::format("a vertex with {} numbers", n), "v x y z");
+    if (n < 3) fail(fmt::format("a vertex has {} numbers", n), "v x y z");
     if (!(std::abs(v[0]) <= 3.4e38f && std::abs(v[1]) <= 3.4e38f && std::abs(v[2]) <= 3.4e38f))
       fail(fmt::format("the position {} {} {} is not finite", v[0], v[1], v[2]));
     out.xyz.insert(out.xyz.end(), v, v + 3);
@@ -82,8 +82,9 @@ struct Parser {
     int64_t i = 0;
     const char* word = p;
     if (!scan_number(p, end, i))
-      fail(fmt::format("'{}' is no {} index", std::string_view(word, std::min<size_t>(40, size_t(skip_word(word, end) - word))), what));
-    if (i == 0) fail(fmt::format("{} index 0", what), "indices count from 1, or from -1 backwards");
+      fail(fmt::format("'{}' is not a valid {} index", std::string_view(word, std::min<size_t>(40, size_t(skip_word(word, end) - word))),
+                       what));
+    if (i == 0) fail(fmt::format("the {} index is 0", what), "indices count from 1, or from -1 backwards");
     if (i > INT32_MAX || i < -int64_t(INT32_MAX / 4)) fail(fmt::format("{} index {} is out of range", what, i));
     return i > 0 ? int32_t(i - 1) : int32_t(obj_relative + int64_t(count) + i);
   }
@@ -106,18 +107,18 @@ struct Parser {
       }
       if (p < end && !is_blank(*p))
         fail(fmt::format("'{}' follows an index", std::string_view(p, std::min<size_t>(40, size_t(skip_word(p, end) - p)))),
-             "corners look like 1, 1/2, 1//3 or 1/2/3");
+             "write corners as 1, 1/2, 1//3 or 1/2/3");
       if (t != obj_none || !c.t.empty()) c.t.resize(c.v.size() - 1, obj_none), c.t.push_back(t);
       if (n != obj_none || !c.n.empty()) c.n.resize(c.v.size() - 1, obj_none), c.n.push_back(n);
     }
     const size_t have = c.v.size() - before, need = kind == ObjCell::polygon ? 3 : kind == ObjCell::line ? 2 : 1;
     if (have < need)
-      fail(fmt::format("a {} with {} corner{}",
+      fail(fmt::format("a {} has {} corner{}",
                        kind == ObjCell::polygon ? "face"
                        : kind == ObjCell::line  ? "line"
                                                 : "point",
                        have, have == 1 ? "" : "s"),
-           fmt::format("it needs {} at least", need));
+           fmt::format("it needs at least {}", need));
     c.lengths.push_back(uint32_t(have));
   }
 
@@ -164,7 +165,7 @@ void parse_obj_chunk(std::string_view text, size_t begin, size_t end_at, const s
       out.normals.insert(out.normals.end(), v, v + 3);
     } else if (w == "vt") {
       float v[3] = {0, 0, 0};
-      if (parser.numbers(rest, line_stop, v, 3) < 1) parser.fail("a texture coordinate without a number");
+      if (parser.numbers(rest, line_stop, v, 3) < 1) parser.fail("a texture coordinate has no number");
       out.tcoords.insert(out.tcoords.end(), v, v + 2);
     } else if (w == "g" || w == "usemtl" || w == "mtllib") {
       // Names point into the file, which outlives the chunks; a continued one would not, and is cut at the backslash.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The statements of one chunk of an OBJ file. Chunks are parsed independently; references that depend on what stands before
-// the chunk (negative indices, groups, materials) are kept relative and resolved when all chunks are known.
+// The statements of one chunk of an OBJ file. Chunks are parsed independently; references that depend on what precedes the chunk (negative
+// indices, groups, materials) are kept relative and resolved when all chunks are known.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -22,7 +22,7 @@ struct ObjCells {
   std::vector<int32_t> v, t, n;   ///< corners; t and n are empty when no corner of the chunk has any
 };
 
-/// A "g" or "usemtl" statement and how many cells of each kind stand before it in the chunk.
+/// A "g" or "usemtl" statement and how many cells of each kind precede it in the chunk.
 struct ObjMark {
   bool material = false;
   std::string_view name;

@@ -77,7 +77,7 @@ void read_text(const std::string& path, std::string_view text, const OffHeader& 
   m.vertices = in.count("the number of vertices", 6);
   m.faces = in.count("the number of faces", 2);
   std::vector<double> rest;
-  rest_of_line(in, rest);  // the number of edges, which nobody needs
+  rest_of_line(in, rest);  // the number of edges, which is not needed
   for (size_t i = 0; i < m.vertices; ++i) {
     for (int a = 0; a < 3; ++a) {
       const double x = in.number("a coordinate");
@@ -87,7 +87,7 @@ void read_text(const std::string& path, std::string_view text, const OffHeader& 
     for (int a = 0; h.normals && a < 3; ++a) m.normals.push_back(float(in.number("a normal")));
     rest_of_line(in, rest);
     if (h.texture) {
-      if (rest.size() < 2) in.fail("a vertex without texture coordinates");
+      if (rest.size() < 2) in.fail("a vertex has no texture coordinates");
       m.tcoords.insert(m.tcoords.end(), rest.end() - 2, rest.end());
       rest.resize(rest.size() - 2);
     }
@@ -95,7 +95,7 @@ void read_text(const std::string& path, std::string_view text, const OffHeader& 
   }
   for (size_t f = 0; f < m.faces; ++f) {
     const size_t n = in.count("the number of corners of a face", 2);
-    if (n == 0) in.fail("a face without corners");
+    if (n == 0) in.fail("a face has no corners");
     for (size_t k = 0; k < n; ++k) m.ids.push_back(in.index("vertex", 0, int64_t(m.vertices)));
     m.begin.push_back(m.ids.size());
     rest_of_line(in, rest);
@@ -137,7 +137,7 @@ void read_binary(const std::string& path, std::string_view bytes, size_t p, cons
     if (!std::isfinite(x)) fail_data("a coordinate that is not finite", path);
   for (size_t f = 0; f < m.faces; ++f) {
     const int64_t n = integer("a face");
-    if (n < 1 || uint64_t(n) > (bytes.size() - p) / 4) fail_data(fmt::format("byte {}: a face with {} corners", p, n), path);
+    if (n < 1 || uint64_t(n) > (bytes.size() - p) / 4) fail_data(fmt::format("byte {}: a face has {} corners", p, n), path);
     for (int64_t k = 0; k < n; ++k) {
       const int64_t id = integer("a face");
       if (id < 0 || id >= nv) fail_data(fmt::format("byte {}: vertex {} does not exist", p, id), path, fmt::format("there are {}", nv));
@@ -145,7 +145,7 @@ void read_binary(const std::string& path, std::string_view bytes, size_t p, cons
     }
     m.begin.push_back(m.ids.size());
     const int64_t colors = integer("a face");
-    if (colors < 0 || colors > 4) fail_data(fmt::format("byte {}: a colour of {} numbers", p, colors), path);
+    if (colors < 0 || colors > 4) fail_data(fmt::format("byte {}: a colour has {} numbers", p, colors), path);
     need(uint64_t(colors) * 4, "a face's colour");
     std::vector<double> c;
     for (int64_t k = 0; k < colors; ++k) c.push_back(double(real()));
@@ -186,7 +186,7 @@ Data read_off(const std::string& path, const ReadOptions&, Context&) {
   if (text.substr(h.end, line - h.end).find("BINARY") != std::string_view::npos)
     read_binary(path, text, std::min(line + 1, text.size()), h, m);
   else read_text(path, text, h, m);
-  if (m.ids.size() > size_t(INT32_MAX) || m.vertices > size_t(INT32_MAX)) fail_data("more than 2^31 corners", path);
+  if (m.ids.size() > size_t(INT32_MAX) || m.vertices > size_t(INT32_MAX)) fail_data("has more than 2^31 corners", path);
 
   // Faces of one or two corners are vertices and lines; cells come in the order of a surface.
   std::vector<size_t> kind[3];

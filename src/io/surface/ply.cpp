@@ -57,7 +57,7 @@ struct Reader {
            (options.fields.empty() || std::find(options.fields.begin(), options.fields.end(), name) != options.fields.end());
   }
 
-  // Makes a field of each property (or group of them) and tells decode_ply to fill it. `used` properties are left out.
+  // Makes a field of each property (or group of them) and lets decode_ply fill it. `used` properties are left out.
   void add_fields(PlyElement& e, Association association, std::vector<bool> used, const PlyHeader& header) {
     add_named_fields(e, association, used, header);
     for (const Group& g : groups) {
@@ -90,7 +90,7 @@ struct Reader {
     }
   }
 
-  // Fields whose names stand in comments of our own files. A comment that does not fit the properties is only a comment.
+  // Fields whose names are in comments of our own files. A comment that does not fit the properties is only a comment.
   void add_named_fields(PlyElement& e, Association association, std::vector<bool>& used, const PlyHeader& header) {
     for (const auto& [key, text] : header.notes) {
       const auto w = words(text);
@@ -186,7 +186,7 @@ Data read_ply(const std::string& path, const ReadOptions& options, Context& cont
     else if (e.name == "face" && !face) face = &e;
     else if ((e.name == "tristrips" || e.name == "tristrip") && !strip) strip = &e;
     else if (e.name == "edge" && !edge) edge = &e;
-    else context.info(fmt::format("{}: element '{}' is not read", path, e.name));
+    else context.info(fmt::format("{}: element '{}' is ignored", path, e.name));
   }
   if (!vertex) fail_data("there is no element 'vertex'", path);
 
@@ -200,9 +200,9 @@ Data read_ply(const std::string& path, const ReadOptions& options, Context& cont
   if (face) {
     face->wanted_list = index_list(*face);
     if (face->wanted_list < 0 && face->count > 0) fail_data("the faces have no list 'vertex_indices'", path);
-    // Cell fields are numbered over all cells, so they need faces alone.
+    // Cell fields are numbered over all cells, so they require a mesh of faces only.
     if (!strip || strip->count == 0) r.add_fields(*face, Association::cell, std::vector<bool>(face->properties.size(), false), h);
-    else context.warn(path + ": face properties are not read beside triangle strips");
+    else context.warn(path + ": face properties are ignored, since there are triangle strips");
   }
   std::byte* ends = nullptr;
   const bool lines = edge && edge->count > 0 && (!face || face->count == 0) && !strip;
@@ -215,7 +215,7 @@ Data read_ply(const std::string& path, const ReadOptions& options, Context& cont
     direct(edge->properties[size_t(edge->find("vertex1"))], ends, 8, ElementType::i32);
     direct(edge->properties[size_t(edge->find("vertex2"))], ends + 4, 8, ElementType::i32);
   } else if (edge && edge->count > 0) {
-    context.info(path + ": edges are not read beside faces");
+    context.info(path + ": edges are ignored, since there are faces");
   }
   decode_ply(file, h, context);
   if (face && face->wanted_list >= 0) mesh.polygons = cells_of(*face);
@@ -239,7 +239,7 @@ struct Column {
   Array values;  ///< one component, of a type that PLY has
 };
 
-// `comments` gets the names of the fields that their properties do not tell.
+// `comments` gets the names of fields that are not clear from their properties.
 std::vector<Column> columns_of(const Dataset& d, Association association, std::string& comments, WriteLosses& losses) {
   std::vector<Column> r;
   for (const Field& f : d.fields()) {

@@ -52,30 +52,30 @@ PlyHeader parse_ply_header(const MappedFile& file) {
       if (f == "ascii") h.encoding = PlyHeader::Encoding::ascii;
       else if (f == "binary_little_endian") h.encoding = PlyHeader::Encoding::little;
       else if (f == "binary_big_endian") h.encoding = PlyHeader::Encoding::big;
-      else fail(fmt::format("unknown format '{}'", f), "ascii, binary_little_endian or binary_big_endian");
+      else fail(fmt::format("unknown format '{}'", f), "use ascii, binary_little_endian or binary_big_endian");
       has_format = true;
     } else if (w[0] == "element") {
       const auto n = w.size() == 3 ? parse_int(w[2]) : std::nullopt;
-      if (!n || *n < 0) fail(fmt::format("'{}' is no 'element NAME COUNT'", line));
+      if (!n || *n < 0) fail(fmt::format("'{}' is not of the form 'element NAME COUNT'", line));
       h.elements.push_back({std::string(w[1]), size_t(*n), {}, -1, {}});
     } else if (w[0] == "property") {
-      if (h.elements.empty()) fail("a property before the first element");
+      if (h.elements.empty()) fail("a property precedes the first element");
       PlyProperty q;
       if (w.size() == 5 && w[1] == "list") {
         q.list = true;
         q.count_type = type_of(w[2]);
-        if (is_float(q.count_type)) fail("a list cannot be counted in floats");
+        if (is_float(q.count_type)) fail("the length of a list cannot be a float");
         q.type = type_of(w[3]);
         q.name = w[4];
       } else if (w.size() == 3) {
         q.type = type_of(w[1]);
         q.name = w[2];
       } else {
-        fail(fmt::format("'{}' is no 'property TYPE NAME' or 'property list TYPE TYPE NAME'", line));
+        fail(fmt::format("'{}' is not of the form 'property TYPE NAME' or 'property list TYPE TYPE NAME'", line));
       }
       h.elements.back().properties.push_back(std::move(q));
     } else {
-      fail(fmt::format("unknown word '{}' in the header", w[0].substr(0, 40)));
+      fail(fmt::format("unknown keyword '{}' in the header", w[0].substr(0, 40)));
     }
   }
   fail_data("the file ends inside its header", h.path, "a PLY header ends with 'end_header'");
@@ -89,7 +89,7 @@ void check_ply_counts(const MappedFile& file, const PlyHeader& h) {
       row += h.encoding == PlyHeader::Encoding::ascii ? 2 : element_size(p.list ? p.count_type : p.type);
     if (!multiply(row, e.count, all) || !add(least, all, least) || least > file.size() - h.body + 1)
       fail_data(fmt::format("{} {} rows do not fit into the {} bytes after the header", e.count, e.name, file.size() - h.body), h.path,
-                "the file is cut off or its counts are wrong");
+                "the file is truncated or its counts are wrong");
   }
 }
 
@@ -320,7 +320,7 @@ size_t decode_binary(const MappedFile& file, const PlyHeader& h, PlyElement& e, 
   return begin + p;
 }
 
-// Scans one number of an ASCII row; false at the end of the line or at something that is no number.
+// Scans one number of an ASCII row; false at the end of the line or at something that is not a number.
 template <class T>
 bool next_number(const char*& p, const char* end, T& v) {
   p = skip_blanks(p, end);
@@ -358,24 +358,24 @@ struct AsciiReader {
       const PlyProperty& q = e.properties[k];
       if (q.list) {
         int64_t n = 0;
-        if (!next_number(p, end, n) || n < 0) fail(begin, fmt::format("{} {}: no length of the list '{}'", e.name, i, q.name));
-        if (n > end - p) fail(begin, fmt::format("{} {}: the list '{}' promises {} entries", e.name, i, q.name, n));
+        if (!next_number(p, end, n) || n < 0) fail(begin, fmt::format("{} {}: the list '{}' has no length", e.name, i, q.name));
+        if (n > end - p) fail(begin, fmt::format("{} {}: the list '{}' announces {} entries", e.name, i, q.name, n));
         const bool wanted = int(k) == e.wanted_list;
         if (wanted) lengths[element][i] = size_t(n);
         for (int64_t j = 0; j < n; ++j) {
           int64_t v = 0;
           double d = 0;
           if (wanted ? !next_number(p, end, v) : !next_number(p, end, d))
-            fail(begin, fmt::format("{} {}: the list '{}' has not the {} numbers it promises", e.name, i, q.name, n));
+            fail(begin, fmt::format("{} {}: the list '{}' does not have the {} numbers it announces", e.name, i, q.name, n));
           if (wanted) out.ids[element].push_back(narrow(v));
         }
       } else if (q.out && q.out_type == ElementType::f32) {
         float v = 0;
-        if (!next_number(p, end, v)) fail(begin, fmt::format("{} {}: no number for '{}'", e.name, i, q.name));
+        if (!next_number(p, end, v)) fail(begin, fmt::format("{} {}: '{}' has no number", e.name, i, q.name));
         std::memcpy(q.out + i * q.out_stride, &v, 4);
       } else {
         double v = 0;
-        if (!next_number(p, end, v)) fail(begin, fmt::format("{} {}: no number for '{}'", e.name, i, q.name));
+        if (!next_number(p, end, v)) fail(begin, fmt::format("{} {}: '{}' has no number", e.name, i, q.name));
         if (q.out) store_double(q.out + i * q.out_stride, q.out_type, v);
       }
     }
@@ -411,8 +411,8 @@ void decode_ascii(const MappedFile& file, PlyHeader& h, size_t elements, Context
     const PlyElement& element = h.elements[e];
     if (!element.properties.empty()) rows += element.count;
     if (rows > lines)
-      fail_data(fmt::format("{} lines of numbers after the header, at least {} are promised", lines, rows), h.path,
-                "the file is cut off or its counts are wrong");
+      fail_data(fmt::format("{} lines of numbers follow the header, but at least {} are announced", lines, rows), h.path,
+                "the file is truncated or its counts are wrong");
     if (element.wanted_list >= 0) r.lengths[e].assign(element.count + 1, 0);
   }
   r.first_row.push_back(rows);

@@ -58,7 +58,7 @@ PlyHeader parse_ply_header(const MappedFile& file);
 void check_ply_counts(const MappedFile& file, const PlyHeader& header);
 
 /// Reads all elements up to the last one of which something is wanted, in parallel: values go to PlyProperty::out, lists to
-/// PlyElement::lists. ASCII rows are lines. Throws Error(data) for text that is no number, and for files that end too early.
+/// PlyElement::lists. ASCII rows are lines. Throws Error(data) for text that is not a number, and for files that end too early.
 void decode_ply(const MappedFile& file, PlyHeader& header, Context& context);
 
 }  // namespace sg

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // STL, binary and ASCII. Points are merged exactly; facet normals and attribute bytes are not kept (normals follow from the
-// points). A file is binary when its length is just what its triangle count asks for, even when it begins with "solid".
+// points). A file is binary when its length matches its triangle count exactly, even when it begins with "solid".
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -71,7 +71,7 @@ void parse_chunk(std::string_view text, size_t begin, size_t end_at, const std::
       for (int k = 0; k < 3; ++k) {
         q = skip_blanks(q, line);
         float v = 0;
-        if (!scan_number(q, line, v) || (q < line && !is_blank(*q))) fail(word, "'vertex' without three numbers");
+        if (!scan_number(q, line, v) || (q < line && !is_blank(*q))) fail(word, "'vertex' does not have three numbers");
         out.xyz.push_back(v);
       }
     } else if (word_is(word, word_end, "endloop")) {
@@ -83,7 +83,8 @@ void parse_chunk(std::string_view text, size_t begin, size_t end_at, const std::
       static constexpr std::string_view words_of_stl[] = {"facet", "outer", "endfacet", "solid", "endsolid", "color"};
       bool known = false;
       for (size_t i = 0; i < std::size(words_of_stl) && !known; ++i) known = word_is(word, word_end, words_of_stl[i]);
-      if (!known) fail(word, fmt::format("'{}' is no word of STL", std::string_view(word, std::min<size_t>(40, size_t(word_end - word)))));
+      if (!known)
+        fail(word, fmt::format("'{}' is not an STL keyword", std::string_view(word, std::min<size_t>(40, size_t(word_end - word)))));
     }
     p = line < end ? line + 1 : end;
   }
@@ -100,11 +101,11 @@ DatasetPtr read_ascii(const MappedFile& file, Context& context) {
   const size_t numbers = exclusive_scan(first);
   for (size_t c = 0; c < chunks.size(); ++c)
     if (chunks[c].loop_phase >= 0 && (first[c] / 3 + size_t(chunks[c].loop_phase)) % 3 != 0)
-      fail_data(fmt::format("a facet near line {} has not three vertices", line_number(text, borders[c])), file.path());
-  if (numbers % 9) fail_data(fmt::format("{} vertices do not make triangles; the file may be cut off", numbers / 3), file.path());
+      fail_data(fmt::format("a facet near line {} does not have three vertices", line_number(text, borders[c])), file.path());
+  if (numbers % 9) fail_data(fmt::format("{} vertices do not make whole triangles; the file may be truncated", numbers / 3), file.path());
   const size_t tail = text.size() > 4096 ? text.size() - 4096 : 0;
   if (to_lower(text.substr(tail)).find("endsolid") == std::string::npos)
-    fail_data("the last line is not 'endsolid'; the file is cut off", file.path());
+    fail_data("the last line is not 'endsolid'; the file is truncated", file.path());
   std::byte* xyz = nullptr;
   const Buffer memory = Buffer::allocate(numbers * 4, &xyz);
   parallel_for(chunks.size(), 1, [&](size_t c, size_t) {
@@ -128,10 +129,10 @@ Data read_stl(const std::string& path, const ReadOptions&, Context& context) {
     fail_data(fmt::format("too short for STL: {} bytes", size), path,
               "a binary file has a header of 84 bytes, an ASCII one begins with 'solid'");
   if (size < header_bytes + triangle_bytes * count)
-    fail_data(fmt::format("{} triangles need {} bytes, there are {}", count, header_bytes + triangle_bytes * count, size), path,
-              "the file is cut off or no STL");
+    fail_data(fmt::format("{} triangles need {} bytes, but there are {}", count, header_bytes + triangle_bytes * count, size), path,
+              "the file is truncated or not STL");
   if (!exact)
-    context.warn(fmt::format("{}: {} bytes follow the {} triangles; not read", path, size - header_bytes - triangle_bytes * count, count));
+    context.warn(fmt::format("{}: {} bytes after the {} triangles are ignored", path, size - header_bytes - triangle_bytes * count, count));
   std::vector<std::pair<std::string, std::string>> notes;
   const std::string_view title = trim(file.text().substr(0, std::min<size_t>(80, file.text().find('\0'))));
   if (!title.empty() && std::all_of(title.begin(), title.end(), [](char c) { return c >= ' ' && c < 127; }))
@@ -144,7 +145,7 @@ void write_stl(const std::string& path, const Data& data, const WriteOptions& op
   const SurfaceMesh& mesh = surface_to_write(*d, "STL", path);
   const std::vector<int64_t> ids = surface_triangles(mesh);
   const size_t n = ids.size() / 3;
-  if (n > UINT32_MAX) fail_usage(fmt::format("{} triangles are more than an STL file can count", n), path);
+  if (n > UINT32_MAX) fail_usage(fmt::format("{} triangles are more than an STL file can hold", n), path);
   if (!mesh.lines.connectivity.empty() || !mesh.vertices.connectivity.empty())
     context.warn(path + ": lines and vertices are not written; STL holds triangles only");
   WriteLosses losses(path, "STL");

@@ -60,7 +60,7 @@ uint64_t hash_of(Key k) {
   return h ^ h >> 32;
 }
 
-constexpr size_t chunk_corners = 3 * 8192;  ///< so many corners share a table that stays in the second-level cache
+constexpr size_t chunk_corners = 3 * 8192;  ///< number of corners that share a table, which stays in the second-level cache
 constexpr size_t partitions = 64;
 
 // A chunk's distinct corners in order of first use.
@@ -109,7 +109,7 @@ size_t merge_chunk(const std::byte* corners, size_t begin, size_t end, size_t st
 }  // namespace
 
 MergedPoints merge_corners(const std::byte* corners, size_t count, size_t stride, const std::string& where, Context& context) {
-  if (count >= (uint64_t(1) << 32)) fail_data(fmt::format("{} corners are more than can be merged", count), where);
+  if (count >= (uint64_t(1) << 32)) fail_data(fmt::format("{} corners are too many to merge", count), where);
   const size_t chunks = (count + chunk_corners - 1) / chunk_corners;
   int32_t* ids = nullptr;
   Array id_array = Array::make<int32_t>(count, 1, &ids);

@@ -31,7 +31,7 @@ struct MergedPoints {
   Array ids;  ///< i32, one per corner
 };
 /// Merges corners whose coordinates are equal (-0 equals 0). Corner i begins at `corners + i / 3 * triangle_stride +
-/// i % 3 * 12` and is three little-endian floats, in any alignment. Parallel; the result depends on the corners alone.
+/// i % 3 * 12` and is three little-endian floats, in any alignment. Parallel; the result depends only on the corners.
 /// Throws Error(data) naming `where` and the triangle for coordinates that are not finite, and for more than 2^31 points.
 MergedPoints merge_corners(const std::byte* corners, size_t count, size_t triangle_stride, const std::string& where, Context& context);
 

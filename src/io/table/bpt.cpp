@@ -20,7 +20,7 @@ Data read_bpt(const std::string& path, const ReadOptions&, Context&) {
   const MappedFile file(path);
   TextCursor in(file.text(), path, '#');
   const size_t patches = in.count("the number of patches", 28);  // two degrees and four points of three numbers, with blanks
-  if (patches == 0) in.fail("no patches");
+  if (patches == 0) in.fail("has no patches");
   std::vector<double> xyz;
   std::vector<int64_t> ids, offsets{0};
   std::vector<uint8_t> degrees;
@@ -28,7 +28,7 @@ Data read_bpt(const std::string& path, const ReadOptions&, Context&) {
     size_t n[2] = {};
     for (size_t& v : n) {
       v = in.count("a degree", 1);
-      if (v < 1 || v > highest_degree) in.fail(fmt::format("a patch of degree {}; 1 to {} are read", v, highest_degree));
+      if (v < 1 || v > highest_degree) in.fail(fmt::format("a patch of degree {}; 1 to {} are supported", v, highest_degree));
     }
     const size_t first = xyz.size() / 3, count = (n[0] + 1) * (n[1] + 1);
     for (size_t k = 0; k < 3 * count; ++k) {

@@ -82,7 +82,7 @@ const char* next_record(const char* p, const char* end, char delimiter, std::vec
       cell += *p;
     }
   }
-  if (quoted) fail_data("has a quote that does not close", "", "double a quote inside quotes");
+  if (quoted) fail_data("has a quote that is not closed", "", "double quotes inside quotes");
   if (!(delimiter == ' ' && cell.empty() && !was_quoted)) {
     cells.push_back(std::move(cell));
     if (in_quotes) in_quotes->push_back(was_quoted);
@@ -127,8 +127,8 @@ struct Record {
   std::vector<bool> in_quotes;
 };
 
-// Whether a first record names the columns: it has no numbers; or all of it stands in quotes and no number of the second does, as
-// write_csv has it; or a word stands above a number. Else its numbers are data.
+// Whether a first record names the columns: it has no numbers; or all of it is quoted and no number of the second line is, as write_csv
+// writes it; or a word is above a number. Else its numbers are data.
 bool is_header(const Record& first, const Record* second) {
   bool any = false, numbers = false, quotes = true;
   for (size_t i = 0; i < first.cells.size(); ++i) {
@@ -187,7 +187,7 @@ TablePtr table_of(const Data& data) {
 Data read_csv(const std::string& path, const ReadOptions& options, Context& context) {
   const MappedFile file(path);
   const std::string text = text_of(file.text());
-  if (text.find('\0') != text.npos) fail_data("holds bytes that are no text", path, "delimited text in UTF-8 or UTF-16");
+  if (text.find('\0') != text.npos) fail_data("holds bytes that are not text", path, "use UTF-8 or UTF-16");
   const char delimiter = find_delimiter(text);
   TableBuilder builder;
   const char *p = text.data(), *end = p + text.size();
@@ -202,7 +202,7 @@ Data read_csv(const std::string& path, const ReadOptions& options, Context& cont
   };
   auto add = [&](const Record& r) { builder.add_row({r.cells.begin(), r.cells.end()}); };
   Record first, record;
-  if (!next(first)) fail_data("has no line that is not empty", path, "a table has at least one row");
+  if (!next(first)) fail_data("has only empty lines", path, "a table needs at least one row");
   bool more = next(record);
   if (options.csv_header == HeaderLine::yes ||
       (options.csv_header == HeaderLine::automatic && is_header(first, more ? &record : nullptr))) {

@@ -49,10 +49,10 @@ struct Scanner {
     while (p < text.size() && !blank(text[p]) && text[p] != '[' && text[p] != ']' && text[p] != '"') ++p;
     return text.substr(begin, p - begin);
   }
-  // A quoted string, with the entities that stand for quotes and ampersands.
+  // A quoted string, with the entities for quotes and ampersands.
   std::string quoted() {
     const size_t close = text.find('"', p + 1);
-    if (close == std::string_view::npos) fail("a string that does not end");
+    if (close == std::string_view::npos) fail("a string has no end");
     std::string s;
     for (size_t i = p + 1; i < close; ++i) {
       line += text[i] == '\n';
@@ -70,7 +70,7 @@ struct Scanner {
     if (depth > deepest) fail(fmt::format("lists are nested more than {} deep", deepest));
     while (!at(']')) {
       const std::string_view key = word();
-      if (key.empty()) fail(p == text.size() ? "a list that does not end" : "a key was expected");
+      if (key.empty()) fail(p == text.size() ? "a list has no end" : "expected a key");
       const std::string name = prefix + std::string(key);
       if (at('[')) {
         ++p;
@@ -95,7 +95,7 @@ struct Graph {
 void read_graph(Scanner& in, Graph& g) {
   while (!in.at(']')) {
     const std::string_view key = in.word();
-    if (key.empty()) in.fail(in.p == in.text.size() ? "a graph that does not end" : "a key was expected");
+    if (key.empty()) in.fail(in.p == in.text.size() ? "a graph has no end" : "expected a key");
     if (in.at('[')) {
       ++in.p;
       TableBuilder* table = key == "node" ? &g.nodes : key == "edge" ? &g.edges : nullptr;
@@ -123,7 +123,7 @@ Data read_gml(const std::string& path, const ReadOptions&, Context&) {
   bool found = false;
   while (!in.end()) {
     const std::string_view key = in.word();
-    if (key.empty()) in.fail("a key was expected");
+    if (key.empty()) in.fail("expected a key");
     if (in.at('[')) {
       ++in.p;
       if (key == "graph") read_graph(in, g), found = true;
@@ -134,7 +134,7 @@ Data read_gml(const std::string& path, const ReadOptions&, Context&) {
       in.fail(fmt::format("'{}' has no value", key));
     }
   }
-  if (!found) fail_data("holds no 'graph [ ... ]'", path);
+  if (!found) fail_data("contains no 'graph [ ... ]'", path);
   auto r = std::make_shared<Collection>();
   if (g.nodes.rows() > 0) r->parts.push_back({"nodes", g.nodes.build()});
   if (g.edges.rows() > 0) r->parts.push_back({"edges", g.edges.build()});

@@ -82,7 +82,8 @@ Data data_of(const Json& v, const std::string& path) {
   for (const auto& [name, part] : v.members())
     if (is_rows(part)) parts->parts.push_back({name, table_of_rows(part)});
   if (!parts->parts.empty()) return CollectionPtr(parts);
-  fail_data("is JSON, but no table", path, "a table is a list of objects, or an object of equally long lists; colour maps go to --map");
+  fail_data("is JSON, but not a table", path,
+            "a table is a list of objects, or an object of lists of equal length; for colour maps use --map");
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ void TableBuilder::name_columns(const std::vector<std::string_view>& names) {
 // Every row with columns of its own would make a table of nothing but holes, a thousand times the size of the file.
 void TableBuilder::check_holes(uint64_t columns, uint64_t per_cell) const {
   if (columns * rows_ > per_cell * given_ + (uint64_t(1) << 20))
-    fail_data(fmt::format("more than {} columns in {} rows, with hardly a value in them", columns, rows_), "table");
+    fail_data(fmt::format("has more than {} columns in {} rows, nearly all of them empty", columns, rows_), "table");
 }
 
 void TableBuilder::add_row(const std::vector<std::string_view>& cells) {
@@ -83,7 +83,7 @@ Array number_column(const std::vector<std::string>& cells) {
     const std::string_view word = trim(cell);
     if (is_missing(word)) {
       missing = true;
-      any = any || to_lower(word) == "nan";  // said to be a number that is none
+      any = any || to_lower(word) == "nan";  // claimed to be a number but is not
       v.push_back(std::nan(""));
       continue;
     }

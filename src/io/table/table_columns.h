@@ -15,8 +15,8 @@ class TableBuilder {
   /// Cells of one row, in the order of the columns; more cells than columns make new columns. Throws Error(data) when most of the table
   /// would be empty.
   void add_row(const std::vector<std::string_view>& cells);
-  /// Sets a cell of the current last row of a named column (made when it is new). Throws Error(data) when the columns get so many
-  /// that most of the table would be empty.
+  /// Sets a cell of the current last row of a named column (made when it is new). Throws Error(data) when there are so many columns that
+  /// most of the table would be empty.
   void set(const std::string& column, std::string value);
   void begin_row() { ++rows_; }
   /// An empty name leaves that of its number.
@@ -39,7 +39,7 @@ class TableBuilder {
   uint64_t given_ = 0;  ///< cells that were given
 };
 
-/// A cell that says that there is no value.
+/// A cell that stands for a missing value.
 bool is_missing(std::string_view word);
 
 }  // namespace sg

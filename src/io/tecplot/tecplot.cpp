@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tecplot ASCII: ordered zones become curvilinear grids, finite-element zones unstructured meshes; several zones a collection. Zones of
-// different solution times are steps. Values are f32 unless the zone says DOUBLE.
+// different solution times are steps. Values are f32 unless the zone states DOUBLE.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ Array numbers(const std::vector<double>& v, bool wide) {
 
 DatasetPtr dataset_of(const File& file, const Zone& z, const ReadOptions& options, const std::string& where) {
   if (z.values.size() != file.variables.size() || z.wide.size() != file.variables.size())
-    fail_data(fmt::format("VARIABLES names {} variables after a zone of {}", file.variables.size(), z.values.size()), where,
+    fail_data(fmt::format("VARIABLES names {} variables after a zone with {}", file.variables.size(), z.values.size()), where,
               "name them once, before the zones");
   const std::array<int, 3> at = coordinates(file.variables);
   bool wide = false;

@@ -51,16 +51,16 @@ class Parser {
       } else if (w == "FILETYPE") {
         equals();
         if (const std::string t = upper(string()); t == "SOLUTION")
-          fail("a file of solutions only", "the grid and the solution in one file");
+          fail("the file contains only a solution", "write the grid and the solution to one file");
       } else if (w == "ZONE") {
         zone();
       } else if (w.empty()) {
-        fail(fmt::format("'{}' where a statement should begin", word()), "TITLE, VARIABLES or ZONE");
+        fail(fmt::format("found '{}' where a statement was expected", word()), "use TITLE, VARIABLES or ZONE");
       } else {  // TEXT, GEOMETRY, DATASETAUXDATA, ...: nothing of the data
         skip_statement();
       }
     }
-    if (file_.zones.empty()) fail("has no zone");
+    if (file_.zones.empty()) fail("has no zones");
     return std::move(file_);
   }
 
@@ -102,7 +102,7 @@ class Parser {
       const char* b = p_;
       while (p_ < end_ && *p_ != quote) ++p_;
       std::string r(b, p_);
-      if (p_ == end_) fail("a text without its closing quote");
+      if (p_ == end_) fail("a string has no closing quote");
       ++p_;
       return r;
     }
@@ -160,7 +160,7 @@ class Parser {
   size_t count(const char* what) {
     equals();
     int64_t n = 0;
-    if (!scan_number(p_, end_, n) || n < 0 || uint64_t(n) > uint64_t(1) << 40) fail(fmt::format("{} is no count", what));
+    if (!scan_number(p_, end_, n) || n < 0 || uint64_t(n) > uint64_t(1) << 40) fail(fmt::format("{} is not a valid count", what));
     return size_t(n);
   }
 
@@ -212,7 +212,7 @@ class Parser {
     }
   }
 
-  /// What a zone's header says beside the zone itself.
+  /// Data of a zone's header besides the zone itself.
   struct ZoneHeader {
     std::vector<std::pair<size_t, size_t>> shared;  ///< variable, zone
     std::vector<bool> passive;
@@ -235,7 +235,7 @@ class Parser {
     } else if (key == "SOLUTIONTIME") {
       equals();
       double t = 0;
-      if (!scan_number(p_, end_, t)) fail("SOLUTIONTIME is no number");
+      if (!scan_number(p_, end_, t)) fail("SOLUTIONTIME is not a number");
       z.time = t;
     } else if (key == "VARLOCATION") equals(), set_locations(brackets(), z);
     else if (key == "DT") {
@@ -261,7 +261,7 @@ class Parser {
   }
 
   void zone() {
-    if (file_.variables.empty()) fail("a zone before any variables", "VARIABLES = \"X\", \"Y\", ...");
+    if (file_.variables.empty()) fail("a zone precedes the variables", "VARIABLES = \"X\", \"Y\", ...");
     Zone z;
     const size_t n = file_.variables.size();
     z.type = "ORDERED";
@@ -284,7 +284,7 @@ class Parser {
           p_ = before;
           break;
         }
-        fail(fmt::format("'{}' without a value in a ZONE", key));
+        fail(fmt::format("'{}' has no value in a ZONE", key));
       }
       zone_key(key, z, h);
     }
@@ -308,7 +308,8 @@ class Parser {
     for (std::string_view item : items(s)) {
       const size_t eq = item.find('=');
       const auto zone = eq == std::string_view::npos ? std::optional<int64_t>(1) : parse_int(trim(item.substr(eq + 1)));
-      if (!zone || *zone < 1 || uint64_t(*zone) > file_.zones.size()) fail(fmt::format("VARSHARELIST '{}' names no earlier zone", item));
+      if (!zone || *zone < 1 || uint64_t(*zone) > file_.zones.size())
+        fail(fmt::format("VARSHARELIST '{}' does not name an earlier zone", item));
       for (size_t v : variable_set(trim(item.substr(0, eq)))) shared.emplace_back(v, size_t(*zone - 1));
     }
   }
@@ -317,17 +318,18 @@ class Parser {
     if (!element.empty()) z.type = element.starts_with("FE") ? element : "FE" + element;
     static constexpr const char* known[] = {"ORDERED", "FELINESEG", "FETRIANGLE", "FEQUADRILATERAL", "FETETRAHEDRON", "FEBRICK"};
     if (std::find(std::begin(known), std::end(known), z.type) == std::end(known))
-      fail(fmt::format("zone type '{}' is not read", z.type), "ORDERED, FELINESEG, FETRIANGLE, FEQUADRILATERAL, FETETRAHEDRON, FEBRICK");
+      fail(fmt::format("zone type '{}' is not supported", z.type),
+           "ORDERED, FELINESEG, FETRIANGLE, FEQUADRILATERAL, FETETRAHEDRON, FEBRICK");
     uint64_t points = z.nodes;
     if (z.ordered()) {
       for (size_t& d : z.dims) d = std::max<size_t>(d, 1);
       if (!multiply(z.dims[0], z.dims[1], points) || !multiply(points, z.dims[2], points)) points = UINT64_MAX;
     }
-    // A repeat count ("1000*0.5") may stand for many values, yet not for any number of them.
+    // A repeat count ("1000*0.5") may stand for many values, but not for an arbitrary number.
     const auto left = uint64_t(end_ - p_);
     if (points > 64 * left + 1024 || z.elements > left)
-      fail(fmt::format("a zone of {} points and {} elements, but only {} bytes follow", points, z.elements, left));
-    if (points == 0) fail("a zone without points");
+      fail(fmt::format("a zone of {} points and {} elements is followed by only {} bytes", points, z.elements, left));
+    if (points == 0) fail("a zone has no points");
   }
 
   /// The next number, with what is left of a repeat count.
@@ -341,19 +343,19 @@ class Parser {
     const char* begin = p_;
     if (!scan_number(p_, end_, v)) {
       p_ = begin;
-      fail(fmt::format("'{}' where a value should be", word()));
+      fail(fmt::format("found '{}' where a value was expected", word()));
     }
     if (p_ < end_ && *p_ == '*') {
-      if (!(v >= 1 && v <= 1e12)) fail("a repeat count that is none");
+      if (!(v >= 1 && v <= 1e12)) fail("a repeat count is invalid");
       const auto times = uint64_t(v);
       ++p_;
-      if (!scan_number(p_, end_, v)) fail("a repeat count without a value");
+      if (!scan_number(p_, end_, v)) fail("a repeat count has no value");
       repeat_ = times - 1;
       repeated_ = v;
     }
     if (p_ < end_ && !separates(*p_)) {
       p_ = begin;
-      fail(fmt::format("'{}' where a value should be", word()));
+      fail(fmt::format("found '{}' where a value was expected", word()));
     }
     return v;
   }
@@ -368,7 +370,7 @@ class Parser {
       z.at_cells[v] = file_.zones[zone].at_cells[v];
       taken[v] = true;
       if (!z.values[v].empty() && z.values[v].size() != (z.at_cells[v] ? z.cells() : z.points()))
-        fail(fmt::format("'{}' is shared with a zone of another size", file_.variables[v]));
+        fail(fmt::format("'{}' is shared with a zone of a different size", file_.variables[v]));
     }
     for (size_t v = 0; v < n; ++v)
       if (!taken[v]) own.push_back(v);
@@ -380,18 +382,18 @@ class Parser {
       }
     } else {
       for (size_t v : own)
-        if (z.at_cells[v]) fail("values at cells in a zone in POINT format", "BLOCK");
+        if (z.at_cells[v]) fail("a zone in POINT format has cell values", "BLOCK");
       for (size_t i = 0; i < z.points(); ++i)
         for (size_t v : own) z.values[v].push_back(value());
     }
-    if (repeat_ > 0) fail("a repeat count beyond the end of the zone");
+    if (repeat_ > 0) fail("a repeat count exceeds the end of the zone");
   }
 
   void connectivity(Zone& z, std::optional<size_t> from) {
     if (from) {
-      if (*from < 1 || *from > file_.zones.size()) fail("CONNECTIVITYSHAREZONE names no earlier zone");
+      if (*from < 1 || *from > file_.zones.size()) fail("CONNECTIVITYSHAREZONE does not name an earlier zone");
       const Zone& other = file_.zones[*from - 1];
-      if (other.type != z.type || other.nodes != z.nodes) fail("CONNECTIVITYSHAREZONE names a zone of another kind");
+      if (other.type != z.type || other.nodes != z.nodes) fail("CONNECTIVITYSHAREZONE names a zone of a different kind");
       z.connectivity = other.connectivity;
       z.elements = other.elements;
       return;
@@ -399,7 +401,7 @@ class Parser {
     for (size_t i = 0; i < z.elements * z.corners(); ++i) {
       skip();
       int64_t id = 0;
-      if (!scan_number(p_, end_, id)) fail(fmt::format("'{}' where a node should be", word()));
+      if (!scan_number(p_, end_, id)) fail(fmt::format("found '{}' where a node was expected", word()));
       if (id < 1 || uint64_t(id) > z.nodes) fail(fmt::format("node {} does not exist", id), fmt::format("there are {}, from 1", z.nodes));
       z.connectivity.push_back(id - 1);
     }

@@ -39,7 +39,8 @@ double TextCursor::number(const char* what) {
   skip();
   double v = 0;
   const char* q = p_;
-  if (!scan_number(q, end_, v) || (q < end_ && !is_space(*q))) fail(fmt::format("'{}' where {} should be", peek().substr(0, 40), what));
+  if (!scan_number(q, end_, v) || (q < end_ && !is_space(*q)))
+    fail(fmt::format("found '{}' where {} was expected", peek().substr(0, 40), what));
   p_ = q;
   return v;
 }
@@ -48,7 +49,8 @@ int64_t TextCursor::integer(const char* what) {
   skip();
   int64_t v = 0;
   const char* q = p_;
-  if (!scan_number(q, end_, v) || (q < end_ && !is_space(*q))) fail(fmt::format("'{}' where {} should be", peek().substr(0, 40), what));
+  if (!scan_number(q, end_, v) || (q < end_ && !is_space(*q)))
+    fail(fmt::format("found '{}' where {} was expected", peek().substr(0, 40), what));
   p_ = q;
   return v;
 }
@@ -68,7 +70,7 @@ int64_t TextCursor::index(const char* what, int64_t first, int64_t n) {
 
 void TextCursor::expect(std::string_view wanted) {
   const std::string_view got = peek();
-  if (got != wanted) fail(fmt::format("'{}' where '{}' should be", got.substr(0, 40), wanted));
+  if (got != wanted) fail(fmt::format("found '{}' where '{}' was expected", got.substr(0, 40), wanted));
   word();
 }
 
@@ -173,7 +175,7 @@ CellType curved_type(CellType shape, CellType curve) {
     case CellType::hexahedron: return at(CellType::lagrange_hexahedron);
     case CellType::wedge: return at(CellType::lagrange_wedge);
     case CellType::pyramid: return at(CellType::lagrange_pyramid);
-    default: fail_internal("curved_type: no such shape");
+    default: fail_internal("curved_type: unsupported shape");
   }
 }
 

@@ -24,7 +24,7 @@ const char* slow_number(const char* p, const char* end, T& v) {
     return r.ptr == end || is_space(*r.ptr) || *r.ptr == ',' || *r.ptr == '/' ? r.ptr : is_digit(r.ptr[-1]) ? r.ptr : nullptr;
   }
   if (r.ec != std::errc::result_out_of_range) return nullptr;
-  Decimal d;  // too large or too small: the exponent of the leading digit tells
+  Decimal d;  // too large or too small: the exponent of the leading digit decides
   if (!scan_decimal(p, end, d)) return nullptr;
   ptrdiff_t lead = d.exponent;
   bool point = false, counting = false;
@@ -122,7 +122,7 @@ Array parse_typed(std::string_view text, size_t count, int components, const std
     first[c] = n;
   });
   const size_t found = exclusive_scan(first);
-  if (found < total) fail_data(fmt::format("has {} numbers, {} are needed", found, total), where);
+  if (found < total) fail_data(fmt::format("has {} numbers, but {} are needed", found, total), where);
   T* out = nullptr;
   Array a = Array::make<T>(count, components, &out);
   parallel_for(chunks, 1, [&](size_t c, size_t) {
@@ -132,7 +132,7 @@ Array parse_typed(std::string_view text, size_t count, int components, const std
       if (p == end) break;
       const char* word = p;
       if (!scan_element(p, end, out[i]) || (p < end && !separates(*p)))
-        fail_data(fmt::format("line {}: '{}' is no {}", lines_before + line_number(text, size_t(word - text.data())),
+        fail_data(fmt::format("line {}: '{}' is not a valid {}", lines_before + line_number(text, size_t(word - text.data())),
                               std::string_view(word, std::min<size_t>(40, size_t(skip_word(word, end) - word))),
                               element_name(element_type_of<T>())),
                   where);

@@ -32,7 +32,7 @@ inline const char* line_end(const char* p, const char* end) {
 }
 
 namespace detail {
-/// What a decimal number says: mantissa * 10^exponent; exact = all digits fit.
+/// Parts of a decimal number: mantissa * 10^exponent; exact = all digits fit.
 struct Decimal {
   uint64_t mantissa = 0;
   int exponent = 0;
@@ -126,14 +126,14 @@ inline bool scan_number(const char*& p, const char* end, int64_t& v) {
 }
 
 /// Borders of chunks of about `grain` bytes: front 0, back text.size(), each the begin of a line (or, with `words`, of any
-/// word). They depend on text and grain alone. With `continued`, a line that ends in a backslash goes on in the next.
+/// word). They depend only on the text and the grain. With `continued`, a line that ends in a backslash continues on the next.
 std::vector<size_t> text_chunks(std::string_view text, size_t grain, bool words = false, bool continued = false);
 
 /// 1-based number of the line that holds byte `at`.
 size_t line_number(std::string_view text, size_t at);
 
 /// The first `count` numbers of a text, blanks or commas between them, as packed tuples of `components`. Throws Error(data)
-/// naming `where` when there are fewer, a word is no number, or a number does not fit the type; `lines_before` the text are
+/// naming `where` when there are fewer, a word is not a number, or a number does not fit the type; `lines_before` the text are
 /// counted in line numbers.
 Array parse_numbers(std::string_view text, ElementType type, size_t count, int components, const std::string& where,
                     size_t lines_before = 0);

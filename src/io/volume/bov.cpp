@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// BOV, "brick of values": a text header of KEY: VALUE lines beside one or several raw files. Source: VisIt, "Getting Data Into VisIt",
-// chapter 3. Also a raw file that is called .bov and says its size in its name only.
+// BOV, "brick of values": a text header of KEY: VALUE lines describing one or several raw files. Source: VisIt, "Getting Data Into VisIt",
+// chapter 3. Also a raw file named .bov whose size is only in its name.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -56,13 +56,13 @@ class BovParser {
       line = trim(line.substr(0, line.find('#')));
       if (line.empty()) continue;
       const size_t colon = line.find(':');
-      if (colon == std::string_view::npos) fail(fmt::format("'{}' is no KEY: VALUE", line.substr(0, 40)));
+      if (colon == std::string_view::npos) fail(fmt::format("'{}' is not of the form KEY: VALUE", line.substr(0, 40)));
       key(to_lower(trim(line.substr(0, colon))), trim(line.substr(colon + 1)));
     }
     number_ = 0;
-    if (h_.file.empty()) fail("names no DATA_FILE");
-    if (h_.size[0] == 0) fail("says no DATA_SIZE");
-    if (!h_.have_type) fail("says no DATA_FORMAT");
+    if (h_.file.empty()) fail("has no DATA_FILE");
+    if (h_.size[0] == 0) fail("has no DATA_SIZE");
+    if (!h_.have_type) fail("has no DATA_FORMAT");
     if (h_.brick[0] == 0) h_.brick = h_.size;
     return h_;
   }
@@ -73,22 +73,22 @@ class BovParser {
   }
   double real(std::string_view w) const {
     const auto v = parse_double(w);
-    if (!v || !std::isfinite(*v)) fail(fmt::format("'{}' is no number", w.substr(0, 40)));
+    if (!v || !std::isfinite(*v)) fail(fmt::format("'{}' is not a number", w.substr(0, 40)));
     return *v;
   }
   size_t count(std::string_view w, size_t least) const {
     const auto v = parse_int(w);
-    if (!v || *v < int64_t(least)) fail(fmt::format("'{}' is no count from {}", w.substr(0, 40), least));
+    if (!v || *v < int64_t(least)) fail(fmt::format("'{}' is not a valid count from {}", w.substr(0, 40), least));
     return size_t(*v);
   }
   std::array<size_t, 3> triple(std::string_view value) const {
     const auto w = words(value);
-    if (w.size() != 3) fail("three numbers are due");
+    if (w.size() != 3) fail("expected three numbers");
     return {count(w[0], 1), count(w[1], 1), count(w[2], 1)};
   }
   Vec3 vec(std::string_view value) const {
     const auto w = words(value);
-    if (w.size() != 3) fail("three numbers are due");
+    if (w.size() != 3) fail("expected three numbers");
     return {real(w[0]), real(w[1]), real(w[2])};
   }
 
@@ -99,14 +99,14 @@ class BovParser {
     else if (k == "data_file") h_.file = v;
     else if (k == "data_size" || k == "data size") h_.size = triple(v);
     else if (k == "data_format" || k == "data format") {
-      if (!bov_type(v, h_.type)) fail(fmt::format("unknown DATA_FORMAT '{}'", v), "BYTE, SHORT, INT, LONG, FLOAT or DOUBLE");
+      if (!bov_type(v, h_.type)) fail(fmt::format("unknown DATA_FORMAT '{}'", v), "use BYTE, SHORT, INT, LONG, FLOAT or DOUBLE");
       h_.have_type = true;
     } else if (k == "variable") h_.variable = v;
     else if (k == "data_endian") {
-      if (low != "little" && low != "big") fail(fmt::format("DATA_ENDIAN '{}'", v), "LITTLE or BIG");
+      if (low != "little" && low != "big") fail(fmt::format("DATA_ENDIAN '{}'", v), "use LITTLE or BIG");
       h_.big_endian = low == "big";
     } else if (k == "centering") {
-      if (low != "zonal" && low != "nodal") fail(fmt::format("CENTERING '{}'", v), "zonal or nodal");
+      if (low != "zonal" && low != "nodal") fail(fmt::format("CENTERING '{}'", v), "use zonal or nodal");
       h_.zonal = low == "zonal";
     } else if (k == "brick_origin" || k == "brick origin") h_.origin = vec(v);
     else if (k == "brick_size" || k == "brick size") h_.extent = vec(v);
@@ -117,7 +117,7 @@ class BovParser {
       const size_t n = count(v, 1);
       if (n > 1000) fail(fmt::format("{} components", n));
       h_.components = int(n);
-    } else if (k != "has_boundary") context_.warn(fmt::format("{}: line {}: unknown key '{}' is left out", path_, number_, k));
+    } else if (k != "has_boundary") context_.warn(fmt::format("{}: line {}: unknown key '{}' is ignored", path_, number_, k));
   }
 
   std::string path_;
@@ -206,11 +206,11 @@ Data read_bare_bov(const std::string& path, const ReadOptions&, Context& context
   const MappedFile file(path);
   const auto guess = guess_raw(file);
   if (!guess)
-    fail_data("is no BOV header, and its name and length say no size", path,
+    fail_data("is not a BOV header, and its name and length do not tell the size", path,
               "a header has lines like 'DATA_FILE: values.dat'; for raw numbers give --dims NX,NY,NZ and --type");
   BovHeader h;
   h.size = guess->dims, h.type = guess->type, h.big_endian = guess->big_endian;
-  context.warn(fmt::format("{}: has no header; read as {}, as its name and length say", path, guess->text()));
+  context.warn(fmt::format("{}: has no header; read as {}, judging by its name and length", path, guess->text()));
   return grid_of(h, brick_of(path, h, checked_product({h.size[0], h.size[1], h.size[2]}, path), context));
 }
 

@@ -19,7 +19,7 @@ namespace sg {
 namespace {
 
 std::span<const std::byte> stored(const BrickPart& p) {
-  if (p.begin > p.file.size()) fail_data(fmt::format("ends before its data, which begin at byte {}", p.begin), p.file.path());
+  if (p.begin > p.file.size()) fail_data(fmt::format("ends before its data, which begins at byte {}", p.begin), p.file.path());
   std::span<const std::byte> s(p.file.data() + p.begin, p.file.size() - p.begin);
   if (p.packed > 0 && p.packed < s.size()) s = s.first(p.packed);
   return s;
@@ -35,12 +35,12 @@ std::span<const std::byte> raw_window(const BrickPart& p, size_t need, Context& 
     if (need > s.size()) skip = 0;
     else if (const size_t after = size_t(-1 - p.skip); after <= s.size() - need) skip = s.size() - need - after;
     else
-      context.warn(fmt::format("{}: byte skip {} asks for {} bytes behind the data, there are {}; reading the last {} bytes", p.file.path(),
+      context.warn(fmt::format("{}: byte skip {} needs {} bytes after the data, but there are {}; reading the last {} bytes", p.file.path(),
                                p.skip, after, s.size() - need, need)),
           skip = s.size() - need;
   }
   if (skip > s.size() || s.size() - skip < need)
-    fail_data(fmt::format("too short: {} bytes are needed, there are {}", need, s.size() - std::min(skip, s.size())), p.file.path());
+    fail_data(fmt::format("too short: {} bytes are needed, but there are {}", need, s.size() - std::min(skip, s.size())), p.file.path());
   return s.subspan(skip, need);
 }
 
@@ -57,17 +57,17 @@ void unpack_hex(std::string_view text, std::byte* out, size_t need, const std::s
   for (size_t i = 0; i < text.size() && n < need; ++i) {
     if (is_space(text[i])) continue;
     const int v = hex_value(text[i]);
-    if (v < 0) fail_data(fmt::format("line {}: '{}' is no hexadecimal digit", line_number(text, i), text[i]), where);
+    if (v < 0) fail_data(fmt::format("line {}: '{}' is not a hexadecimal digit", line_number(text, i), text[i]), where);
     if (high < 0) high = v;
     else out[n++] = std::byte(high * 16 + v), high = -1;
   }
-  if (n < need) fail_data(fmt::format("has {} bytes as hexadecimal digits, {} are needed", n, need), where);
+  if (n < need) fail_data(fmt::format("has {} bytes as hexadecimal digits, but {} are needed", n, need), where);
 }
 
 // For text: what follows the skipped bytes.
 std::string_view text_of(const BrickPart& p) {
   std::span<const std::byte> s = stored(p);
-  if (p.skip < 0) fail_data("a negative byte skip has no meaning for text data", p.file.path());
+  if (p.skip < 0) fail_data("a negative byte skip is meaningless for text data", p.file.path());
   s = s.subspan(std::min(size_t(p.skip), s.size()));
   return {reinterpret_cast<const char*>(s.data()), s.size()};
 }
@@ -107,12 +107,11 @@ Array load_brick(const BrickLayout& l, const std::vector<BrickPart>& parts, Cont
   if (parts.empty()) fail_data("there is no data file");
   const size_t size = element_size(l.type);
   uint64_t need = 0;
-  if (!multiply(l.count, size_t(l.components) * size, need) || need > (uint64_t(1) << 60))
-    fail_data("the volume is larger than any memory");
+  if (!multiply(l.count, size_t(l.components) * size, need) || need > (uint64_t(1) << 60)) fail_data("the volume exceeds any memory");
   if (need % (parts.size() * size)) fail_data(fmt::format("{} bytes do not divide evenly among {} files", need, parts.size()));
   const size_t share = need / parts.size();
 
-  // Everything that can be known without memory is checked before memory is asked for.
+  // Everything that can be checked without memory is checked before allocating it.
   for (const BrickPart& p : parts) switch (l.encoding) {
       case BrickEncoding::raw: raw_window(p, share, context); break;
       case BrickEncoding::hex:
@@ -154,7 +153,7 @@ Array load_brick_part(const BrickLayout& l, const LatticePart& part, const std::
   const size_t size = element_size(l.type), tuple = size * size_t(l.components);
   uint64_t need = 0, row = 0;
   if (!multiply(l.count, tuple, need) || need > (uint64_t(1) << 60) || !multiply(part.dims[0], tuple, row))
-    fail_data("the volume is larger than any memory");
+    fail_data("the volume exceeds any memory");
   const size_t share = files.empty() ? 0 : need / files.size();
   const bool raw = l.encoding == BrickEncoding::raw && !files.empty() && need % files.size() == 0 && share % row == 0;
   const bool packed = (l.encoding == BrickEncoding::gzip || l.encoding == BrickEncoding::zlib) && files.size() == 1 && files[0].skip >= 0;
@@ -196,8 +195,7 @@ Array load_brick_part(const BrickLayout& l, const LatticePart& part, const std::
 size_t checked_product(const std::vector<size_t>& sizes, const std::string& where) {
   uint64_t n = 1;
   for (const size_t s : sizes)
-    if (s == 0 || !multiply(n, s, n) || n > (uint64_t(1) << 60))
-      fail_data(s == 0 ? "a size is 0" : "the sizes are too large to be counted", where);
+    if (s == 0 || !multiply(n, s, n) || n > (uint64_t(1) << 60)) fail_data(s == 0 ? "a size is 0" : "the sizes are too large", where);
   return n;
 }
 
@@ -210,7 +208,7 @@ std::vector<std::string> pattern_names(const std::string& pattern, int64_t first
   while (d < pattern.size() && is_digit(pattern[d]) && width < 100) width = width * 10 + size_t(pattern[d++] - '0');
   if (d >= pattern.size() || (pattern[d] != 'd' && pattern[d] != 'i' && pattern[d] != 'u') || width > 20 ||
       pattern.find('%', d) != std::string::npos)
-    fail_data(fmt::format("'{}' is no pattern of file names", pattern), where, "like slice%03d.raw 1 93 1");
+    fail_data(fmt::format("'{}' is not a pattern of file names", pattern), where, "write e.g. slice%03d.raw 1 93 1");
   constexpr int64_t most = 1000000000;
   bool good = step != 0;
   for (const int64_t v : {first, last, step}) good = good && v >= -most && v <= most;

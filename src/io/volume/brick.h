@@ -31,7 +31,7 @@ struct BrickLayout {
   bool big_endian = false;
 };
 
-/// `count` packed tuples, an equal share from each part. Throws Error(data) that says how many bytes are needed and there are.
+/// `count` packed tuples, an equal share from each part. Throws Error(data) that says how many bytes are needed and how many there are.
 Array load_brick(const BrickLayout& layout, const std::vector<BrickPart>& parts, Context& context);
 
 /// The same for a part of a lattice that lies in the brick x fastest, l.count == product of part.dims: of raw numbers only the rows

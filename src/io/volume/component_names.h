@@ -13,7 +13,8 @@ struct NameGroup {
 };
 
 /// Groups names that end in X, Y, Z (of one case, after the same beginning), and tensors: those that end in XX YY ZZ XY YZ XZ (or
-/// ZX), or in all nine. `flat`: X and Y without a Z make a vector too. A group stands where its first member stood; all others stay alone.
+/// ZX), or in all nine. `flat`: X and Y without a Z make a vector too. A group takes the position of its first member; all others stay
+/// single.
 std::vector<NameGroup> group_components(const std::vector<std::string>& names, bool flat);
 
 }  // namespace sg

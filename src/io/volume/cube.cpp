@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gaussian cube: two lines of title, atoms, and numbers on a grid (its third axis fastest) whose axes may be skewed. Lengths are in
-// Bohr, in Angstrom where the counts of the grid are negative. A negative number of atoms tells that orbitals follow, several numbers a
+// Bohr, in Angstrom where the counts of the grid are negative. A negative number of atoms means that orbitals follow, several numbers per
 // point. Gives two parts, "grid" and "atoms".
 #include <fmt/core.h>
 
@@ -36,21 +36,21 @@ struct Lines {
     std::vector<double> r;
     for (std::string_view w : words(next())) {
       const auto v = parse_double(w);
-      if (!v || !std::isfinite(*v)) fail_data(fmt::format("line {}: '{}' is no number", number, w.substr(0, 40)), file.path());
+      if (!v || !std::isfinite(*v)) fail_data(fmt::format("line {}: '{}' is not a number", number, w.substr(0, 40)), file.path());
       r.push_back(*v);
     }
     if (r.size() < least) fail_data(fmt::format("line {}: {} numbers are needed: {}", number, least, what), file.path());
     return r;
   }
   int64_t whole(double v) const {
-    if (v != std::floor(v) || std::abs(v) > 1e9) fail_data(fmt::format("line {}: '{}' is no count", number, v), file.path());
+    if (v != std::floor(v) || std::abs(v) > 1e9) fail_data(fmt::format("line {}: '{}' is not a valid count", number, v), file.path());
     return int64_t(v);
   }
 };
 
 DatasetPtr atoms_of(Lines& in, size_t count, const std::string& unit) {
   if (count > (in.file.size() - in.at) / 10)
-    fail_data(fmt::format("{} atoms cannot be in {} bytes", count, in.file.size()), in.file.path());
+    fail_data(fmt::format("{} atoms do not fit into {} bytes", count, in.file.size()), in.file.path());
   std::vector<double> xyz;
   std::vector<int32_t> z;
   std::vector<double> charge;
@@ -103,7 +103,7 @@ Data read_cube(const std::string& path, const ReadOptions& options, Context&) {
   for (size_t a = 0; a < 3; ++a) {
     const auto v = in.numbers(4, "points along an axis, step x, y, z");
     const int64_t n = in.whole(v[0]);
-    if (n == 0) fail_data(fmt::format("line {}: no points along this axis", in.number), path);
+    if (n == 0) fail_data(fmt::format("line {}: there are no points along this axis", in.number), path);
     angstrom = angstrom || n < 0;
     grid.dims[a] = size_t(std::abs(n));
     axes[a] = {v[1], v[2], v[3]};

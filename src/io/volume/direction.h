@@ -28,7 +28,7 @@ inline Mat3 direction_of(const Vec3* axes, int n, const std::string& where) {
   Mat3 m;
   for (int i = 0; i < 3; ++i)
     for (int a = 0; a < 3; ++a) m.m[i][a] = c[a][i];
-  if (!(std::abs(determinant(m)) > 1e-9)) fail_data("the directions of the axes lie in one plane", where);
+  if (!(std::abs(determinant(m)) > 1e-9)) fail_data("the directions of the axes are coplanar", where);
   return m;
 }
 

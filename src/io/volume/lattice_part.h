@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The part of a lattice that was asked for, and copying of just its rows: what readers that honour ReadOptions::region share.
+// The requested part of a lattice, and copying of just its rows: what readers that honour ReadOptions::region share.
 #pragma once
 #include <array>
 #include <functional>

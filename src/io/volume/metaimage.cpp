@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// MetaImage (.mhd with data files beside it, .mha in one file): "Key = value" lines, the last of which is ElementDataFile.
+// MetaImage (.mhd with separate data files, .mha in one file): "Key = value" lines, the last of which is ElementDataFile.
 // The consecutive numbers of TransformMatrix are the directions of the axes, one axis after the other.
 #include <fmt/core.h>
 
@@ -42,10 +42,10 @@ struct Header {
     const std::string_view v = get(keys);
     for (std::string_view w : words(v)) {
       const auto d = parse_double(w);
-      if (!d || !std::isfinite(*d)) fail_data(fmt::format("{}: '{}' is no number", *keys.begin(), w), path);
+      if (!d || !std::isfinite(*d)) fail_data(fmt::format("{}: '{}' is not a number", *keys.begin(), w), path);
       r.push_back(*d);
     }
-    if (!r.empty() && r.size() != n) fail_data(fmt::format("{} has {} numbers, {} are needed", *keys.begin(), r.size(), n), path);
+    if (!r.empty() && r.size() != n) fail_data(fmt::format("{} has {} numbers, but {} are needed", *keys.begin(), r.size(), n), path);
     return r;
   }
 };
@@ -61,7 +61,8 @@ Header parse_header(const MappedFile& file) {
     p = e < end ? e + 1 : end;
     if (line.empty() || line[0] == '#') continue;
     const size_t eq = std::min(line.find('='), line.find(':'));
-    if (eq == std::string_view::npos) fail_data(fmt::format("line {}: '{}' is no 'Key = value'", number, line.substr(0, 60)), h.path);
+    if (eq == std::string_view::npos)
+      fail_data(fmt::format("line {}: '{}' is not of the form 'Key = value'", number, line.substr(0, 60)), h.path);
     h.lines.emplace_back(trim(line.substr(0, eq)), trim(line.substr(eq + 1)));
     if (equal_ignoring_case(h.lines.back().first, "ElementDataFile")) {
       h.rest_at = size_t(p - base);
@@ -70,7 +71,7 @@ Header parse_header(const MappedFile& file) {
     }
   }
   fail_data("the header has no ElementDataFile", h.path,
-            "the last line of the header says where the data are: LOCAL, a file, LIST or a pattern");
+            "the last line of the header must say where the data is: LOCAL, a file, LIST or a pattern");
 }
 
 bool parse_met_type(std::string_view name, ElementType& t) {
@@ -104,15 +105,15 @@ std::vector<BrickPart> find_parts(const Header& h, const MappedFile& file, size_
   if (!w.empty() && equal_ignoring_case(w[0], "LIST")) {
     for (std::string_view line : split(h.rest, '\n'))
       if (!line.empty()) names.emplace_back(line);
-    if (names.empty()) fail_data("ElementDataFile = LIST but no names follow", h.path);
-    if (names.size() > 1000000) fail_data("ElementDataFile = LIST with more than a million names", h.path);
+    if (names.empty()) fail_data("ElementDataFile = LIST is not followed by names", h.path);
+    if (names.size() > 1000000) fail_data("ElementDataFile = LIST has more than a million names", h.path);
   } else if (value.find('%') != std::string_view::npos && (w.size() >= 3 || !file_exists(path_beside(h.path, value)))) {
     int64_t n[3] = {1, int64_t(slices), 1};
     for (size_t i = 1; i < std::min<size_t>(w.size(), 4); ++i) {
       const auto v = parse_int(w[i]);
       if (!v)
-        fail_data(fmt::format("ElementDataFile: '{}' is no whole number", w[i]), h.path,
-                  "pattern first last step, like slice%03d.raw 1 93 1");
+        fail_data(fmt::format("ElementDataFile: '{}' is not a whole number", w[i]), h.path,
+                  "write pattern first last step, e.g. slice%03d.raw 1 93 1");
       n[i - 1] = *v;
     }
     names = pattern_names(std::string(w[0]), n[0], n[1], n[2], h.path);
@@ -178,7 +179,7 @@ Data read_metaimage(const std::string& path, const ReadOptions& options, Context
   std::vector<size_t> sizes;
   for (std::string_view w : words(h.get({"DimSize"}))) {
     const auto v = parse_int(w);
-    if (!v || *v < 1) fail_data(fmt::format("DimSize: '{}' is no size", w), path);
+    if (!v || *v < 1) fail_data(fmt::format("DimSize: '{}' is not a valid size", w), path);
     sizes.push_back(size_t(*v));
   }
   if (sizes.size() != size_t(*ndims)) fail_data(fmt::format("DimSize has {} numbers but NDims is {}", sizes.size(), *ndims), path);
@@ -196,7 +197,7 @@ Data read_metaimage(const std::string& path, const ReadOptions& options, Context
   }
   UniformGrid grid = make_grid(h, sizes);
   const size_t voxels = grid.dims[0] * grid.dims[1] * grid.dims[2], steps = total / voxels;  // axes beyond the third
-  if (steps > 1 << 20) fail_data(fmt::format("{} volumes in one file", steps), path);
+  if (steps > 1 << 20) fail_data(fmt::format("has {} volumes in one file", steps), path);
   l.count = total;
   l.components = int(channels);
   l.big_endian = h.flag({"ElementByteOrderMSB", "BinaryDataByteOrderMSB"});
@@ -235,14 +236,14 @@ Data read_metaimage(const std::string& path, const ReadOptions& options, Context
   }
   if (const auto v = h.get({"HeaderSize"}); !v.empty()) {
     const auto n = parse_int(v);
-    if (!n || *n < -1) fail_data(fmt::format("HeaderSize is '{}'", v), path, "a number of bytes, or -1 for 'the data are at the end'");
+    if (!n || *n < -1) fail_data(fmt::format("HeaderSize is '{}'", v), path, "give a number of bytes, or -1 if the data is at the end");
     for (BrickPart& p : parts) *n < 0 ? void(p.skip = -1) : void(p.begin += size_t(*n));
   }
   Array a = load_brick_part(l, part, parts, context);
   if (steps > 1) {
     // Further volumes become components, one volume after the other in memory.
     if (channels > 1)
-      fail_data(fmt::format("{} axes and {} channels", sizes.size(), channels), path, "read are up to 3 axes with channels, or 4 axes");
+      fail_data(fmt::format("{} axes and {} channels", sizes.size(), channels), path, "supported: up to 3 axes with channels, or 4 axes");
     const auto size = ptrdiff_t(element_size(l.type));
     a = Array(a.buffer(), l.type, voxels, int(steps), size_t(a.raw() - a.buffer().data), size, size * ptrdiff_t(voxels));
     context.info(fmt::format("{}: the {} volumes of the fourth axis became components", path, steps));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// MetaImage: .mha with the numbers behind the header, .mhd with a .raw or .zraw file beside it.
+// MetaImage: .mha with the numbers after the header, .mhd with a separate .raw or .zraw file.
 #include <fmt/core.h>
 #include <libdeflate.h>
 
@@ -57,11 +57,10 @@ void write_metaimage(const std::string& path, const Data& data, const WriteOptio
   const DatasetPtr d = single_dataset(data, "writing MetaImage");
   const UniformGrid* grid = d->as<UniformGrid>();
   if (!grid)
-    fail_usage(fmt::format("a MetaImage file holds a uniform grid, not a {} mesh", d->kind()), path,
-               "sample it on a grid first: -f 'resample'");
+    fail_usage(fmt::format("a MetaImage file holds a uniform grid, not a {} mesh", d->kind()), path, "resample it first: -f 'resample'");
   const Compression compression = options.compression.value_or(Compression::none);
   if (compression != Compression::none && compression != Compression::zlib)
-    fail_usage(fmt::format("MetaImage cannot be compressed with '{}'", word_of(compression)), path, "none or zlib");
+    fail_usage(fmt::format("MetaImage cannot be compressed with '{}'", word_of(compression)), path, "use none or zlib");
   WriteLosses losses(path, "MetaImage");
   const Field& f = field_to_write(*d, path, losses);
   losses.renames(f, f.name.empty() || f.name.find('\n') != std::string::npos ? "MetaImage" : trim(f.name));

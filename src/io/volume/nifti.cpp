@@ -97,7 +97,7 @@ Source open_nifti(const std::string& path) {
   std::string header = path;
   if (ending == "img") {
     header = partner(stem, {".hdr", ".hdr.gz", ".HDR"});
-    if (header.empty()) fail_data("an .img file without its header", path, "the .hdr file lies beside it under the same name");
+    if (header.empty()) fail_data("the header of the .img file is missing", path, "expected a .hdr file beside it with the same name");
   }
   s.image = MappedFile(header);
   s.h = read_header(s.image);
@@ -105,7 +105,7 @@ Source open_nifti(const std::string& path) {
   if (!s.h.single_file) {
     const std::string image = ending == "img" ? path : partner(stem, {".img", ".img.gz", ".IMG"});
     if (image.empty())
-      fail_data("no data: this is a header only", path, fmt::format("the numbers belong in '{}.img' beside it", file_name_of(stem)));
+      fail_data("no data: this is only a header", path, fmt::format("expected the numbers in '{}.img' beside it", file_name_of(stem)));
     s.image = MappedFile(image);
   }
   s.gzip = is_gzip(s.image);
@@ -116,17 +116,17 @@ Source open_nifti(const std::string& path) {
   s.voxels = n;
   good = good && multiply(n, d[3], n) && multiply(n, d[4], n) && multiply(n, d[5], n) && multiply(n, d[6], n) && n < uint64_t(1) << 60 &&
          multiply(n, s.tuple, total) && total < uint64_t(1) << 60 && s.h.data_begin < uint64_t(1) << 60;
-  if (!good) fail_data("the sizes are too large to be counted", header);
+  if (!good) fail_data("the sizes are too large", header);
   s.total = total;
   s.steps = d[3];
   s.blocks = d[4] * d[5] * d[6];
   if (s.gzip) check_ratio(Codec::gzip, s.image.size(), s.h.data_begin + total, s.image.path());
   else if (s.image.size() < s.h.data_begin || s.image.size() - s.h.data_begin < total)
-    fail_data(fmt::format("too short: {} bytes are needed from byte {} on, there are {}", total, s.h.data_begin,
+    fail_data(fmt::format("too short: {} bytes are needed from byte {} on, but there are {}", total, s.h.data_begin,
                           s.image.size() - std::min(s.image.size(), s.h.data_begin)),
               s.image.path());
   if (s.steps > (1 << 20) || s.blocks > (1 << 20)) fail_data(fmt::format("{} volumes of {} components", s.steps, s.blocks), header);
-  if (s.blocks > 1 && s.type.components > 1) fail_data("a fifth axis of complex or coloured voxels is not read", header);
+  if (s.blocks > 1 && s.type.components > 1) fail_data("a fifth axis of complex or coloured voxels is not supported", header);
   if (s.steps > 1) {
     s.bval = numbers_beside(header, {".bval", ".bvals"}, "bvals", s.steps, false);
     s.bvec = numbers_beside(header, {".bvec", ".bvecs"}, "bvecs", s.steps, true);

@@ -42,11 +42,11 @@ int header_size(std::span<const std::byte> b, bool& big) {
 
 void set_dims(NiftiHeader& h, const std::array<int64_t, 8>& dim, const std::string& where) {
   if (dim[0] < 0 || dim[0] > 7)
-    fail_data(fmt::format("byte {}: {} dimensions", h.version == 2 ? 16 : 40, dim[0]), where, "dim[0] is 0 to 7");
+    fail_data(fmt::format("byte {}: {} dimensions", h.version == 2 ? 16 : 40, dim[0]), where, "dim[0] must be 0 to 7");
   h.stored_dims = int(dim[0]);
-  // Files of one voxel exist that tell 0 dimensions: then all sizes count.
+  // Some files of one voxel state 0 dimensions: then all sizes count.
   for (int a = 1; a <= (dim[0] ? int(dim[0]) : 7); ++a) {
-    if (dim[size_t(a)] < 0) fail_data(fmt::format("dim[{}] is {}", a, dim[size_t(a)]), where, "sizes are 1 or more");
+    if (dim[size_t(a)] < 0) fail_data(fmt::format("dim[{}] is {}", a, dim[size_t(a)]), where, "sizes must be 1 or more");
     h.dims[size_t(a) - 1] = std::max<size_t>(size_t(dim[size_t(a)]), 1);
   }
 }
@@ -58,7 +58,7 @@ void parse_1(NiftiHeader& h, std::span<const std::byte> b, const std::string& wh
   set_dims(h, dim, where);
   h.datatype = at<int16_t>(b, 70, big);
   const double begin = at<float>(b, 108, big);
-  if (!(begin >= 0) || begin > 1e15) fail_data(fmt::format("byte 108: the data begin at byte {}", begin), where);
+  if (!(begin >= 0) || begin > 1e15) fail_data(fmt::format("byte 108: the data begins at byte {}", begin), where);
   h.data_begin = size_t(begin);
   h.description = text_at(b, 148, 80);
   if (h.version == 0) return;  // what follows has other meanings in Analyze, or none that are agreed on
@@ -82,7 +82,7 @@ void parse_2(NiftiHeader& h, std::span<const std::byte> b, const std::string& wh
   set_dims(h, dim, where);
   h.datatype = at<int16_t>(b, 12, big);
   const int64_t begin = at<int64_t>(b, 168, big);
-  if (begin < 0) fail_data(fmt::format("byte 168: the data begin at byte {}", begin), where);
+  if (begin < 0) fail_data(fmt::format("byte 168: the data begins at byte {}", begin), where);
   h.data_begin = size_t(begin);
   h.slope = at<double>(b, 176, big), h.intercept = at<double>(b, 184, big);
   h.time_offset = at<double>(b, 216, big);
@@ -165,7 +165,7 @@ NiftiHeader parse_nifti_header(std::span<const std::byte> b, const std::string& 
   NiftiHeader h;
   const int n = header_size(b, h.big_endian);
   if (n == 0)
-    fail_data(b.size() < 348 ? fmt::format("a header of {} bytes", b.size()) : std::string("byte 0: no size of a header"), where,
+    fail_data(b.size() < 348 ? fmt::format("a header of {} bytes", b.size()) : std::string("byte 0: not a valid header size"), where,
               "a NIfTI-1 or Analyze header has 348 bytes, a NIfTI-2 header 540, and begins with that number");
   if (n == 540) {
     h.version = 2;
@@ -210,7 +210,7 @@ UniformGrid nifti_grid(const NiftiHeader& h, const std::string& where, std::vect
       const double s = std::abs(h.pixdim[size_t(a) + 1]);
       g.spacing[a] = s > 0 && std::isfinite(s) ? s : 1;
     }
-    notes.emplace_back("orientation", "not told");
+    notes.emplace_back("orientation", "not given");
   }
   const int length_unit = h.units & 7, time_unit = h.units & 0x38;
   if (length_unit >= 1 && length_unit <= 3) notes.emplace_back("length unit", length_unit == 1 ? "m" : length_unit == 2 ? "mm" : "um");
@@ -248,13 +248,14 @@ NiftiType nifti_type(const NiftiHeader& h, const std::string& where) {
     case 136:
       if (h.version == 0) return {u32};
       break;
-    case 1: fail_data("numbers of one bit are not read", where, "convert the file to 8 bits");
+    case 1: fail_data("numbers of one bit are not supported", where, "convert the file to 8 bits");
     case 1536:
-    case 2048: fail_data("numbers of 128 bits are not read", where, "convert the file to 64 bits");
+    case 2048: fail_data("numbers of 128 bits are not supported", where, "convert the file to 64 bits");
     default: break;
   }
-  fail_data(fmt::format("byte {}: datatype {} is unknown", h.version == 2 ? 12 : 70, h.datatype), where,
-            "2 uint8, 4 int16, 8 int32, 16 float, 64 double, 256 int8, 512 uint16, 768 uint32, 1024 int64, 1280 uint64, 128 RGB");
+  fail_data(
+      fmt::format("byte {}: datatype {} is unknown", h.version == 2 ? 12 : 70, h.datatype), where,
+      "supported: 2 uint8, 4 int16, 8 int32, 16 float, 64 double, 256 int8, 512 uint16, 768 uint32, 1024 int64, 1280 uint64, 128 RGB");
 }
 
 }  // namespace sg

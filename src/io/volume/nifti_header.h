@@ -15,7 +15,7 @@ struct NiftiHeader {
   int version = 1;          ///< 0 = Analyze 7.5, 1, 2
   bool single_file = true;  ///< header and numbers in one file
   bool big_endian = false;
-  std::array<size_t, 7> dims{1, 1, 1, 1, 1, 1, 1};  ///< x y z t and more, 1 where not told
+  std::array<size_t, 7> dims{1, 1, 1, 1, 1, 1, 1};  ///< x y z t and more, 1 where not given
   int stored_dims = 0;                              ///< dim[0]
   int datatype = 0;
   std::array<double, 8> pixdim{};
@@ -33,7 +33,7 @@ bool is_nifti_header(std::span<const std::byte> head);
 /// Throws Error(data) naming `where` and the byte.
 NiftiHeader parse_nifti_header(std::span<const std::byte> bytes, const std::string& where);
 /// Grid of the first three axes in the header's world: sform where its code is > 0, else qform, else spacing alone. A sheared sform
-/// keeps its columns, so that voxel (i,j,k) lies where the matrix says. Adds notes: space, which form, units, description.
+/// keeps its columns, so that voxel (i,j,k) lies where the matrix puts it. Adds notes: space, which form, units, description.
 UniformGrid nifti_grid(const NiftiHeader& h, const std::string& where, std::vector<std::pair<std::string, std::string>>& notes);
 
 /// How numbers are stored: element type and numbers per voxel (complex 2, RGB 3, RGBA 4).

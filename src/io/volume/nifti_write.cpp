@@ -83,15 +83,15 @@ void write_nifti(const std::string& path, const Data& data, const WriteOptions&,
   const DatasetPtr d = single_dataset(data, "writing NIfTI");
   const UniformGrid* grid = d->as<UniformGrid>();
   if (!grid)
-    fail_usage(fmt::format("a NIfTI file holds a uniform grid, not a {} mesh", d->kind()), path,
-               "sample it on a grid first: -f 'resample'");
+    fail_usage(fmt::format("a NIfTI file holds a uniform grid, not a {} mesh", d->kind()), path, "resample it first: -f 'resample'");
   const std::string lower = to_lower(path);
   if (lower.ends_with(".hdr") || lower.ends_with(".img") || lower.ends_with(".hdr.gz") || lower.ends_with(".img.gz"))
-    fail_usage("pairs of .hdr and .img are read but not written", path, "name it .nii or .nii.gz");
+    fail_usage("pairs of .hdr and .img can be read but not written", path, "name it .nii or .nii.gz");
   WriteLosses losses(path, "NIfTI");
   const Field& f = field_to_write(*d, path, losses);
   for (const size_t n : {grid->dims[0], grid->dims[1], grid->dims[2], size_t(f.components())})
-    if (n > 32767) fail_usage(fmt::format("NIfTI-1 cannot hold {} entries along an axis, 32767 at most", n), path, "write NRRD instead");
+    if (n > 32767)
+      fail_usage(fmt::format("NIfTI-1 cannot hold {} entries along an axis; the limit is 32767", n), path, "write NRRD instead");
 
   losses.renames(f, "NIFTI");
   bool exact = true;
@@ -103,7 +103,7 @@ void write_nifti(const std::string& path, const Data& data, const WriteOptions&,
 
   std::byte header[header_bytes]{};
   fill_header(header, *d, *grid, f);
-  // Components of other than colours lie apart: one volume after the other.
+  // Components other than colours are stored separately: one volume after the other.
   std::vector<Array> blocks;
   if (f.components() == 1 || is_colors(f)) blocks.push_back(f.array.made_packed());
   else

@@ -47,11 +47,12 @@ std::string_view value_of(std::string_view dict, std::string_view key, const std
     }
     return trim(dict.substr(at, end - at));
   }
-  fail_data(fmt::format("the header has no '{}'", key), where, "like {'descr': '<f4', 'fortran_order': False, 'shape': (64, 64, 64)}");
+  fail_data(fmt::format("the header has no '{}'", key), where,
+            "expected e.g. {'descr': '<f4', 'fortran_order': False, 'shape': (64, 64, 64)}");
 }
 
 void parse_type(NpyHeader& h, std::string_view descr, const std::string& where) {
-  if (!descr.empty() && descr[0] == '[') fail_data("structured arrays are not read", where, "save one array per field");
+  if (!descr.empty() && descr[0] == '[') fail_data("structured arrays are not supported", where, "save one array per field");
   if (descr.size() >= 2 && (descr[0] == '\'' || descr[0] == '"')) descr = descr.substr(1, descr.size() - 2);
   const std::string_view full = descr;
   if (!descr.empty() && std::string_view("<>=|").find(descr[0]) != std::string_view::npos) {
@@ -73,41 +74,42 @@ void parse_type(NpyHeader& h, std::string_view descr, const std::string& where) 
       h.type = t.type, h.numbers = t.numbers, h.half = t.half;
       return;
     }
-  fail_data(fmt::format("numbers of type '{}' are not read", full.substr(0, 40)), where,
-            "bool, int and uint of 8 to 64 bits, float of 16 to 64 bits, complex");
+  fail_data(fmt::format("numbers of type '{}' are not supported", full.substr(0, 40)), where,
+            "supported: bool, int and uint of 8 to 64 bits, float of 16 to 64 bits, complex");
 }
 
 NpyHeader parse_header(const MappedFile& file) {
   const std::string& where = file.path();
   const auto* bytes = file.data();
-  if (file.size() < 10 || std::memcmp(bytes, "\x93NUMPY", 6) != 0) fail_data("does not begin like a .npy file", where);
+  if (file.size() < 10 || std::memcmp(bytes, "\x93NUMPY", 6) != 0) fail_data("does not begin as a .npy file", where);
   const int major = int(bytes[6]);
   if (major < 1 || major > 3) fail_data(fmt::format("byte 6: version {}", major), where, "1 to 3");
   const size_t front = major == 1 ? 10 : 12;
   if (file.size() < front) fail_data("the file ends in its header", where);
   const size_t length = major == 1 ? load<uint16_t>(bytes + 8) : load<uint32_t>(bytes + 8);
   if (length > file.size() - front)
-    fail_data(fmt::format("the header is told to have {} bytes, {} follow", length, file.size() - front), where);
+    fail_data(fmt::format("the header should have {} bytes, but {} follow", length, file.size() - front), where);
   const std::string_view dict = file.text().substr(front, length);
   NpyHeader h;
   h.data_begin = front + length;
   parse_type(h, value_of(dict, "descr", where), where);
   const std::string_view order = value_of(dict, "fortran_order", where);
-  if (order != "True" && order != "False") fail_data(fmt::format("'fortran_order' is '{}'", order.substr(0, 40)), where, "True or False");
+  if (order != "True" && order != "False")
+    fail_data(fmt::format("'fortran_order' is '{}'", order.substr(0, 40)), where, "use True or False");
   h.fortran = order == "True";
   std::string_view shape = value_of(dict, "shape", where);
   if (shape.size() < 2 || shape.front() != '(' || shape.back() != ')')
-    fail_data(fmt::format("'shape' is '{}'", shape.substr(0, 40)), where, "like (64, 64, 64)");
+    fail_data(fmt::format("'shape' is '{}'", shape.substr(0, 40)), where, "expected e.g. (64, 64, 64)");
   shape = trim(shape.substr(1, shape.size() - 2));
   if (!shape.empty() && shape.back() == ',') shape.remove_suffix(1);
   for (std::string_view s : split(shape, ',')) {
     if (!s.empty() && s.back() == 'L') s.remove_suffix(1);  // Python 2
     const auto v = parse_int(s);
-    if (!v || *v < 0) fail_data(fmt::format("'shape': '{}' is no size", s.substr(0, 40)), where);
+    if (!v || *v < 0) fail_data(fmt::format("'shape': '{}' is not a valid size", s.substr(0, 40)), where);
     h.shape.push_back(size_t(*v));
   }
   if (h.shape.size() > 4)
-    fail_data(fmt::format("an array of {} axes", h.shape.size()), where, "up to 3 axes of numbers, or 4 with components last");
+    fail_data(fmt::format("an array of {} axes", h.shape.size()), where, "supported: up to 3 axes of numbers, or 4 with components last");
   return h;
 }
 

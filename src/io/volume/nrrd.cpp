@@ -31,7 +31,7 @@ size_t skip_lines(const MappedFile& file, size_t begin, size_t lines) {
   const char* end = reinterpret_cast<const char*>(file.data()) + file.size();
   for (size_t i = 0; i < lines; ++i) {
     p = line_end(p, end);
-    if (p == end) fail_data(fmt::format("'line skip' is {} but there are only {} lines", lines, i), file.path());
+    if (p == end) fail_data(fmt::format("'line skip' is {}, but there are only {} lines", lines, i), file.path());
     ++p;
   }
   return size_t(p - reinterpret_cast<const char*>(file.data()));
@@ -57,7 +57,7 @@ std::vector<BrickPart> find_parts(const NrrdHeader& h, const MappedFile& file) {
     for (size_t a = sub; a < n; ++a) want *= h.axes[a].size;
     // With as many dimensions per file as there are axes, the files share the slowest axis in equal slabs.
     if (sub == n ? h.axes[n - 1].size % h.data_files.size() != 0 : want != h.data_files.size())
-      fail_data(fmt::format("{} data files, the sizes ask for {}", h.data_files.size(), want), h.path);
+      fail_data(fmt::format("has {} data files, but the sizes need {}", h.data_files.size(), want), h.path);
   }
   for (const std::string& name : h.data_files) add(MappedFile(named_file(h.path, name)), 0);
   return parts;
@@ -89,7 +89,7 @@ Array gather_components(const Array& stored, const NrrdHeader& h, size_t tuples,
   return r;
 }
 
-// Symmetric matrices are stored as xx xy xz yy yz zz; nine numbers, rows first, say the same to every filter.
+// Symmetric matrices are stored as xx xy xz yy yz zz; nine numbers, row by row, mean the same to every filter.
 Array full_tensor(const Array& six, int first) {
   const Array f = six.converted(six.type() == ElementType::f64 ? ElementType::f64 : ElementType::f32);
   static constexpr int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
@@ -259,11 +259,11 @@ void write_nrrd(const std::string& path, const Data& data, const WriteOptions& o
   const DatasetPtr d = single_dataset(data, "writing NRRD");
   const UniformGrid* grid = d->as<UniformGrid>();
   if (!grid)
-    fail_usage(fmt::format("a NRRD file holds a uniform grid, not a {} mesh", d->kind()), path, "sample it on a grid first: -f 'resample'");
+    fail_usage(fmt::format("a NRRD file holds a uniform grid, not a {} mesh", d->kind()), path, "resample it first: -f 'resample'");
   const Compression compression = options.compression.value_or(Compression::none);
   if (compression != Compression::none && compression != Compression::gzip)
-    fail_usage(fmt::format("NRRD cannot be compressed with '{}'", word_of(compression)), path, "none or gzip");
-  if (extension_of(path) == "nhdr") fail_usage("detached NRRD headers are read but not written", path, "name it .nrrd");
+    fail_usage(fmt::format("NRRD cannot be compressed with '{}'", word_of(compression)), path, "use none or gzip");
+  if (extension_of(path) == "nhdr") fail_usage("detached NRRD headers can be read but not written", path, "name it .nrrd");
   const UniformGrid placed = with_long_axes(*grid);
   WriteLosses losses(path, "NRRD");
   const Field& f = field_to_write(*d, path, losses);

@@ -37,7 +37,7 @@ struct Parser {
     std::vector<double> r;
     for (std::string_view w : per_axis(field, value)) {
       const auto d = parse_double(w);
-      if (!d) fail(fmt::format("'{}': '{}' is no number", field, w));
+      if (!d) fail(fmt::format("'{}': '{}' is not a number", field, w));
       r.push_back(*d);
     }
     return r;
@@ -46,14 +46,14 @@ struct Parser {
   Vec3 vector(std::string_view field, std::string_view& s) const {
     const size_t close = s.find(')');
     if (s.empty() || s[0] != '(' || close == std::string_view::npos)
-      fail(fmt::format("'{}': '{}' is no vector like (1,0,0)", field, s.substr(0, 40)));
+      fail(fmt::format("'{}': '{}' is not a vector like (1,0,0)", field, s.substr(0, 40)));
     const auto parts = split(s.substr(1, close - 1), ',');
     if (parts.empty() || parts.size() > 4 || (space_dimension > 0 && parts.size() != size_t(space_dimension)))
       fail(fmt::format("'{}' has a vector of {} numbers in a space of {}", field, parts.size(), space_dimension));
     Vec3 v;
     for (size_t i = 0; i < parts.size(); ++i) {
       const auto d = parse_double(parts[i]);
-      if (!d) fail(fmt::format("'{}': '{}' is no number", field, parts[i]));
+      if (!d) fail(fmt::format("'{}': '{}' is not a number", field, parts[i]));
       if (i < 3) v[int(i)] = *d;
     }
     s = trim(s.substr(close + 1));
@@ -64,7 +64,7 @@ struct Parser {
     try {
       return quoted_words(value);
     } catch (const Error&) {
-      fail("a missing closing quote");
+      fail("a closing quote is missing");
     }
   }
 
@@ -125,7 +125,7 @@ bool Parser::geometry_field(const std::string& name, std::string_view value) {
         continue;
       }
       const Vec3 v = vector(name, s);
-      // A vector of NaN says "none" in files of some programs.
+      // A vector of NaN means "none" in files of some programs.
       if (std::isnan(v.x) && std::isnan(v.y)) axis.no_direction = true;
       else axis.direction = v, axis.has_direction = true;
     }
@@ -152,19 +152,19 @@ bool Parser::geometry_field(const std::string& name, std::string_view value) {
 void Parser::field(const std::string& name, std::string_view value) {
   if (geometry_field(name, value)) return;
   if (name == "type") {
-    if (equal_ignoring_case(value, "block")) fail("the type 'block' has no numbers in it");
-    if (!parse_type(value, h.type)) fail(fmt::format("unknown type '{}'", value), "like int16, uint8, float, double");
+    if (equal_ignoring_case(value, "block")) fail("the type 'block' contains no numbers");
+    if (!parse_type(value, h.type)) fail(fmt::format("unknown type '{}'", value), "use e.g. int16, uint8, float or double");
     has_type = true;
   } else if (name == "dimension") {
     const auto v = parse_int(value);
     if (!v || *v < 1 || *v > 16) fail(fmt::format("'dimension' is '{}'", value), "1 to 16");
-    if (!h.axes.empty()) fail("a second 'dimension'");
+    if (!h.axes.empty()) fail("has a second 'dimension'");
     h.axes.resize(size_t(*v));
   } else if (name == "sizes") {
     const auto w = per_axis(name, value);
     for (size_t a = 0; a < w.size(); ++a) {
       const auto v = parse_int(w[a]);
-      if (!v || *v < 1) fail(fmt::format("'sizes': '{}' is no size", w[a]));
+      if (!v || *v < 1) fail(fmt::format("'sizes': '{}' is not a valid size", w[a]));
       h.axes[a].size = size_t(*v);
     }
   } else if (name == "encoding") {
@@ -174,11 +174,11 @@ void Parser::field(const std::string& name, std::string_view value) {
     else if (e == "hex") h.encoding = BrickEncoding::hex;
     else if (e == "gzip" || e == "gz") h.encoding = BrickEncoding::gzip;
     else if (e == "bzip2" || e == "bz2") h.encoding = BrickEncoding::bzip2;
-    else fail(fmt::format("unknown encoding '{}'", value), "raw, ascii, hex, gzip or bzip2");
+    else fail(fmt::format("unknown encoding '{}'", value), "use raw, ascii, hex, gzip or bzip2");
     has_encoding = true;
   } else if (name == "endian") {
     const std::string e = to_lower(trim(value));
-    if (e != "little" && e != "big") fail(fmt::format("'endian' is '{}'", value), "little or big");
+    if (e != "little" && e != "big") fail(fmt::format("'endian' is '{}'", value), "use little or big");
     h.big_endian = e == "big";
     has_endian = true;
   } else if (name == "byte skip" || name == "byteskip") {
@@ -216,10 +216,10 @@ void Parser::field(const std::string& name, std::string_view value) {
 // "name", "pattern min max step [subdim]" or "LIST [subdim]" with one name per line to the end of the header.
 void Parser::data_file(std::string_view value, const char*& p, const char* end) {
   const auto w = words(value);
-  if (w.empty()) fail("'data file' without a name");
+  if (w.empty()) fail("'data file' has no name");
   auto number = [&](std::string_view s) {
     const auto v = parse_int(s);
-    if (!v) fail(fmt::format("'data file': '{}' is no whole number", s), "pattern min max step, like slice%03d.raw 1 93 1");
+    if (!v) fail(fmt::format("'data file': '{}' is not a whole number", s), "write pattern min max step, e.g. slice%03d.raw 1 93 1");
     return *v;
   };
   auto set_subdim = [&](std::string_view s) {
@@ -235,9 +235,9 @@ void Parser::data_file(std::string_view value, const char*& p, const char* end) 
       p = e < end ? e + 1 : end;
       ++line;
       if (!name.empty()) h.data_files.emplace_back(name);
-      if (h.data_files.size() > 1000000) fail("more than a million data files");
+      if (h.data_files.size() > 1000000) fail("has more than a million data files");
     }
-    if (h.data_files.empty()) fail("'data file: LIST' but no names follow");
+    if (h.data_files.empty()) fail("'data file: LIST' is not followed by names");
   } else if (w.size() >= 4 && w[0].find('%') != std::string_view::npos) {
     h.data_files = pattern_names(std::string(w[0]), number(w[1]), number(w[2]), number(w[3]), h.path);
     if (w.size() > 4) set_subdim(w[4]);

@@ -125,13 +125,13 @@ Data read_png_grid(const std::string& path, const ReadOptions& options, Context&
   p.bytes = {file.data(), file.size()};
   p.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &p, Png::fail, [](png_structp, png_const_charp) {});
   p.info = p.png ? png_create_info_struct(p.png) : nullptr;
-  if (!p.info) fail_data("libpng could not start", path);
+  if (!p.info) fail_data("cannot start libpng", path);
   if (!p.head()) fail_data("damaged PNG: " + p.problem, path);
   // Deflate packs at most 1032 to 1: a larger picture cannot be in this file.
   const size_t row = p.width * p.channels * (p.depth / 8);
   uint64_t size = 0;
   if (!multiply(row, p.height, size) || size / 1040 > file.size())
-    fail_data(fmt::format("damaged PNG: {} x {} pixels cannot be in {} bytes", p.width, p.height, file.size()), path);
+    fail_data(fmt::format("damaged PNG: {} x {} pixels do not fit into {} bytes", p.width, p.height, file.size()), path);
   if (options.header_only) return picture(p.width, p.height, "PNGImage", {}, options.region);
   std::byte* to = nullptr;
   Array a = Array::make_raw(p.depth == 16 ? ElementType::u16 : ElementType::u8, p.width * p.height, int(p.channels), &to);
@@ -143,7 +143,7 @@ Data read_png_grid(const std::string& path, const ReadOptions& options, Context&
 Data read_jpeg_grid(const std::string& path, const ReadOptions& options, Context&) {
   const MappedFile file(path);
   const std::unique_ptr<void, int (*)(tjhandle)> tj(tjInitDecompress(), tjDestroy);
-  if (!tj) fail_data("libjpeg could not start", path);
+  if (!tj) fail_data("cannot start libjpeg", path);
   const auto* bytes = reinterpret_cast<const unsigned char*>(file.data());
   int width = 0, height = 0, sampling = 0, space = 0;
   if (tjDecompressHeader3(tj.get(), bytes, file.size(), &width, &height, &sampling, &space) != 0 || width < 1 || height < 1)
@@ -151,7 +151,7 @@ Data read_jpeg_grid(const std::string& path, const ReadOptions& options, Context
   const bool grey = space == TJCS_GRAY;
   const size_t numbers = size_t(width) * size_t(height) * (grey ? 1 : 3);
   if (numbers / 4000 > file.size())
-    fail_data(fmt::format("damaged JPEG: {} x {} pixels cannot be in {} bytes", width, height, file.size()), path);
+    fail_data(fmt::format("damaged JPEG: {} x {} pixels do not fit into {} bytes", width, height, file.size()), path);
   if (options.header_only) return picture(size_t(width), size_t(height), "JPEGImage", {}, options.region);
   uint8_t* to = nullptr;
   Array a = Array::make<uint8_t>(size_t(width) * size_t(height), grey ? 1 : 3, &to);
@@ -165,7 +165,7 @@ bool sniff_picture_folder(const std::string& path) { return pictures_in(path).si
 
 Data read_picture_stack(const std::string& path, const ReadOptions& options, Context& context) {
   const std::vector<std::string> names = pictures_in(path);
-  if (names.size() < 2) fail_data("holds fewer than two pictures of one kind", path);
+  if (names.size() < 2) fail_data("contains fewer than two pictures of one kind", path);
   auto read = [&](size_t i, bool header_only) {
     ReadOptions o;
     o.header_only = header_only;
@@ -173,8 +173,8 @@ Data read_picture_stack(const std::string& path, const ReadOptions& options, Con
   };
   const DatasetPtr first = read(0, false);
   const auto size = lattice_dims(first->mesh());
-  if (size[2] != 1) fail_data(fmt::format("'{}' holds {} layers, one is expected in each picture of a stack", names[0], size[2]), path);
-  if (first->fields().empty()) fail_data(fmt::format("'{}' holds no numbers", names[0]), path);
+  if (size[2] != 1) fail_data(fmt::format("'{}' has {} layers, but each picture of a stack must have one", names[0], size[2]), path);
+  if (first->fields().empty()) fail_data(fmt::format("'{}' contains no numbers", names[0]), path);
   const Field& like = first->fields()[0];
   UniformGrid grid = *first->as<UniformGrid>();
   grid.dims[2] = names.size();
@@ -187,7 +187,7 @@ Data read_picture_stack(const std::string& path, const ReadOptions& options, Con
       {size[0], size[1], 1}, {part.lo[0], part.lo[1], 0}, {part.count[0], part.count[1], 1}, {part.stride[0], part.stride[1], 1}};
   std::byte* to = nullptr;
   Array a;
-  // Memory for the volume is asked for when the last picture has been seen to be like the first, at least in its header.
+  // Memory for the volume is allocated once the last picture is known to match the first, at least in its header.
   for (const size_t i : {names.size() / 2, names.size() - 1})
     if (lattice_dims(read(i, true)->mesh()) != size) fail_data(fmt::format("'{}' and '{}' differ in size", names[0], names[i]), path);
   a = Array::make_raw(like.array.type(), part.points(), like.components(), &to);
@@ -198,7 +198,7 @@ Data read_picture_stack(const std::string& path, const ReadOptions& options, Con
         const DatasetPtr d = i == 0 ? first : read(i, false);
         const Field& f = d->fields()[0];
         if (lattice_dims(d->mesh()) != size || f.components() != like.components() || f.array.type() != like.array.type())
-          fail_data(fmt::format("'{}' and '{}' differ in size or type", names[0], names[i]), path, "all pictures of a stack are alike");
+          fail_data(fmt::format("'{}' and '{}' differ in size or type", names[0], names[i]), path, "all pictures of a stack must be alike");
         copy_part(f.array.made_packed().raw(), tuple, layer, to + k * layer.points() * tuple);
       },
       &context);

@@ -13,14 +13,13 @@ namespace sg {
 
 namespace {
 
-// Without a word from the caller: what the name and the length say, told as a warning.
+// Without a word from the caller: what the name and the length imply, reported as a warning.
 ReadOptions described(const std::string& path, ReadOptions o, Context& context) {
   if (o.raw_dims[0] > 0) return o;
   const auto guess = guess_raw(MappedFile(path));
-  if (!guess)
-    fail_usage("a raw brick does not say its size", path, "give --dims NX,NY,NZ and --type, for example --dims 256,256,94 --type i16");
+  if (!guess) fail_usage("the size of a raw brick is unknown", path, "give --dims NX,NY,NZ and --type, e.g. --dims 256,256,94 --type i16");
   o.raw_dims = guess->dims, o.raw_type = std::string(element_name(guess->type)), o.raw_big_endian = guess->big_endian;
-  context.warn(fmt::format("{}: read as {}, as its name and length say; --dims and --type say otherwise", path, guess->text()));
+  context.warn(fmt::format("{}: read as {}, judging by its name and length; override with --dims and --type", path, guess->text()));
   return o;
 }
 
@@ -29,9 +28,9 @@ ReadOptions described(const std::string& path, ReadOptions o, Context& context) 
 Data read_raw(const std::string& path, const ReadOptions& given, Context& context) {
   const ReadOptions o = described(path, given, context);
   BrickLayout l;
-  if (o.raw_type.empty()) fail_usage("a raw brick does not say its element type", path, "give --type u8, i16, u16, f32, ...");
+  if (o.raw_type.empty()) fail_usage("the number type of a raw brick is unknown", path, "give --type u8, i16, u16, f32, ...");
   if (!parse_element_type(o.raw_type, l.type))
-    fail_usage(fmt::format("unknown element type '{}'", o.raw_type), path, "known are u8 i8 u16 i16 u32 i32 u64 i64 f32 f64");
+    fail_usage(fmt::format("unknown element type '{}'", o.raw_type), path, "supported: u8 i8 u16 i16 u32 i32 u64 i64 f32 f64");
   if (o.raw_components < 1) fail_usage(fmt::format("{} components per voxel", o.raw_components), path, "give 1 or more");
 
   UniformGrid grid;
@@ -50,10 +49,10 @@ Data read_raw(const std::string& path, const ReadOptions& given, Context& contex
                                        l.components > 1 ? fmt::format(" x {}", l.components) : "");
   const uint64_t have = file.file.size() - std::min(file.file.size(), o.raw_header);
   if (!multiply(l.count, size * uint64_t(l.components), need) || need != have) {
-    // A brick of another size than told is nearly always a wrong size or type: what would fit is said.
+    // A brick of a different size than stated nearly always means a wrong size or type: the message says what would fit.
     std::string hint = fmt::format("{} bytes are {} numbers of {}", have, have / size, element_name(l.type));
     if (have > need && need > 0) hint += fmt::format("; with a header of {} bytes it would fit", o.raw_header + (have - need));
-    fail_data(fmt::format("{} needs {} bytes, there are {}{}", what, need, have,
+    fail_data(fmt::format("{} needs {} bytes, but there are {}{}", what, need, have,
                           o.raw_header ? fmt::format(" after the header of {}", o.raw_header) : ""),
               path, hint);
   }

@@ -18,7 +18,7 @@ struct RawGuess {
   std::string text() const;
 };
 
-/// Nothing when the name says no size, or the length is no multiple of it that fits a type. The byte order is the one in which the
+/// Nothing when the name has no size, or the length is not a multiple of it that fits a type. The byte order is the one in which the
 /// numbers look like measurements: floats of usual size, integers that change little from one to the next.
 std::optional<RawGuess> guess_raw(const MappedFile& file);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// SLC, the volumes of VolVis: a header in text that ends with 'X', a small picture, then the slices of bytes, each alone packed by
-// run lengths (a byte with the top bit set and n below: n bytes follow; without: the next byte n times; 0 ends).
+// SLC, the volumes of VolVis: a header in text that ends with 'X', a small picture, then the slices of bytes, each packed separately by run
+// lengths (a byte with the top bit set and n below: n bytes follow; without: the next byte n times; 0 ends).
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ struct Words {
     double v = 0;
     const char* before = p;
     if (!scan_number(p, end, v) || !std::isfinite(v))
-      fail_data(fmt::format("byte {}: the header should tell {}", size_t(before - base), what), file.path());
+      fail_data(fmt::format("byte {}: expected {} in the header", size_t(before - base), what), file.path());
     at = size_t(p - base);
     return v;
   }
@@ -39,7 +39,7 @@ struct Words {
   // The X that ends a text part, and the blank before it.
   void mark(const char* what) {
     while (at < file.size() && is_space(file.text()[at])) ++at;
-    if (at >= file.size() || file.text()[at] != 'X') fail_data(fmt::format("byte {}: an 'X' should end {}", at, what), file.path());
+    if (at >= file.size() || file.text()[at] != 'X') fail_data(fmt::format("byte {}: expected an 'X' to end {}", at, what), file.path());
     ++at;
   }
 };
@@ -90,18 +90,18 @@ Data read_slc(const std::string& path, const ReadOptions& options, Context&) {
   }
   if (const size_t bits = w.whole("the bits per voxel", 64); bits != 8) fail_data(fmt::format("{} bits per voxel", bits), path, "8");
   for (int a = 0; a < 3; ++a)
-    if ((grid.spacing[a] = w.number("a spacing")) <= 0) fail_data(fmt::format("byte {}: a spacing of {}", w.at, grid.spacing[a]), path);
+    if ((grid.spacing[a] = w.number("a spacing")) <= 0) fail_data(fmt::format("byte {}: the spacing is {}", w.at, grid.spacing[a]), path);
   w.whole("the unit", 100);
   w.whole("the origin of the data", 100);
   w.whole("the change of the data", 100);
   const size_t packing = w.whole("the compression", 100);
-  if (packing > 1) fail_data(fmt::format("byte {}: compression {} is unknown", w.at, packing), path, "0 none, 1 run lengths");
+  if (packing > 1) fail_data(fmt::format("byte {}: compression {} is unknown", w.at, packing), path, "supported: 0 none, 1 run-length");
   const size_t width = w.whole("the icon's width", 1e5), height = w.whole("the icon's height", 1e5);
   w.mark("the header");
   if (3 * width * height > file.size() - w.at) fail_data("the file ends inside its icon", path);
   w.at += 3 * width * height;
 
-  // Where each slice lies, before memory is asked for.
+  // Where each slice lies, before memory is allocated.
   const size_t slice = grid.dims[0] * grid.dims[1];
   std::vector<std::span<const std::byte>> slices;
   const std::span<const std::byte> bytes(file.data(), file.size());
@@ -110,10 +110,10 @@ Data read_slc(const std::string& path, const ReadOptions& options, Context&) {
     if (packing) {
       n = w.whole("the packed size of a slice", 1e12);
       w.mark("the packed size of a slice");
-      if (slice / 64 > n + 1) fail_data(fmt::format("byte {}: {} bytes cannot unpack to {}", w.at, n, slice), path);
+      if (slice / 64 > n + 1) fail_data(fmt::format("byte {}: {} bytes cannot decompress to {}", w.at, n, slice), path);
     }
     if (n > file.size() - w.at)
-      fail_data(fmt::format("too short: slice {} needs {} bytes from byte {} on, there are {}", k, n, w.at, file.size() - w.at), path);
+      fail_data(fmt::format("too short: slice {} needs {} bytes from byte {} on, but there are {}", k, n, w.at, file.size() - w.at), path);
     slices.push_back(bytes.subspan(w.at, n));
     w.at += n;
   }

@@ -113,17 +113,17 @@ class AmrReader {
   }
 
   void add_patch(uint64_t level, pugi::xml_node n) {
-    if (level >= 64) file_.fail(fmt::format("is of level {}", level), n, "fewer than 64 levels");
+    if (level >= 64) file_.fail(fmt::format("is of level {}", level), n, "fewer than 64 levels are supported");
     if (level >= spacings_.size()) spacings_.resize(level + 1), have_spacing_.resize(level + 1, false);
     Patch p{level, n, {}, {}};
     parse_longs(file_, n, "amr_box", p.box.data(), 6);
     const std::string_view source = n.attribute("file").value();
-    if (source.empty()) return;  // a patch that nobody wrote
-    if (!sources_.insert(source).second) file_.fail(fmt::format("names '{}' a second time", source), n, "each patch once");
+    if (source.empty()) return;  // a patch that was not written
+    if (!sources_.insert(source).second) file_.fail(fmt::format("names '{}' a second time", source), n, "name each patch once");
     auto sane = [](long long i) { return i >= -(1ll << 40) && i <= 1ll << 40; };
     for (size_t a = 0; a < 3; ++a)
       if (!sane(p.box[2 * a]) || !sane(p.box[2 * a + 1]) || p.box[2 * a + 1] < p.box[2 * a] - 1)
-        file_.fail(fmt::format("amr_box runs from {} to {} along {}", p.box[2 * a], p.box[2 * a + 1], "xyz"[a]), n);
+        file_.fail(fmt::format("amr_box extends from {} to {} along {}", p.box[2 * a], p.box[2 * a + 1], "xyz"[a]), n);
     patches_.push_back(std::move(p));
   }
 
@@ -138,8 +138,8 @@ class AmrReader {
         return std::get<DatasetPtr>(data);
       });
       const auto* g = p.data->as<UniformGrid>();
-      if (!g) fail_data(fmt::format("holds a mesh of kind {}", p.data->kind()), at, "image data: patches are uniform");
-      if (!(g->direction == Mat3{})) fail_data("is turned", at, "patches lie along the axes");
+      if (!g) fail_data(fmt::format("holds a mesh of kind {}", p.data->kind()), at, "patches must be image data");
+      if (!(g->direction == Mat3{})) fail_data("is turned", at, "patches must lie along the axes");
       for (size_t a = 0; a < 3; ++a) {
         const auto cells = static_cast<long long>(g->dims[a]) - 1;
         if (p.box[2 * a + 1] - p.box[2 * a] + 1 != cells && !(cells == 0 && p.box[2 * a + 1] == p.box[2 * a]))
@@ -153,7 +153,7 @@ class AmrReader {
     bool flat = !patches_.empty();
     for (const Patch& p : patches_) {
       const auto& d = p.data->as<UniformGrid>()->dims;
-      if (d[0] < 2 || d[1] < 2) fail_data("has patches that are flat along x or y", path(), "two-dimensional AMR lies in the plane x, y");
+      if (d[0] < 2 || d[1] < 2) fail_data("has patches that are flat along x or y", path(), "two-dimensional AMR must lie in the xy plane");
       flat = flat && d[2] == 1;
     }
     grid_.dimension = flat ? 2 : 3;
@@ -165,7 +165,7 @@ class AmrReader {
       if (const auto exact = seen_.find(l); exact != seen_.end()) grid_.levels[l].spacing = exact->second;
       else if (have_spacing_[l]) grid_.levels[l].spacing = spacings_[l];
       else if (l > 0 && l <= ratios_.size()) grid_.levels[l].spacing = grid_.levels[l - 1].spacing / double(std::max(ratios_[l - 1], 1));
-      else file_.fail(fmt::format("says no spacing of level {}", l), file_.dataset());
+      else file_.fail(fmt::format("gives no spacing for level {}", l), file_.dataset());
       set_ratio(l);
     }
     if (!parse_doubles(file_, file_.dataset(), "origin", &grid_.origin.x, 3) && !patches_.empty()) {
@@ -176,7 +176,7 @@ class AmrReader {
     for (const Patch& p : patches_) {
       AmrGrid::Patch box;
       for (size_t a = 0; a < 3; ++a) box.lo[a] = p.box[2 * a], box.hi[a] = std::max(p.box[2 * a], p.box[2 * a + 1]);
-      if (!flat && p.data->as<UniformGrid>()->dims[2] < 2) fail_data("has flat patches beside full ones", path());
+      if (!flat && p.data->as<UniformGrid>()->dims[2] < 2) fail_data("has flat patches besides three-dimensional ones", path());
       box.cell_offset = cells, box.point_offset = points;
       cells += p.data->cell_count(), points += p.data->point_count();
       grid_.levels[p.level].patches.push_back(box);
@@ -191,7 +191,8 @@ class AmrReader {
       const double r = grid_.levels[l - 1].spacing[a] / level.spacing[a];
       const bool flat = a == 2 && grid_.dimension == 2;
       if (!flat && (!(r > 0.99 && r < 1024.5) || std::abs(r - std::round(r)) > 0.01))
-        fail_data(fmt::format("refines {} by {} from level {} to {}", "xyz"[a], r, l - 1, l), path(), "a whole number from 1 to 1024");
+        fail_data(fmt::format("refines {} by {} from level {} to {}", "xyz"[a], r, l - 1, l), path(),
+                  "expected a whole number from 1 to 1024");
       level.ratio[size_t(a)] = flat ? 1 : int(std::round(r));
     }
   }
@@ -208,7 +209,7 @@ class AmrReader {
         arrays.push_back(other->array);
       }
       if (arrays.size() != patches_.size()) {
-        context_.warn(fmt::format("{} array '{}' is not the same in all patches: left out", association_name(association), f.name));
+        context_.warn(fmt::format("{} array '{}' differs between patches and is left out", association_name(association), f.name));
         continue;
       }
       Field joined = f;

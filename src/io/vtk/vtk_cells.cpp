@@ -47,7 +47,7 @@ Array as_coordinates(const Array& a) {
 
 namespace {
 
-constexpr int most_points = 4096;  // of cells of one size; larger ones are worth their offsets
+constexpr int most_points = 4096;  // of cells of one size; for larger ones the offsets pay off
 
 template <class T, bool BIG>
 int uniform_size_of(const std::byte* p, size_t n) {
@@ -94,8 +94,8 @@ CellArray cells_from_ends(const Array& ends_in, const Array& connectivity) {
   with_indices(ends, [&](auto* end) {
     using T = std::remove_cvref_t<decltype(*end)>;
     // For i == 0 the end before is the start of the list.
-    if (!all_of(n, [&](size_t i) { return end[i] >= (i ? end[i - 1] : T(0)); })) fail_data("offsets of cells fall");
-    if (size_t(end[n - 1]) > ids) fail_data(fmt::format("offsets of cells end at {} but there are {} point ids", end[n - 1], ids));
+    if (!all_of(n, [&](size_t i) { return end[i] >= (i ? end[i - 1] : T(0)); })) fail_data("the offsets of cells decrease");
+    if (size_t(end[n - 1]) > ids) fail_data(fmt::format("the offsets of cells end at {}, but there are {} point ids", end[n - 1], ids));
     T* out = nullptr;
     cells.offsets = Array::make<T>(n + 1, 1, &out);
     out[0] = 0;
@@ -108,7 +108,7 @@ CellArray cells_from_ends(const Array& ends_in, const Array& connectivity) {
 CellArray cells_from_starts(const Array& starts, const Array& connectivity) {
   if (starts.count() < 2) return no_cells();
   const Array a = as_indices(starts);
-  if (index_view(a)[0] != 0) fail_data(fmt::format("offsets of cells begin at {}, not 0", index_view(a)[0]));
+  if (index_view(a)[0] != 0) fail_data(fmt::format("the offsets of cells begin at {}, not 0", index_view(a)[0]));
   return cells_from_ends(a.slice(1, a.count()), connectivity);
 }
 
@@ -172,7 +172,7 @@ void set_types(UnstructuredMesh& mesh, const Array& types_in) {
 
 size_t FaceCollector::add(IndexView stream, size_t begin, size_t end) {
   auto take = [&, at = begin]() mutable {
-    if (at >= end) fail_data(fmt::format("the faces of polyhedron {} run out of its list", cell_faces_.size() - 1));
+    if (at >= end) fail_data(fmt::format("the faces of polyhedron {} extend beyond its list", cell_faces_.size() - 1));
     return stream[at++];
   };
   const int64_t faces = take();
@@ -198,7 +198,7 @@ void FaceCollector::finish(UnstructuredMesh& mesh) {
 
 void expand_polyhedra(UnstructuredMesh& mesh) {
   const size_t n = mesh.cells.size();
-  if (n == 0 || mesh.types.count() != n) return;  // a wrong number of types is for validate() to tell
+  if (n == 0 || mesh.types.count() != n) return;  // a wrong number of types is reported by validate()
   const auto types = mesh.types.view<uint8_t>();
   constexpr auto polyhedron = uint8_t(CellType::polyhedron);
   if (all_of(n, [&](size_t i) { return types[i] != polyhedron; })) return;
@@ -316,7 +316,8 @@ CellArray concatenated_cells(std::span<const CellArray> parts, std::span<const s
 
 void set_weights(UnstructuredMesh& mesh, const Field& field) {
   if (field.components() != 1 || field.array.count() != mesh.points.count())
-    fail_data(fmt::format("the rational weights '{}' have {} components", field.name, field.components()), {}, "one number a point");
+    fail_data(fmt::format("the rational weights '{}' have {} components", field.name, field.components()), {},
+              "expected one number per point");
   mesh.weights = field.array.converted(ElementType::f64);
   const double* w = mesh.weights.view<double>().data;
   if (!all_of(mesh.weights.count(), [&](size_t i) { return std::isfinite(w[i]); }))
@@ -325,7 +326,8 @@ void set_weights(UnstructuredMesh& mesh, const Field& field) {
 
 void set_degrees(UnstructuredMesh& mesh, const Field& field) {
   if (field.components() != 3 || field.array.count() != mesh.cells.size())
-    fail_data(fmt::format("the orders of cells '{}' have {} components", field.name, field.components()), {}, "three numbers a cell");
+    fail_data(fmt::format("the orders of cells '{}' have {} components", field.name, field.components()), {},
+              "expected three numbers per cell");
   const size_t n = field.array.count();
   uint8_t* out = nullptr;
   Array degrees = Array::make<uint8_t>(n, 3, &out);
@@ -334,7 +336,8 @@ void set_degrees(UnstructuredMesh& mesh, const Field& field) {
       for (int c = 0; c < 3; ++c) {
         const auto d = double(v(i, c));
         if (!(d >= 0 && d <= 255) || d != std::floor(d))
-          fail_data(fmt::format("cell {} has the order {}", i, d), fmt::format("array '{}'", field.name), "a whole number from 0 to 255");
+          fail_data(fmt::format("cell {} has the order {}", i, d), fmt::format("array '{}'", field.name),
+                    "expected a whole number from 0 to 255");
         out[3 * i + size_t(c)] = uint8_t(d);
       }
   });

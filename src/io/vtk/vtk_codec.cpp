@@ -61,7 +61,7 @@ bool decompress_block(Codec codec, const std::byte* src, size_t n, std::byte* ds
       return got >= 0 && size_t(got) == bytes;
     }
     case Codec::lzma: {
-      uint64_t memory = uint64_t(128) << 20;  // the strongest preset needs 65 MiB; a damaged header asks for more
+      uint64_t memory = uint64_t(128) << 20;  // the strongest preset needs 65 MiB; a damaged header requires more
       size_t in = 0, out = 0;
       return lzma_stream_buffer_decode(&memory, 0, nullptr, reinterpret_cast<const uint8_t*>(src), &in, n, reinterpret_cast<uint8_t*>(dst),
                                        &out, bytes) == LZMA_OK &&
@@ -123,7 +123,7 @@ struct Base64Table {
 };
 constexpr Base64Table base64;
 
-// Whole groups without padding; false at the first character that is none.
+// Whole groups without padding; false at the first invalid character.
 bool decode_groups(const char* p, size_t groups, std::byte* out) {
   uint8_t bad = 0;
   for (size_t g = 0; g < groups; ++g, p += 4, out += 3) {
@@ -137,7 +137,7 @@ bool decode_groups(const char* p, size_t groups, std::byte* out) {
   return bad < 64;
 }
 
-// One group, perhaps padded: bytes in it, 0 when it is no base64.
+// One group, perhaps padded: bytes in it, 0 when it is not base64.
 size_t decode_group(const char* p, std::byte out[3]) {
   char q[4] = {p[0], p[1], p[2], p[3]};
   size_t n = 3;

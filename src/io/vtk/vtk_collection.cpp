@@ -31,7 +31,7 @@ bool is_multiblock(std::string_view type) {
 
 // Time steps of a .pvd file, ascending, and the DataSet elements of each.
 struct Steps {
-  std::vector<double> times;  // empty when the file says none
+  std::vector<double> times;  // empty when the file has none
   std::vector<std::vector<pugi::xml_node>> sets;
 };
 
@@ -66,8 +66,8 @@ class TreeReader {
       return have->second.data;
     }
     if (std::find(stack_.begin(), stack_.end(), real) != stack_.end())
-      fail_data("contains itself", path, "a file that names only other files");
-    if (stack_.size() >= most_depth) fail_data(fmt::format("is the {}th file inside another", stack_.size()), path);
+      fail_data("contains itself", path, "a file must name only other files");
+    if (stack_.size() >= most_depth) fail_data(fmt::format("is nested in {} other files", stack_.size()), path);
     context_.check();
     stack_.push_back(real);
     const size_t before = parts_;
@@ -95,8 +95,7 @@ class TreeReader {
     parts_ += parts;
     const size_t most = parts_always + bytes_ / bytes_a_part;
     if (parts_ > most)
-      fail_data(fmt::format("has more than {} parts, counting files that are named again and again", most), stack_[0],
-                "name each part once");
+      fail_data(fmt::format("has more than {} parts, counting files that are named repeatedly", most), stack_[0], "name each part once");
   }
 
   Data read_new(const std::string& path) {
@@ -144,7 +143,7 @@ class TreeReader {
   }
 
   void read_blocks(const XmlFile& file, pugi::xml_node parent, Collection& out, size_t depth) {
-    if (depth > most_depth) file.fail(fmt::format("has blocks in blocks, {} deep", depth), parent);
+    if (depth > most_depth) file.fail(fmt::format("nests blocks {} deep", depth), parent);
     for (const pugi::xml_node& n : parent.children()) {
       const std::string_view element = n.name();
       const bool leaf = element == "DataSet";
@@ -184,7 +183,7 @@ class TreeReader {
     size_t i = 0;
     for (const pugi::xml_node& n : sets) {
       const std::string_view source = n.attribute("file").value();
-      if (source.empty()) file.fail("has no file", n, "the name of the file of that step");
+      if (source.empty()) file.fail("has no file", n, "expected the file name of that step");
       const size_t place = i++;
       if (!is_mine()) continue;
       Data data =
@@ -196,7 +195,7 @@ class TreeReader {
     return CollectionPtr(std::move(collection));
   }
 
-  // A document with these elements alone, for counting.
+  // A document with only these elements, for counting.
   pugi::xml_node only(const std::vector<pugi::xml_node>& sets) {
     counting_.reset();
     for (const pugi::xml_node& n : sets) counting_.append_copy(n);

@@ -139,18 +139,18 @@ void LegacyReader::header() {
   const std::string_view first = text_.line();
   const std::string_view prefix = "# vtk datafile version";
   if (first.size() < prefix.size() || !equal_ignoring_case(first.substr(0, prefix.size()), prefix))
-    text_.fail("is no legacy VTK file", "the first line should be '# vtk DataFile Version 3.0'");
+    text_.fail("is not a legacy VTK file", "the first line should be '# vtk DataFile Version 3.0'");
   const std::string_view title = trim(text_.line());
   if (!title.empty() && title.size() <= 1024) parts_.notes.emplace_back("title", std::string(title));
-  const std::string_view encoding = text_.need_word("ASCII or BINARY");
+  const std::string_view encoding = text_.need_word("use ASCII or BINARY");
   if (equal_ignoring_case(encoding, "BINARY")) text_.binary = true;
   else if (!equal_ignoring_case(encoding, "ASCII"))
-    text_.fail(fmt::format("'{}' where ASCII or BINARY should stand", encoding.substr(0, 40)),
-               "the word behind the title line tells the encoding");
+    text_.fail(fmt::format("found '{}' where ASCII or BINARY was expected", encoding.substr(0, 40)),
+               "the word after the title line gives the encoding");
 }
 
 void LegacyReader::dataset() {
-  if (kind_ != Kind::none) text_.fail("a second DATASET");
+  if (kind_ != Kind::none) text_.fail("has a second DATASET");
   const std::string_view w = text_.need_word("the kind of the dataset");
   constexpr std::pair<std::string_view, Kind> kinds[] = {{"structured_points", Kind::points},
                                                          {"structured_grid", Kind::curvilinear},
@@ -161,7 +161,7 @@ void LegacyReader::dataset() {
     if (equal_ignoring_case(w, name)) kind_ = kind;
   if (kind_ == Kind::none)
     text_.fail(fmt::format("the dataset '{}' has no mesh that can be read", w.substr(0, 40)),
-               "known are STRUCTURED_POINTS, STRUCTURED_GRID, RECTILINEAR_GRID, UNSTRUCTURED_GRID, POLYDATA");
+               "supported: STRUCTURED_POINTS, STRUCTURED_GRID, RECTILINEAR_GRID, UNSTRUCTURED_GRID, POLYDATA");
 }
 
 void LegacyReader::need(Kind kind, std::string_view keyword) {
@@ -176,7 +176,7 @@ void LegacyReader::dimensions() {
 void LegacyReader::extent() {
   for (size_t a = 0; a < 3; ++a) {
     const double lo = text_.number("an extent"), hi = text_.number("an extent");
-    if (!(std::abs(lo) < 1e15 && std::abs(hi) < 1e15 && hi >= lo - 1)) text_.fail(fmt::format("an extent from {} to {}", lo, hi));
+    if (!(std::abs(lo) < 1e15 && std::abs(hi) < 1e15 && hi >= lo - 1)) text_.fail(fmt::format("an extent runs from {} to {}", lo, hi));
     start_[a] = (long long)lo;
     dims_[a] = size_t((long long)hi - (long long)lo + 1);
   }
@@ -232,14 +232,14 @@ CellArray LegacyReader::cell_list(std::string_view keyword) {
     Array starts;
     if (fixed) text_.skip_array(offset_type, n, 1, "OFFSETS");
     else starts = text_.array(offset_type, n, 1, "OFFSETS");
-    if (!equal_ignoring_case(text_.need_word("CONNECTIVITY"), "CONNECTIVITY")) text_.fail("CONNECTIVITY should stand here");
+    if (!equal_ignoring_case(text_.need_word("CONNECTIVITY"), "CONNECTIVITY")) text_.fail("expected CONNECTIVITY here");
     const std::string id_type(text_.need_word("the type of the connectivity"));
     const Array ids = text_.array(id_type, size, 1, "CONNECTIVITY");
-    return with_context(fmt::format("taking {} apart", keyword),
+    return with_context(fmt::format("splitting {}", keyword),
                         [&] { return fixed ? cells_of_size(fixed, n - 1, ids) : cells_from_starts(starts, ids); });
   }
   const Array records = text_.array("int", size, 1, keyword);
-  return with_context(fmt::format("taking {} apart", keyword), [&] { return cells_from_records(records, n); });
+  return with_context(fmt::format("splitting {}", keyword), [&] { return cells_from_records(records, n); });
 }
 
 void LegacyReader::cell_types() {
@@ -278,7 +278,7 @@ void LegacyReader::add(std::string name, Association association, const std::str
 }
 
 size_t LegacyReader::tuples() {
-  if (association_ == Association::whole) text_.fail("attributes before POINT_DATA or CELL_DATA");
+  if (association_ == Association::whole) text_.fail("attributes precede POINT_DATA or CELL_DATA");
   return attribute_count_;
 }
 
@@ -287,7 +287,7 @@ void LegacyReader::scalars() {
   const std::string type(text_.need_word("the type of the scalars"));
   // "[components] LOOKUP_TABLE name": the first is often left out.
   const size_t components = equal_ignoring_case(text_.peek(), "LOOKUP_TABLE") ? 1 : text_.count("the number of components or LOOKUP_TABLE");
-  if (!equal_ignoring_case(text_.need_word("LOOKUP_TABLE"), "LOOKUP_TABLE")) text_.fail("LOOKUP_TABLE should stand here");
+  if (!equal_ignoring_case(text_.need_word("LOOKUP_TABLE"), "LOOKUP_TABLE")) text_.fail("expected LOOKUP_TABLE here");
   text_.need_word("the name of the lookup table");
   add(std::move(name), association_, type, tuples(), components, "SCALARS", Role::scalars);
 }
@@ -336,7 +336,7 @@ void LegacyReader::field() {
     const std::string type(text_.need_word("the type of the array"));
     if (equal_ignoring_case(type, "string") || equal_ignoring_case(type, "utf8_string")) {
       uint64_t strings = 0;
-      if (__builtin_mul_overflow(components, n, &strings)) text_.fail("more strings than can be");
+      if (__builtin_mul_overflow(components, n, &strings)) text_.fail("has more strings than the file can hold");
       text_.skip_strings(strings);
       continue;
     }
@@ -345,7 +345,8 @@ void LegacyReader::field() {
       continue;
     }
     const bool fits = association_ == Association::whole || n == attribute_count_;
-    if (!fits) context_.warn(fmt::format("array '{}' has {} tuples, not {}: kept as a field of the whole", name, n, attribute_count_));
+    if (!fits)
+      context_.warn(fmt::format("array '{}' has {} tuples, not {}: kept as a field of the whole dataset", name, n, attribute_count_));
     add(std::move(name), fits ? association_ : Association::whole, type, n, components, "array", Role::none);
   }
 }
@@ -371,7 +372,7 @@ Mesh LegacyReader::mesh() {
       need_dims();
       for (size_t a = 0; a < 3; ++a)
         if (axes_[a].count() != dims_[a])
-          text_.fail(fmt::format("{} {} coordinates for the dimension {}", axes_[a].count(), "xyz"[a], dims_[a]),
+          text_.fail(fmt::format("has {} {} coordinates for the dimension {}", axes_[a].count(), "xyz"[a], dims_[a]),
                      "the file is truncated or the count is wrong");
       return RectilinearGrid{axes_[0], axes_[1], axes_[2], start_};
     case Kind::unstructured: {
@@ -391,8 +392,8 @@ Mesh LegacyReader::mesh() {
       surface_.points = points_;
       return surface_;
   }
-  text_.fail("the file has no mesh: it holds attributes without a DATASET",
-             "a file with DATASET STRUCTURED_POINTS, POLYDATA, UNSTRUCTURED_GRID, ...");
+  text_.fail("the file has no mesh: it contains attributes without a DATASET",
+             "use a file with DATASET STRUCTURED_POINTS, POLYDATA, UNSTRUCTURED_GRID, ...");
 }
 
 DatasetPtr LegacyReader::read() {
@@ -401,10 +402,10 @@ DatasetPtr LegacyReader::read() {
     const std::string key = to_lower(w.substr(0, 40));
     const auto* k = std::find_if(std::begin(keywords), std::end(keywords), [&](const Keyword& x) { return x.name == key; });
     if (k == std::end(keywords))
-      text_.fail(fmt::format("unknown keyword '{}'", w.substr(0, 40)), "the numbers before it may be too many for the count");
+      text_.fail(fmt::format("unknown keyword '{}'", w.substr(0, 40)), "there may be more numbers before it than announced");
     if (kind_ == Kind::none && k->read != &LegacyReader::dataset && k->read != &LegacyReader::field && k->read != &LegacyReader::metadata)
       text_.fail(fmt::format("the file has no mesh: {} comes before any DATASET", w),
-                 "a file with DATASET STRUCTURED_POINTS, POLYDATA, UNSTRUCTURED_GRID, ...");
+                 "use a file with DATASET STRUCTURED_POINTS, POLYDATA, UNSTRUCTURED_GRID, ...");
     context_.check();
     (this->*k->read)();
   }

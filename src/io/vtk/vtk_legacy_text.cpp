@@ -51,14 +51,14 @@ std::string_view LegacyText::peek() {
 
 std::string_view LegacyText::need_word(std::string_view what) {
   const std::string_view w = word();
-  if (w.empty()) fail(fmt::format("the file ends where {} should stand", what), "the file is truncated");
+  if (w.empty()) fail(fmt::format("the file ends where {} was expected", what), "the file is truncated");
   return w;
 }
 
 double LegacyText::number(std::string_view what) {
   const std::string_view w = need_word(what);
   const auto v = parse_double(w);
-  if (!v) fail(fmt::format("'{}' should be {}", w.substr(0, 40), what));
+  if (!v) fail(fmt::format("found '{}' instead of {}", w.substr(0, 40), what));
   return *v;
 }
 
@@ -67,7 +67,7 @@ size_t LegacyText::count(std::string_view what) {
   size_t v = 0;
   const auto r = std::from_chars(w.data(), w.data() + w.size(), v);
   if (r.ec != std::errc{} || r.ptr != w.data() + w.size())
-    fail(fmt::format("'{}' should be {}", w.substr(0, 40), what), "a whole number, not negative");
+    fail(fmt::format("found '{}' instead of {}", w.substr(0, 40), what), "it must be a non-negative whole number");
   return v;
 }
 
@@ -81,7 +81,7 @@ const std::byte* LegacyText::take(uint64_t bytes, std::string_view what) {
 }
 
 Array LegacyText::text_array(ElementType type, size_t tuples, size_t components, std::string_view what) {
-  // A number takes a character and a blank, so a count beyond that is wrong before memory is asked for.
+  // A number takes a character and a blank, so larger counts are rejected before memory is allocated.
   const size_t rest = all_.size() - at_;
   size_t n = 0;
   if (__builtin_mul_overflow(tuples, components, &n) || n > (rest + 1) / 2)
@@ -96,7 +96,7 @@ Array LegacyText::text_array(ElementType type, size_t tuples, size_t components,
       fail(fmt::format("{}: the file ends after {} of {} numbers", what, end.parsed, n), "the file is truncated");
     }
     at_ = size_t(end.bad - all_.data());
-    fail(fmt::format("{}: '{}' is no {} number ({} of {})", what, peek().substr(0, 40), element_name(type), end.parsed + 1, n));
+    fail(fmt::format("{}: '{}' is not a valid {} number ({} of {})", what, peek().substr(0, 40), element_name(type), end.parsed + 1, n));
   }
   if (end.next) at_ = size_t(end.next - all_.data());
   return a;
@@ -122,7 +122,7 @@ ElementType LegacyText::number_type(std::string_view type_name, std::string_view
   ElementType type{};
   if (!parse_element_type(plain, type))
     fail(fmt::format("{} has the unknown type '{}'", what, type_name.substr(0, 40)),
-         "known are: bit, char, short, int, long, their unsigned forms, float, double, vtkIdType, vtktypeint64");
+         "supported: bit, char, short, int, long, their unsigned forms, float, double, vtkIdType, vtktypeint64");
   return type;
 }
 
@@ -191,7 +191,7 @@ void LegacyText::skip_strings(size_t n) {
       line();
       continue;
     }
-    // The two high bits of the first byte tell how many bytes the length takes: 8, 4, 2 or 1.
+    // The two high bits of the first byte give the number of bytes of the length: 8, 4, 2 or 1.
     const unsigned lead = static_cast<unsigned char>(all_[at_]) >> 6;
     const size_t width = size_t(8) >> lead;
     const std::byte* p = take(width, "the length of a string");

@@ -23,7 +23,7 @@ class LegacyText {
   /// The next word between white space; "" at the end of the file.
   std::string_view word();
   std::string_view peek();
-  /// A word that must be there; `what` says what it is.
+  /// A word that must be there; `what` describes it.
   std::string_view need_word(std::string_view what);
   double number(std::string_view what);
   /// A count: 0 or more.

@@ -58,7 +58,7 @@ bool parse_odd_float(std::string_view word, double& v) {
   return true;
 }
 
-// "3." or "3e0" where a whole number is due.
+// "3." or "3e0" where a whole number is expected.
 template <class T>
 bool parse_odd_integer(std::string_view word, T& out) {
   if (!word.empty() && word[0] == '+') {

@@ -10,11 +10,11 @@
 
 namespace sg::vtk {
 
-/// Where the numbers end, and the first word that is none.
+/// Where the numbers end, and the first word that is not a number.
 struct NumbersEnd {
   size_t parsed = 0;           ///< numbers read, `count` when all is well
   const char* next = nullptr;  ///< behind the last number read
-  const char* bad = nullptr;   ///< a word that is no number of that type; null when the text ended too early
+  const char* bad = nullptr;   ///< a word that is not a number of that type; null when the text ended too early
 };
 
 /// Reads `count` numbers between white space into `out` (count elements of `type`). Accepts what VTK, C and Windows print

@@ -45,7 +45,7 @@ struct Piece {
   std::string name;  ///< of the part, for messages
   DatasetPtr data;
   Index3 lo{0, 0, 0}, hi{0, 0, 0};           ///< points of a grid, by their indices in the whole
-  Index3 own_lo{0, 0, 0}, own_hi{-1, 0, 0};  ///< cells that are no ghosts; none when hi < lo
+  Index3 own_lo{0, 0, 0}, own_hi{-1, 0, 0};  ///< cells that are not ghosts; none when hi < lo
 };
 
 Index3 cells_end(const Piece& p) {  // of all its cells, inclusive; a flat axis has one cell
@@ -88,7 +88,7 @@ Index3 start_of(const Mesh& mesh) {
   return std::get<CurvilinearGrid>(mesh).extent_start;
 }
 
-const char* const many_grids = "write collections of any grids to .vtm";
+const char* const many_grids = "write collections of arbitrary grids to .vtm";
 
 // The whole grid, of which each piece is a box; together their own cells are all of its cells, each once.
 struct Whole {
@@ -108,7 +108,7 @@ void check_uniform(const std::vector<Piece>& pieces, const Whole& whole, const s
     const Vec3 there = whole.zero + first.direction * (first.spacing * Vec3(double(i[0]), double(i[1]), double(i[2])));
     bool same = g.spacing == first.spacing && length(there - g.origin) <= 1e-6 * length(first.spacing) + 1e-12 * length(there);
     for (int k = 0; k < 9; ++k) same = same && g.direction.m[k / 3][k % 3] == first.direction.m[k / 3][k % 3];
-    if (!same) fail_usage(fmt::format("part '{}' lies on another grid than part '{}'", p.name, pieces[0].name), path, many_grids);
+    if (!same) fail_usage(fmt::format("part '{}' lies on a different grid from part '{}'", p.name, pieces[0].name), path, many_grids);
   }
 }
 
@@ -160,12 +160,12 @@ Whole whole_of(std::vector<Piece>& pieces, const std::string& path) {
       for (size_t a = 0; a < 3; ++a)
         lo[a] = std::max(pieces[i].own_lo[a], pieces[k].own_lo[a]), hi[a] = std::min(pieces[i].own_hi[a], pieces[k].own_hi[a]);
       if (cells_between(lo, hi) > 0)
-        fail_usage(fmt::format("parts '{}' and '{}' share cells, so they are no pieces of one grid", pieces[k].name, pieces[i].name), path,
+        fail_usage(fmt::format("parts '{}' and '{}' share cells, so they are not pieces of one grid", pieces[k].name, pieces[i].name), path,
                    many_grids);
     }
   }
   const long long all = first[0] > last[0] ? 0 : cells_between(first, last);
-  if (cells != all) fail_usage(fmt::format("the parts have {} cells of the {} of the grid around them", cells, all), path, many_grids);
+  if (cells != all) fail_usage(fmt::format("the parts have {} of the {} cells of the grid around them", cells, all), path, many_grids);
   return w;
 }
 
@@ -186,7 +186,7 @@ std::string extent_text(const Whole& w, const Index3& lo, const Index3& hi) {
 
 std::string three(Vec3 v) { return fmt::format("{} {} {}", exact_number(v.x), exact_number(v.y), exact_number(v.z)); }
 
-// What shapes high-order cells, where a mesh has it (write_dataset writes it as f64 beside the fields).
+// Data that shapes high-order cells, if a mesh has it (write_dataset writes it as f64 besides the fields).
 Array shaping_of(const Dataset& d, Association association) {
   const auto* u = d.as<UnstructuredMesh>();
   return !u ? Array() : association == Association::point ? u->weights : u->degrees;
@@ -271,7 +271,7 @@ std::vector<Piece> pieces_of(const Data& data, const Form& form, const std::stri
     const std::string_view right = extension_for(d->mesh());
     if (right != form.extension && !(right == "vtp" && form.extension == "vtu"))
       fail_usage(fmt::format("part '{}' is a mesh of kind {}, which cannot be a piece of a .{}", name, d->kind(), extension_of(path)), path,
-                 "write collections of any meshes to .vtm");
+                 "write collections of arbitrary meshes to .vtm");
     pieces.push_back({name, d});
   });
   if (pieces.empty()) fail_usage("there is no mesh to write", path);

@@ -17,7 +17,7 @@ namespace sg::vtk {
 
 namespace {
 
-// The folder holds files only; what is no file stays, and the folder with it.
+// The folder holds files only; what is not a file stays, and the folder with it.
 void remove_folder(const std::string& folder) {
   if (!is_folder(folder)) return;
   for (const std::string& name : folder_entries(folder)) ::unlink((folder + "/" + name).c_str());
@@ -35,7 +35,7 @@ PartsFolder::PartsFolder(const std::string& path) {
       if (!entry.starts_with(stem_ + "_") || !extension_of(entry).starts_with("vt"))
         fail_usage(fmt::format("the folder for the parts holds other files ('{}')", entry), folder_, "choose another name");
   } else if (file_exists(folder_)) {
-    fail_usage("a file has the name that the folder of parts needs", folder_, "choose another name");
+    fail_usage("a file already has the name needed for the folder of parts", folder_, "choose another name");
   }
   header_.emplace(std::vector<std::string>{path});
   partial_ = make_partial_folder(folder_, false), old_ = partial_ + "-old";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A folder of parts beside the file that names them, written so that nothing half is left.
+// A folder of parts next to the file that names them, written so that nothing incomplete is left.
 #pragma once
 #include <optional>
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace sg::vtk {
 
-/// For "a/x.vtm" the folder is "a/x" and its files are "x_0.vtu", ... Parts are written to a folder of another name. commit() brings the
-/// text of the file itself to the disk, puts the folder in its place and then the file; when anything fails, folder and file of an earlier
-/// time stay, both. Without commit nothing is left. A folder of that name is replaced when it holds only such parts; else the constructor
-/// throws Error(usage).
+/// For "a/x.vtm" the folder is "a/x" and its files are "x_0.vtu", ... Parts are written to a folder of another name. commit() flushes the
+/// text of the file itself to disk, then moves the folder and after it the file into place; when anything fails, folder and file of an
+/// earlier time stay, both. Without commit nothing is left. A folder of that name is replaced when it holds only such parts; else the
+/// constructor throws Error(usage).
 class PartsFolder {
  public:
   explicit PartsFolder(const std::string& path);
@@ -19,7 +19,7 @@ class PartsFolder {
   PartsFolder(const PartsFolder&) = delete;
   PartsFolder& operator=(const PartsFolder&) = delete;
 
-  /// Where to write part i for now, and how the file names it.
+  /// Temporary path for writing part i, and its name in the file.
   std::string file(size_t i, std::string_view extension) const;
   std::string name(size_t i, std::string_view extension) const;
   void commit(std::string_view text);

@@ -81,10 +81,10 @@ struct Reader {
     const auto items = doc.children(geometry, "DataItem");
     if (kind == "origin_dxdydz" || kind == "origin_dxdy") {
       const size_t rank = kind == "origin_dxdy" ? 2 : 3;
-      if (items.size() != 2) doc.fail(fmt::format("has {} items", items.size()), geometry, "origin and spacing");
+      if (items.size() != 2) doc.fail(fmt::format("has {} items", items.size()), geometry, "origin and spacing are needed");
       const Array origin = doc.item(items[0]).values, spacing = doc.item(items[1]).values;
       if (origin.count() != rank || spacing.count() != rank)
-        doc.fail(fmt::format("has {} and {} numbers", origin.count(), spacing.count()), geometry, fmt::format("{} each", rank));
+        doc.fail(fmt::format("has {} and {} numbers", origin.count(), spacing.count()), geometry, fmt::format("{} each are needed", rank));
       UniformGrid g;
       g.dims = dims;
       for (size_t a = 0; a < rank; ++a) {  // slowest axis first, as the dimensions
@@ -117,7 +117,7 @@ struct Reader {
     return read_topology(doc, topology, read_points(doc, geometry));
   }
 
-  // XX XY XZ YY YZ ZZ as rows of the whole tensor, so that nobody has to know the order.
+  // XX XY XZ YY YZ ZZ as rows of the whole tensor, so that the order need not be known.
   static Array whole_tensors(const Array& six) {
     constexpr int from[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
     std::byte* out = nullptr;
@@ -137,11 +137,11 @@ struct Reader {
     if (center == "cell") on = Association::cell;
     else if (center == "grid") on = Association::whole;
     else if (!center.empty() && center != "node") {
-      doc.context().warn(fmt::format("{}: attributes on '{}' are not read", doc.where(a), center));
+      doc.context().warn(fmt::format("{}: attributes on '{}' are ignored", doc.where(a), center));
       return;
     }
     if (attribute(a, "ItemType", "ItemType") == "FiniteElementFunction") {
-      doc.context().warn(fmt::format("{}: finite element functions are not read", doc.where(a)));
+      doc.context().warn(fmt::format("{}: finite element functions are ignored", doc.where(a)));
       return;
     }
     const pugi::xml_node data = doc.child(a, "DataItem");
@@ -176,11 +176,11 @@ struct Reader {
 
   Data grid_data(pugi::xml_node grid, int depth, std::optional<double> time) {
     doc.context().check();
-    if (depth > deepest || ++grids > 1000000) doc.fail("holds too many grids within each other", grid);
+    if (depth > deepest || ++grids > 1000000) doc.fail("nests grids too deeply", grid);
     const std::string type = grid_type(grid);
     if (type == "uniform") return uniform(grid, time);
     if (type != "collection" && type != "tree")
-      doc.fail(fmt::format("is a grid of type '{}', which is not read", type), grid, "Uniform, Collection or Tree");
+      doc.fail(fmt::format("is a grid of type '{}', which is not supported", type), grid, "use Uniform, Collection or Tree");
     const auto inner = doc.children(grid, "Grid");
     if (is_temporal(grid)) {
       if (inner.empty()) doc.fail("is a series without grids", grid);
@@ -200,7 +200,7 @@ struct Reader {
   }
 };
 
-// A grid that only lends its mesh to others is no data of its own.
+// A grid that only lends its mesh to others is not data of its own.
 std::vector<pugi::xml_node> top_grids(const Document& doc) {
   const pugi::xml_node domain = doc.child(doc.root(), "Domain");
   if (!domain) fail_data("has no Domain", doc.path(), "the file is truncated or not complete");

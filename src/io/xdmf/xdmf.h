@@ -20,7 +20,7 @@ struct Item {
 /// One document.
 class Document {
  public:
-  /// Throws Error(data) naming the line for text that is no XML.
+  /// Throws Error(data) naming the line for text that is not XML.
   Document(const std::string& path, Context& context);
 
   const std::string& path() const { return path_; }
@@ -35,7 +35,7 @@ class Document {
   std::vector<pugi::xml_node> children(pugi::xml_node parent, std::string_view name) const;
   /// The first of them, or an empty node.
   pugi::xml_node child(pugi::xml_node parent, std::string_view name) const;
-  /// Whether elements of `grid` stand in other grids by reference.
+  /// Whether elements of `grid` are referenced in other grids.
   bool is_borrowed(pugi::xml_node grid) const;
   /// Notes which grids others borrow from; by reading all grids once.
   void note_references();
@@ -74,7 +74,7 @@ std::string_view attribute(pugi::xml_node node, const char* name, const char* ol
 /// "$0 + 2 * $1", "JOIN($0, $1)": values of the arguments combined. Throws Error(data) for what it does not know.
 Item evaluate_function(std::string_view text, const std::vector<Item>& arguments, const std::string& where);
 
-/// Cells of a Topology that is no grid, for `points` points.
+/// Cells of a Topology that is not a grid, for `points` points.
 UnstructuredMesh read_topology(const Document& doc, pugi::xml_node topology, Points points);
 /// Dimensions {x, y, z} of a Topology that is a grid (SMesh, RectMesh, CoRectMesh), or nothing.
 std::optional<std::array<size_t, 3>> lattice_of(const Document& doc, pugi::xml_node topology);

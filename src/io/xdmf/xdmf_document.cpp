@@ -43,7 +43,7 @@ Document::Document(const std::string& path, Context& context) : path_(path), con
       document_.load_buffer(text.data(), text.size(), pugi::parse_cdata | pugi::parse_escapes | pugi::parse_wconv_attribute);
   if (!r) {
     const auto at = std::min(size_t(std::max<ptrdiff_t>(r.offset, 0)), text.size());
-    fail_data(fmt::format("is no well-formed XML: {}", r.description()), fmt::format("{}: line {}", path, line_number(text, at)),
+    fail_data(fmt::format("is not well-formed XML: {}", r.description()), fmt::format("{}: line {}", path, line_number(text, at)),
               "the file is truncated or damaged");
   }
   if (!named(root(), "Xdmf")) fail_data(fmt::format("has the root element <{}>", root().name()), path, "an XDMF file begins with <Xdmf>");
@@ -76,7 +76,7 @@ std::vector<pugi::xml_node> Document::select(const std::string& xpath, pugi::xml
     for (const pugi::xpath_node& n : from.select_nodes(xpath.c_str()))
       if (n.node() && found.size() < 100000) found.push_back(n.node());
   } catch (const pugi::xpath_exception& e) {
-    fail(fmt::format("has the path '{}', which is no XPath: {}", xpath, e.what()), from);
+    fail(fmt::format("has the path '{}', which is not an XPath: {}", xpath, e.what()), from);
   }
   if (absolute && selected_.size() < 10000) selected_[xpath] = found;
   return found;
@@ -99,9 +99,9 @@ std::vector<pugi::xml_node> Document::children(pugi::xml_node parent, std::strin
   for (const pugi::xml_node& n : parent.children()) {
     if (named(n, name)) out.push_back(resolve(n));
     if (!named(n, "include")) continue;
-    if (out.size() > 1000000) fail("has too many elements by inclusion", parent);
+    if (out.size() > 1000000) fail("has too many elements through inclusion", parent);
     if (const std::string_view href = n.attribute("href").value(); !href.empty() && href != file_name_of(path_))
-      fail(fmt::format("includes '{}': parts of other files are not read", href), n, "put the grids into one file");
+      fail(fmt::format("includes '{}': parts of other files are not supported", href), n, "put the grids into one file");
     std::string_view pointer = trim(n.attribute("xpointer").value());
     if (pointer.starts_with("xpointer(") && pointer.ends_with(")")) pointer = pointer.substr(9, pointer.size() - 10);
     else fail(fmt::format("has the xpointer '{}'", pointer), n, "xpointer(PATH)");

@@ -29,7 +29,7 @@ class Evaluator {
  private:
   [[noreturn]] void fail(const std::string& what) const {
     fail_data(fmt::format("the function '{}' {}", text_.substr(0, 200), what), where_,
-              "+ - * / ( ), numbers, $0 ..., ABS SQRT EXP LOG SIN COS TAN, JOIN");
+              "supported: + - * / ( ), numbers, $0 ..., ABS SQRT EXP LOG SIN COS TAN, JOIN");
   }
   void blanks() {
     while (p_ < end_ && is_space(*p_)) ++p_;
@@ -49,7 +49,7 @@ class Evaluator {
     return r;
   }
   Values sum(int depth) {
-    if (depth > 64) fail("is nested too deep");
+    if (depth > 64) fail("is nested too deeply");
     Values v = term(depth);
     for (;;) {
       if (take('+')) v = combine(v, term(depth), [](double a, double b) { return a + b; });
@@ -66,7 +66,7 @@ class Evaluator {
     }
   }
   Values factor(int depth) {
-    if (depth > 64) fail("is nested too deep");
+    if (depth > 64) fail("is nested too deeply");
     if (take('-')) return combine({0.0}, factor(depth + 1), [](double a, double b) { return a - b; });
     if (take('(')) {
       Values v = sum(depth + 1);
@@ -84,7 +84,7 @@ class Evaluator {
   Values argument() {
     int64_t i = -1;
     if (!scan_number(p_, end_, i) || i < 0 || size_t(i) >= arguments_.size())
-      fail(fmt::format("names an argument that is not there; it has {}", arguments_.size()));
+      fail(fmt::format("names an argument that does not exist; it has {}", arguments_.size()));
     const Array a = arguments_[size_t(i)].values.converted(ElementType::f64);
     const auto v = a.view<double>();
     Values r(a.count());
@@ -118,7 +118,7 @@ class Evaluator {
         for (double& x : list[0]) x = f(x);
         return std::move(list[0]);
       }
-    fail(fmt::format("calls '{}' of {} arguments", name, list.size()));
+    fail(fmt::format("calls '{}' with {} arguments", name, list.size()));
   }
 
   std::string_view text_;

@@ -14,7 +14,7 @@ namespace sg::xdmf {
 size_t product(const std::vector<size_t>& dims, const std::string& where) {
   uint64_t n = 1;
   for (const size_t d : dims)
-    if (!multiply(n, d, n) || n > (uint64_t(1) << 60)) fail_data("has more numbers than can be counted", where);
+    if (!multiply(n, d, n) || n > (uint64_t(1) << 60)) fail_data("has too many numbers to count", where);
   return n;
 }
 
@@ -49,7 +49,7 @@ ElementType number_type(const Document& doc, pugi::xml_node node) {
     if (size == 8) return is_unsigned ? ElementType::u64 : ElementType::i64;
   }
   doc.fail(fmt::format("has numbers of type '{}' and precision '{}'", type, precision_text), node,
-           "Float, Int, UInt, Char or UChar of 1, 2, 4 or 8 bytes");
+           "use Float, Int, UInt, Char or UChar of 1, 2, 4 or 8 bytes");
 }
 
 Item Document::inline_item(pugi::xml_node n, const std::vector<size_t>& dims) const {
@@ -74,16 +74,16 @@ Item Document::inline_item(pugi::xml_node n, const std::vector<size_t>& dims) co
 Item Document::binary_item(pugi::xml_node n, const std::vector<size_t>& dims) const {
   const std::string_view packing = n.attribute("Compression").value();
   if (!packing.empty() && !equal_ignoring_case(packing, "Raw"))
-    fail(fmt::format("is packed with '{}', which is not read", packing), n, "Raw");
+    fail(fmt::format("is packed with '{}', which is not supported", packing), n, "Raw");
   const std::string name = with_entities(std::string(trim(n.child_value())));
   const ElementType type = number_type(*this, n);
   uint64_t bytes = 0, end = 0;
   const std::string_view seek_text = n.attribute("Seek").value();
   const auto seek = seek_text.empty() ? std::optional<int64_t>(0) : parse_int(seek_text);
-  if (!seek || *seek < 0) fail(fmt::format("has Seek=\"{}\"", seek_text), n, "the byte at which the numbers begin");
+  if (!seek || *seek < 0) fail(fmt::format("has Seek=\"{}\"", seek_text), n, "it must be the byte at which the numbers begin");
   const MappedFile file(named_file(path_, name));
   if (!multiply(product(dims, where(n)), element_size(type), bytes) || !add(bytes, uint64_t(*seek), end) || end > file.size())
-    fail(fmt::format("asks for {} bytes from byte {} on, but '{}' has {}", bytes, *seek, name, file.size()), n, "the file is truncated");
+    fail(fmt::format("needs {} bytes from byte {} on, but '{}' has {}", bytes, *seek, name, file.size()), n, "the file is truncated");
   const std::byte* from = file.data() + *seek;
   const size_t count = bytes / element_size(type);
   if (equal_ignoring_case(n.attribute("Endian").value(), "Big")) {
@@ -101,7 +101,8 @@ Item Document::binary_item(pugi::xml_node n, const std::vector<size_t>& dims) co
 
 Item Document::hdf_item(pugi::xml_node n, const std::vector<size_t>& dims, const Item* slab) const {
   const std::string text = with_entities(std::string(trim(n.child_value())));
-  if (text.find('|') != text.npos) fail("selects parts of several HDF5 datasets by '|', which is not read", n, "ItemType=\"HyperSlab\"");
+  if (text.find('|') != text.npos)
+    fail("selects parts of several HDF5 datasets by '|', which is not supported", n, "ItemType=\"HyperSlab\"");
   size_t colon = text.find(":/", 1);
   if (colon == text.npos) colon = text.rfind(':');
   if (colon == text.npos || colon == 0 || colon + 1 >= text.size())
@@ -109,7 +110,7 @@ Item Document::hdf_item(pugi::xml_node n, const std::vector<size_t>& dims, const
   PluginSelection wanted{text.substr(colon + 1), {}, {}, {}};
   if (slab) {
     if (slab->count() == 0 || slab->count() % 3)
-      fail(fmt::format("is selected from by {} numbers", slab->count()), n, "start, stride and count");
+      fail(fmt::format("has a selection of {} numbers", slab->count()), n, "expected start, stride and count");
     const size_t rank = slab->count() / 3;
     for (size_t a = 0; a < rank; ++a) {
       wanted.start.push_back(size_t(slab->values.get(a)));
@@ -121,7 +122,7 @@ Item Document::hdf_item(pugi::xml_node n, const std::vector<size_t>& dims, const
   const PluginArray a =
       with_context(fmt::format("reading {}", where(n)), [&] { return array(named_file(path_, text.substr(0, colon)), wanted, context_); });
   if (!slab && !dims.empty() && product(dims, where(n)) != a.values.count())
-    fail(fmt::format("says {} numbers, but '{}' has {}", product(dims, where(n)), text, a.values.count()), n);
+    fail(fmt::format("announces {} numbers, but '{}' has {}", product(dims, where(n)), text, a.values.count()), n);
   return {a.values, slab ? a.dims : dims.empty() ? a.dims : dims};
 }
 
@@ -163,7 +164,7 @@ Item slice(const Document& doc, pugi::xml_node n, const Item& from, const Item& 
 
 Item Document::hyperslab(pugi::xml_node n, int depth) const {
   const auto parts = children(n, "DataItem");
-  if (parts.size() != 2) fail(fmt::format("is a HyperSlab of {} items", parts.size()), n, "the selection and the array");
+  if (parts.size() != 2) fail(fmt::format("is a HyperSlab of {} items", parts.size()), n, "expected the selection and the array");
   Item slab = item(parts[0], depth + 1);
   slab.values = slab.values.converted(ElementType::i64);
   for (size_t i = 0; i < slab.count(); ++i)
@@ -172,7 +173,8 @@ Item Document::hyperslab(pugi::xml_node n, int depth) const {
   Item r = hdf ? hdf_item(parts[1], {}, &slab) : slice(*this, n, item(parts[1], depth + 1), slab);
   // The item's own dimensions leave out those of which one index is taken.
   if (std::vector<size_t> dims = dimensions(*this, n, "Dimensions"); !dims.empty()) {
-    if (product(dims, where(n)) != r.count()) fail(fmt::format("says {} numbers but selects {}", product(dims, where(n)), r.count()), n);
+    if (product(dims, where(n)) != r.count())
+      fail(fmt::format("announces {} numbers but selects {}", product(dims, where(n)), r.count()), n);
     r.dims = std::move(dims);
   }
   return r;
@@ -183,7 +185,7 @@ Item Document::function(pugi::xml_node n, int depth) const {
   for (const pugi::xml_node& part : children(n, "DataItem")) arguments.push_back(item(part, depth + 1));
   Item r = evaluate_function(n.attribute("Function").value(), arguments, where(n));
   if (std::vector<size_t> dims = dimensions(*this, n, "Dimensions"); !dims.empty()) {
-    if (product(dims, where(n)) != r.count()) fail(fmt::format("says {} numbers but gives {}", product(dims, where(n)), r.count()), n);
+    if (product(dims, where(n)) != r.count()) fail(fmt::format("announces {} numbers but gives {}", product(dims, where(n)), r.count()), n);
     r.dims = std::move(dims);
   }
   return r;
@@ -191,19 +193,19 @@ Item Document::function(pugi::xml_node n, int depth) const {
 
 Item Document::item(pugi::xml_node n, int depth) const {
   context_.check();
-  if (depth > 8) fail("holds items too deep within each other", n);
+  if (depth > 8) fail("nests items too deeply", n);
   const std::string kind = to_lower(attribute(n, "ItemType", "Type"));
   if (kind == "hyperslab") return hyperslab(n, depth);
   if (kind == "function") return function(n, depth);
   if (!kind.empty() && kind != "uniform")
-    fail(fmt::format("is an item of type '{}', which is not read", kind), n, "Uniform, HyperSlab or Function");
+    fail(fmt::format("is an item of type '{}', which is not supported", kind), n, "use Uniform, HyperSlab or Function");
   const std::vector<size_t> dims = dimensions(*this, n, "Dimensions");
   const std::string format = to_lower(n.attribute("Format").value());
   if (format == "hdf" || format == "hdf5") return hdf_item(n, dims, nullptr);
   if (dims.empty()) fail("has no Dimensions", n);
   if (format.empty() || format == "xml") return inline_item(n, dims);
   if (format == "binary") return binary_item(n, dims);
-  fail(fmt::format("has the format '{}'", format), n, "XML, Binary or HDF");
+  fail(fmt::format("has the format '{}'", format), n, "use XML, Binary or HDF");
 }
 
 }  // namespace sg::xdmf

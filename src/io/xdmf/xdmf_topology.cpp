@@ -165,7 +165,7 @@ std::optional<std::array<size_t, 3>> lattice_of(const Document& doc, pugi::xml_n
   const std::vector<size_t> d = dimensions(doc, topology, topology.attribute("Dimensions") ? "Dimensions" : "NumberOfElements");
   const size_t rank = topology_name(topology)[0] == '2' ? 2 : 3;
   if (d.size() != rank && !(rank == 2 && d.size() == 3 && d[0] == 1))
-    doc.fail(fmt::format("has {} dimensions", d.size()), topology, fmt::format("{}, slowest first", rank));
+    doc.fail(fmt::format("has {} dimensions", d.size()), topology, fmt::format("give {}, slowest first", rank));
   std::array<size_t, 3> dims{1, 1, 1};
   for (size_t a = 0; a < d.size(); ++a) dims[a] = d[d.size() - 1 - a];
   for (const size_t n : dims)
@@ -183,7 +183,7 @@ UnstructuredMesh read_topology(const Document& doc, pugi::xml_node topology, Poi
   for (const Kind& k : kinds)
     for (const std::string_view n : k.names)
       if (n == name) kind = &k;
-  if (!kind && !mixed) doc.fail(fmt::format("has the type '{}', which is not read", name), topology);
+  if (!kind && !mixed) doc.fail(fmt::format("has the type '{}', which is not supported", name), topology);
   const std::optional<size_t> cells = element_count(doc, topology);
   const pugi::xml_node data = doc.child(topology, "DataItem");
   if (!data) {  // vertices without a list are all points
@@ -196,12 +196,12 @@ UnstructuredMesh read_topology(const Document& doc, pugi::xml_node topology, Poi
     return mesh;
   }
   const Item item = doc.item(data);
-  if (is_float(item.values.type())) doc.fail("has point ids that are no whole numbers", data, "NumberType=\"Int\"");
+  if (is_float(item.values.type())) doc.fail("has point ids that are not whole numbers", data, "NumberType=\"Int\"");
   const auto base = parse_int(topology.attribute("BaseOffset").value()).value_or(0);
   const Array ids = vtk::as_indices(item.values);
   if (mixed || kind->type == CellType::polyhedron) {
     if (base != 0) doc.fail("has a BaseOffset, which Mixed topologies cannot have", topology);
-    if (!mixed) doc.fail("is of polyhedra alone", topology, "TopologyType=\"Mixed\"");
+    if (!mixed) doc.fail("consists of polyhedra only", topology, "TopologyType=\"Mixed\"");
     MixedReader(doc, topology, index_view(ids), ids.count()).read(cells, mesh);
     const Array types = mesh.types;
     mesh.types = {};
@@ -230,13 +230,13 @@ Points read_points(const Document& doc, pugi::xml_node geometry) {
     if (items.size() != (flat ? 2u : 3u)) doc.fail(fmt::format("has {} items", items.size()), geometry, flat ? "x and y" : "x, y and z");
     for (const pugi::xml_node& i : items) axes.push_back(vtk::as_coordinates(doc.item(i).values));
   } else {
-    doc.fail(fmt::format("is of type '{}', which does not fit its topology", kind), geometry, "XYZ, XY, X_Y_Z or X_Y");
+    doc.fail(fmt::format("is of type '{}', which does not fit its topology", kind), geometry, "use XYZ, XY, X_Y_Z or X_Y");
   }
   bool wide = false;
   for (const Array& a : axes) {
     wide = wide || a.type() == ElementType::f64;
     if (a.count() != axes[0].count())
-      doc.fail(fmt::format("has {} and {} coordinates", axes[0].count(), a.count()), geometry, "equally many");
+      doc.fail(fmt::format("has {} and {} coordinates", axes[0].count(), a.count()), geometry, "both must have the same number");
   }
   auto fill = [&](auto* out) {
     using T = std::remove_pointer_t<decltype(out)>;

@@ -27,15 +27,15 @@ struct ZarrOptions {
   std::string compression = "lz4";  ///< lz4, zstd, zlib or none
 };
 
-/// Writes chunks of all levels while the slabs come in, with the extremes of each 64^3 cells, into a folder beside `path`, and renames it
-/// at the end. Level n+1 holds the means of 2x2x2 samples of level n (of those that are not NaN; labels: the most frequent, the lowest of
-/// several); an axis is halved while it has more than 32 samples, until all have at most `chunk`. A folder `path` that is a Zarr folder is
-/// replaced; anything else of that name is an Error(usage). Keeps about 2.5 slabs of `chunk` slices in memory: thinner chunks are taken
-/// when context.memory_limit asks for it. Throws Error(data) for a full disk.
+/// Writes chunks of all levels while the slabs come in, with the extremes of each 64^3 cells, into a temporary folder next to `path`, which
+/// is renamed at the end. Level n+1 holds the means of 2x2x2 samples of level n (of those that are not NaN; labels: the most frequent, the
+/// lowest of several); an axis is halved while it has more than 32 samples, until all have at most `chunk`. A folder `path` that is a Zarr
+/// folder is replaced; anything else of that name is an Error(usage). Keeps about 2.5 slabs of `chunk` slices in memory: chunks are thinner
+/// when context.memory_limit requires it. Throws Error(data) for a full disk.
 void write_zarr_slabs(const std::string& path, const SlabSource& source, const ZarrOptions& options, Context& context);
 
 /// The field of a file as slabs: read part by part where the format can, else whole. One field: options.fields, or the active one. Throws
-/// Error(usage) for what is no uniform grid.
+/// Error(usage) for what is not a uniform grid.
 SlabSource slabs_of_file(const std::string& path, const ReadOptions& options, Context& context);
 /// The same of a dataset in memory.
 SlabSource slabs_of_dataset(const DatasetPtr& dataset, const std::string& path, Context& context);

@@ -34,7 +34,8 @@ void parse_v2_type(ZarrArray& a, const Json& json, const std::string& path) {
         return;
       }
   }
-  fail_data(fmt::format("numbers of type '{}' are not read", text.substr(0, 40)), path, "int and uint of 8 to 64 bits, float of 32 and 64");
+  fail_data(fmt::format("numbers of type '{}' are not supported", text.substr(0, 40)), path,
+            "supported: int and uint of 8 to 64 bits, float of 32 and 64");
 }
 
 void set_fill(ZarrArray& a, const Json& v, const std::string& path) {
@@ -45,14 +46,14 @@ void set_fill(ZarrArray& a, const Json& v, const std::string& path) {
     if (s == "NaN") d = std::nan("");
     else if (s == "Infinity") d = HUGE_VAL;
     else if (s == "-Infinity") d = -HUGE_VAL;
-    else fail_data(fmt::format("the fill value '{}' is no number", s.substr(0, 40)), path);
-    if (!is_float(a.type)) fail_data(fmt::format("the fill value {} is no whole number", s), path);
+    else fail_data(fmt::format("the fill value '{}' is not a number", s.substr(0, 40)), path);
+    if (!is_float(a.type)) fail_data(fmt::format("the fill value {} is not a whole number", s), path);
   } else if (v.is_number()) {
     d = v.number();
   } else if (v.is_bool()) {
     d = v.boolean() ? 1 : 0;
   } else {
-    fail_data("the fill value is no number", path);
+    fail_data("the fill value is not a number", path);
   }
   const Array one = Array::from_vector(std::vector<double>{d}).converted(a.type);
   // 64-bit integers do not pass through doubles unchanged.
@@ -69,17 +70,19 @@ void set_fill(ZarrArray& a, const Json& v, const std::string& path) {
 
 void check_sizes(const ZarrArray& a, const std::string& path) {
   uint64_t elements = 1, chunk = element_size(a.type);
-  if (a.shape.empty() || a.shape.size() > 8) fail_data(fmt::format("has {} axes", a.shape.size()), path, "1 to 8 are read");
+  if (a.shape.empty() || a.shape.size() > 8) fail_data(fmt::format("has {} axes", a.shape.size()), path, "1 to 8 are supported");
   for (const size_t n : a.shape)
     if (!multiply(elements, n, elements) || elements > most_elements) fail_data("the shape has more than 2^56 elements", path);
   for (const size_t n : a.chunk)
-    if (!multiply(chunk, n, chunk) || chunk > largest_chunk) fail_data("a chunk has more than 1 GiB", path, "chunks of some MiB are usual");
+    if (!multiply(chunk, n, chunk) || chunk > largest_chunk)
+      fail_data("a chunk has more than 1 GiB", path, "chunks of a few MiB are usual");
 }
 
 void add_codec(ZarrArray& a, const std::string& name, const std::string& path) {
   Codec c;
   if (!parse_codec(name, c))
-    fail_data(fmt::format("chunks packed by '{}' are not read", name.substr(0, 40)), path, "zlib, gzip, bz2, zstd, blosc, lz4, or none");
+    fail_data(fmt::format("chunks packed by '{}' are not supported", name.substr(0, 40)), path,
+              "supported: zlib, gzip, bz2, zstd, blosc, lz4, none");
   a.codecs.push_back(c);
 }
 
@@ -91,9 +94,9 @@ ZarrArray parse_v2(const Json& json, const std::string& folder, const std::strin
   a.chunk = whole_numbers(json, "chunks", a.shape.size(), 1, path);
   check_sizes(a, path);
   if (const std::string order = text_of(json, "order", "C"); order != "C")
-    fail_data(fmt::format("the order of numbers is '{}'", order.substr(0, 10)), path, "only 'C' is read");
+    fail_data(fmt::format("the order of numbers is '{}'", order.substr(0, 10)), path, "only 'C' is supported");
   if (const Json* filters = list_of(json, "filters"); filters && !filters->empty())
-    fail_data("filters before the compressor are not read", path, "write the array without filters");
+    fail_data("filters before the compressor are not supported", path, "write the array without filters");
   if (const Json* c = object_of(json, "compressor")) add_codec(a, text_of(*c, "id", ""), path);
   const std::string separator = text_of(json, "dimension_separator", ".");
   if (separator != "." && separator != "/")
@@ -114,12 +117,12 @@ void parse_v3_codecs(ZarrArray& a, const Json& json, const std::string& path) {
       a.big_endian = how && text_of(*how, "endian", "little") == "big";
       bytes = true;
     } else if (name == "sharding_indexed") {
-      fail_data("shards (many chunks in one file) are not read", path, "write the array without shards");
+      fail_data("shards (many chunks in one file) are not supported", path, "write the array without shards");
     } else {
       add_codec(a, name, path);
     }
   }
-  if (!bytes) fail_data("the codecs do not say how numbers become bytes", path, "one is called 'bytes'");
+  if (!bytes) fail_data("the codecs do not say how numbers are stored as bytes", path, "expected a codec 'bytes'");
 }
 
 ZarrArray parse_v3(const Json& json, const std::string& folder, const std::string& path) {
@@ -127,7 +130,7 @@ ZarrArray parse_v3(const Json& json, const std::string& folder, const std::strin
   a.folder = folder;
   const std::string type = text_of(json, "data_type", "");
   if (type == "bool") a.type = ElementType::u8;
-  else if (!parse_element_type(type, a.type)) fail_data(fmt::format("numbers of type '{}' are not read", type.substr(0, 40)), path);
+  else if (!parse_element_type(type, a.type)) fail_data(fmt::format("numbers of type '{}' are not supported", type.substr(0, 40)), path);
   a.shape = whole_numbers(json, "shape", 0, 1, path);
   const Json* grid = object_of(json, "chunk_grid");
   const Json* how = grid && text_of(*grid, "name", "") == "regular" ? object_of(*grid, "configuration") : nullptr;
@@ -139,7 +142,7 @@ ZarrArray parse_v3(const Json& json, const std::string& folder, const std::strin
     const bool v2 = text_of(*key, "name", "default") == "v2";
     const Json* config = object_of(*key, "configuration");
     const std::string separator = config ? text_of(*config, "separator", v2 ? "." : "/") : v2 ? "." : "/";
-    if (separator != "." && separator != "/") fail_data("the separator of chunk names is neither . nor /", path);
+    if (separator != "." && separator != "/") fail_data("the separator of chunk names is neither '.' nor '/'", path);
     a.separator = separator[0];
     a.before = v2 ? "" : std::string("c") + separator;
   }
@@ -163,7 +166,7 @@ bool read_all(const std::string& path, std::vector<std::byte>& out) {
     ~Close() { ::close(fd); }
   } const close{fd};
   struct stat st {};
-  if (::fstat(fd, &st) != 0 || !S_ISREG(st.st_mode)) fail_data("is no file", path);
+  if (::fstat(fd, &st) != 0 || !S_ISREG(st.st_mode)) fail_data("is not a file", path);
   out.resize(size_t(st.st_size));
   for (size_t got = 0; got < out.size();) {
     const ssize_t n = ::read(fd, out.data() + got, out.size() - got);

@@ -19,7 +19,7 @@ struct ZarrArray {
   std::vector<size_t> shape, chunk;
   std::vector<Codec> codecs;
   std::byte fill[8]{};             ///< one element, in this machine's byte order
-  std::vector<std::string> names;  ///< of the axes, where the array itself tells (version 3); else empty
+  std::vector<std::string> names;  ///< of the axes, where the array itself gives them (version 3); else empty
   std::string before;              ///< of the names of chunks: "" or "c/"
   char separator = '.';
 
@@ -32,7 +32,7 @@ struct ZarrArray {
   bool read_chunk(std::span<const size_t> at, std::byte* out, std::vector<std::byte>& packed) const;
 };
 
-/// Reads .zarray or zarr.json; nothing when neither is there (or zarr.json tells of a group). Throws Error(data) for sizes that cannot be,
+/// Reads .zarray or zarr.json; nothing when neither is there (or zarr.json describes a group). Throws Error(data) for sizes that cannot be,
 /// types and codecs that are not read. A chunk has at most 1 GiB, a shape at most 2^56 elements.
 std::optional<ZarrArray> open_array(const std::string& folder);
 

@@ -56,7 +56,7 @@ void decode_last(Codec codec, std::span<const std::byte> in, std::byte* out, siz
     case Codec::lz4: return decode_lz4(in, out, bytes, where);
     case Codec::crc32c: break;
   }
-  fail_internal("a checksum is no compressor", where);
+  fail_internal("a checksum is not a compressor", where);
 }
 
 }  // namespace
@@ -71,17 +71,17 @@ bool parse_codec(std::string_view name, Codec& codec) {
 }
 
 void decode(std::span<const Codec> codecs, std::span<const std::byte> in, std::byte* out, size_t bytes, const std::string& where) {
-  // Checksums stand behind what they guard; damage shows in the stream itself.
+  // Checksums follow what they protect; damage shows in the stream itself.
   while (!codecs.empty() && codecs.back() == Codec::crc32c) {
     if (in.size() < 4) fail_data("is shorter than its checksum", where);
     in = in.first(in.size() - 4), codecs = codecs.first(codecs.size() - 1);
   }
   if (codecs.empty()) {
-    if (in.size() != bytes) fail_data(fmt::format("has {} bytes, a chunk has {}", in.size(), bytes), where);
+    if (in.size() != bytes) fail_data(fmt::format("has {} bytes, but a chunk has {}", in.size(), bytes), where);
     std::memcpy(out, in.data(), bytes);
     return;
   }
-  if (codecs.size() > 1) fail_data(fmt::format("is packed {} times", codecs.size()), where, "one compressor is read");
+  if (codecs.size() > 1) fail_data(fmt::format("is compressed {} times", codecs.size()), where, "only one compressor is supported");
   decode_last(codecs[0], in, out, bytes, where);
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t most_levels = 64;
 
-// Names of axes, as they stand in the order of the shape.
+// Names of axes, in the order of the shape.
 struct Axes {
   std::vector<std::string> names, types, units;
 };
@@ -29,7 +29,7 @@ Axes axes_of(const Json& multiscale, size_t n, const std::string& where) {
     for (size_t i = 5 - n; i < 5; ++i) axes.names.push_back(usual[i]), axes.types.emplace_back(), axes.units.emplace_back();
     return axes;
   }
-  if (list->size() != n) fail_data(fmt::format("names {} axes of an array with {}", list->size(), n), where);
+  if (list->size() != n) fail_data(fmt::format("names {} axes of an array with {} axes", list->size(), n), where);
   for (const Json& a : list->items()) {
     axes.names.push_back(a.is_text() ? a.text() : text_of(a, "name", ""));
     axes.types.push_back(text_of(a, "type", ""));
@@ -49,7 +49,7 @@ void place_axes(Image& image, const Axes& axes, const std::string& where) {
                 : n == "c" || axes.types[i] == "channel" ? &image.channel_axis
                                                          : nullptr;
     if (slot && *slot < 0) *slot = int(i);
-    else if (shape[i] > 1) fail_data(fmt::format("axis '{}' of {} is none of t, c, z, y, x", n.substr(0, 40), shape[i]), where);
+    else if (shape[i] > 1) fail_data(fmt::format("axis '{}' of {} is not one of t, c, z, y, x", n.substr(0, 40), shape[i]), where);
   }
   if (image.axis[0] < 0) fail_data("has no axis x", where);
   constexpr std::pair<const char*, const char*> units[] = {{"meter", "m"},          {"millimeter", "mm"}, {"micrometer", "um"},
@@ -70,14 +70,14 @@ void apply_transformations(const Json& object, size_t n, std::vector<double>& sc
     if (type == "identity") continue;
     const Json* v = list_of(t, type.c_str());
     if ((type != "scale" && type != "translation") || !v)
-      fail_data(fmt::format("a coordinate transformation of type '{}' is not read", type.substr(0, 40)), where,
-                "scale and translation are");
+      fail_data(fmt::format("a coordinate transformation of type '{}' is not supported", type.substr(0, 40)), where,
+                "scale and translation are supported");
     if (v->size() != n) fail_data(fmt::format("a {} has {} numbers for {} axes", type, v->size(), n), where);
     for (size_t a = 0; a < n; ++a) {
-      if (!(*v)[a].is_number()) fail_data(fmt::format("a {} holds something that is no number", type), where);
+      if (!(*v)[a].is_number()) fail_data(fmt::format("a {} contains something that is not a number", type), where);
       const double x = (*v)[a].number();
       if (!std::isfinite(x) || (type == "scale" && !(x > 0)))
-        fail_data(fmt::format("a {} of {}", type, x), where, "finite numbers; scales above 0");
+        fail_data(fmt::format("a {} of {}", type, x), where, "numbers must be finite, and scales above 0");
       if (type == "scale") scale[a] *= x, shift[a] *= x;
       else shift[a] += x;
     }
@@ -92,13 +92,14 @@ void read_levels(Image& image, const Json& multiscale, const std::string& where)
   for (const Json& d : datasets->items()) {
     const std::string path = text_of(d, "path", "");
     if (path.empty() || path[0] == '/' || ("/" + path + "/").find("/../") != std::string::npos)
-      fail_data(fmt::format("a level lies at '{}'", path.substr(0, 80)), where, "a folder below this one");
+      fail_data(fmt::format("a level is at '{}'", path.substr(0, 80)), where, "it must be a folder below this one");
     auto array = open_array(image.path + path + "/");
-    if (!array) fail_data("there is no array of this level", image.path + path, "a .zarray or zarr.json");
+    if (!array) fail_data("this level has no array", image.path + path, "expected .zarray or zarr.json");
     const size_t n = array->shape.size();
     if (!image.levels.empty() && n != image.levels[0].array.shape.size())
       fail_data(fmt::format("has {} axes, level 0 has {}", n, image.levels[0].array.shape.size()), image.path + path);
-    if (!image.levels.empty() && array->type != image.levels[0].array.type) fail_data("is of another type than level 0", image.path + path);
+    if (!image.levels.empty() && array->type != image.levels[0].array.type)
+      fail_data("has a different type from level 0", image.path + path);
     std::vector<double> scale(n, 1), shift(n, 0);
     apply_transformations(d, n, scale, shift, where);
     apply_transformations(multiscale, n, scale, shift, where);
@@ -114,7 +115,7 @@ void read_levels(Image& image, const Json& multiscale, const std::string& where)
     image.time_step = places[0][0][size_t(image.time_axis)], image.first_time = places[0][1][size_t(image.time_axis)];
 }
 
-// `own`: what this program wrote beside the attributes of the standard.
+// `own`: what this program wrote besides the attributes of the standard.
 void read_extras(Image& image, const Json& attributes, const Json& own) {
   if (const Json* omero = object_of(attributes, "omero"))
     if (const Json* channels = list_of(*omero, "channels"))
@@ -142,7 +143,7 @@ void read_extras(Image& image, const Json& attributes, const Json& own) {
 
 void name_channels(Image& image) {
   const size_t n = image.channel_axis < 0 ? 1 : image.levels[0].array.shape[size_t(image.channel_axis)];
-  if (n > 4096) fail_data(fmt::format("has {} channels", n), image.path, "4096 at most");
+  if (n > 4096) fail_data(fmt::format("has {} channels", n), image.path, "at most 4096 are supported");
   image.channels.resize(n);
   for (size_t i = 0; i < n; ++i) {
     if (image.channels[i].empty()) image.channels[i] = n == 1 ? "values" : fmt::format("channel {}", i);
@@ -192,7 +193,7 @@ Image open_image(const std::string& given) {
     constexpr const char* usual[] = {"t", "c", "z", "y", "x"};
     bool named = !names.empty();
     for (const std::string& s : names) named = named && (s == "t" || s == "c" || s == "z" || s == "y" || s == "x");
-    if (n > 5 && !named) fail_data(fmt::format("has {} axes", n), given, "up to 5 are read: t, c, z, y, x");
+    if (n > 5 && !named) fail_data(fmt::format("has {} axes", n), given, "up to 5 are supported: t, c, z, y, x");
     for (size_t i = 0; i < n; ++i) axes.emplace_back(named ? names[i] : std::string(usual[5 - n + i]));
     place_axes(image, axes_of(Json(Json::Members{{"axes", Json(std::move(axes))}}), n, given), given);
     name_channels(image);
@@ -204,14 +205,14 @@ Image open_image(const std::string& given) {
   if (!attributes) {
     where = image.path + "zarr.json";
     const auto group = read_json(where);
-    if (!group) fail_data("has neither .zattrs nor zarr.json", given, "a Zarr folder has one of them at its top");
+    if (!group) fail_data("has neither .zattrs nor zarr.json", given, "a Zarr folder has one of them at its top level");
     const Json& all = (*group)["attributes"];
     attributes = object_of(all, "ome") ? all["ome"] : all;
     own = object_of(all, "sightglass") ? all["sightglass"] : (*attributes)["sightglass"];
   }
   const Json* multiscales = list_of(*attributes, "multiscales");
   if (!multiscales || multiscales->empty() || !(*multiscales)[0].is_object())
-    fail_data("is a group without an image ('multiscales')", where, "name the folder of one array or image in it");
+    fail_data("is a group without an image ('multiscales')", where, "give the folder of one array or image inside it");
   read_levels(image, (*multiscales)[0], where);
   image.name = text_of((*multiscales)[0], "name", "");
   read_extras(image, *attributes, own);

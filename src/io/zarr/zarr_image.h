@@ -25,9 +25,9 @@ struct Image {
   int axis[3] = {-1, -1, -1};  ///< places of x, y and z in the shape; -1 = a single layer
   int time_axis = -1, channel_axis = -1;
   double time_step = 1, first_time = 0;
-  std::string length_unit;            ///< "mm", ...; as the file says it when it is none of ours
+  std::string length_unit;            ///< "mm", ...; as in the file, when it is not one of ours
   std::vector<std::string> channels;  ///< a name each
-  // What our own files say besides.
+  // Additional data in our own files.
   std::string unit;
   Mat3 direction;
   bool vector = false;  ///< the channels are the components of one field

@@ -15,10 +15,10 @@ constexpr size_t longest = size_t(16) << 20;
 std::optional<Json> read_json(const std::string& path) {
   if (!file_exists(path)) return std::nullopt;
   const MappedFile file(path);
-  if (file.size() > longest) fail_data(fmt::format("has {} bytes", file.size()), path, "a description of an array is smaller than 16 MiB");
-  // NaN and Infinity as bare words, which Python writes, are no JSON; the standard says "NaN" in quotes.
+  if (file.size() > longest) fail_data(fmt::format("has {} bytes", file.size()), path, "array metadata must be smaller than 16 MiB");
+  // NaN and Infinity as bare words, which Python writes, are not JSON; the standard says "NaN" in quotes.
   Json json = parse_json(file.text(), path);
-  if (!json.is_object()) fail_data("is no JSON object", path);
+  if (!json.is_object()) fail_data("is not a JSON object", path);
   return json;
 }
 
@@ -29,7 +29,7 @@ std::vector<size_t> whole_numbers(const Json& object, const char* key, size_t n,
   std::vector<size_t> out;
   for (const Json& v : list->items()) {
     if (!v.is_whole() || v.whole() < least || v.whole() > (uint64_t(1) << 60))
-      fail_data(fmt::format("'{}' holds {}, not a whole number from {} on", key, v.dump().substr(0, 40), least), path);
+      fail_data(fmt::format("'{}' holds {}, not a whole number of at least {}", key, v.dump().substr(0, 40), least), path);
     out.push_back(size_t(v.whole()));
   }
   return out;

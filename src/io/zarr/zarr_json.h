@@ -10,7 +10,7 @@
 
 namespace sg::zarr {
 
-/// Nothing when the file is not there. Throws Error(data) for what is no JSON object, is nested deeper than 64 or larger than 16 MiB.
+/// Nothing when the file is not there. Throws Error(data) for what is not a JSON object, is nested deeper than 64 or larger than 16 MiB.
 std::optional<Json> read_json(const std::string& path);
 
 /// A list of `n` whole numbers from `least` on (any number of them for n = 0). Throws Error(data) naming path and key.

@@ -50,9 +50,9 @@ Field read_field(const Image& image, size_t level, size_t step, const LatticePar
   const size_t n = planned.channels.size();
   const Role role = image.labels ? Role::labels : n == 3 && is_float(type) ? Role::vectors : Role::scalars;
   if (header_only) return {planned.name, Association::point, unread_values(type, part.points(), int(n)), image.unit, role};
-  // Sparse arrays are right, but nothing at all of much is a mistake, and not worth the memory.
+  // Sparse arrays are fine, but a large array without any chunk is an error, and not worth the memory.
   if (part.points() > (size_t(1) << 22) && !any_chunk(box_of(image, level, step, planned.channels[0])))
-    fail_data("there is no chunk of this array", image.levels[level].array.folder, "one file per chunk");
+    fail_data("no chunk of this array exists", image.levels[level].array.folder, "expected one file per chunk");
   std::byte* out = nullptr;
   Array values = Array::make_raw(type, part.points(), int(n), &out);
   for (size_t c = 0; c < n; ++c)
@@ -70,8 +70,9 @@ size_t level_in_memory(const Image& image, uint64_t tuple, uint64_t allowed) {
     if (n[0] * n[1] * n[2] <= most / tuple) return l;
   }
   const auto n = image.dims(0);
-  fail_usage(fmt::format("{} need {}, and no coarser level is in the file", size_text(n), human_bytes(n[0] * n[1] * n[2] * tuple)),
-             image.path, "read a part (--region, --stride), or make a file with levels: sightglass convert IN -o OUT.ome.zarr --memory 2G");
+  fail_usage(fmt::format("{} need {}, and the file has no coarser level", size_text(n), human_bytes(n[0] * n[1] * n[2] * tuple)),
+             image.path,
+             "read a part (--region, --stride), or create a file with levels: sightglass convert IN -o OUT.ome.zarr --memory 2G");
 }
 
 std::vector<double> times_in(const Image& image) {
@@ -115,9 +116,9 @@ Data read_zarr(const std::string& path, const ReadOptions& options, Context& con
   if (coarse) {
     parts.notes.emplace_back("level",
                              fmt::format("{} of {}: {} of {} samples", level, image->levels.size(), size_text(grid.dims), size_text(dims)));
-    const char* rest = planned.size() == 1 && !image->vector ? "volumes are drawn from the bricks"
-                                                             : "--fields with one name draws volumes from the bricks";
-    context.info(fmt::format("{}: {} do not fit into memory; level {} with {} is read, {}", path, size_text(dims), level,
+    const char* rest = planned.size() == 1 && !image->vector ? "the full resolution is drawn by bricks in volumes"
+                                                             : "--fields with one name lets volumes be drawn by bricks";
+    context.info(fmt::format("{}: {} do not fit into memory; reading level {} with {}, {}", path, size_text(dims), level,
                              size_text(grid.dims), rest));
   }
   if (!coarse || planned.size() != 1 || image->vector) return make_dataset(std::move(parts));

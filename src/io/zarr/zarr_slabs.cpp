@@ -15,14 +15,13 @@ namespace {
 const Field& chosen_field(const Dataset& d, const ReadOptions& options, const std::string& path, Context& context) {
   if (!d.as<UniformGrid>())
     fail_usage(fmt::format("a {} mesh cannot be written as Zarr", d.kind()), path,
-               "a Zarr image holds a uniform grid; resample it first: -f 'resample ...'");
+               "a Zarr image holds a uniform grid, so resample it first: -f 'resample ...'");
   const bool named = options.fields.size() == 1;
   const Field* chosen = named ? d.fields().find(options.fields[0], Association::point) : d.fields().active(0);
   if (chosen && chosen->association != Association::point) chosen = nullptr;
   for (const Field& f : d.fields())
     if (f.association == Association::point && !chosen) chosen = &f;
-  if (!chosen)
-    fail_usage("there is no point field to write", path, "a Zarr image holds numbers at the points of a grid; -f cell_to_point makes them");
+  if (!chosen) fail_usage("there is no point field to write", path, "a Zarr image holds point values of a grid; -f cell_to_point converts");
   WriteLosses losses(path, "one Zarr image (--fields chooses a field)");
   if (!named) losses.keeps_only(d, *chosen, true);
   losses.tell(context);

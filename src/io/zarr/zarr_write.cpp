@@ -32,7 +32,7 @@ class AtomicFolder {
   explicit AtomicFolder(std::string path) : path_(std::move(path)) {
     while (path_.size() > 1 && path_.back() == '/') path_.pop_back();
     if (file_exists(path_) && !(is_folder(path_) && sniff_zarr_folder(path_)))
-      fail_usage("is there already and is no Zarr folder", path_, "remove it first, or choose another name");
+      fail_usage("exists already and is not a Zarr folder", path_, "remove it first, or choose another name");
     partial_ = make_partial_folder(path_, false);
   }
   ~AtomicFolder() {
@@ -63,7 +63,7 @@ class AtomicFolder {
 };
 
 void make_folder(const std::string& path) {
-  if (::mkdir(path.c_str(), 0777) != 0 && errno != EEXIST) fail_data(std::string("cannot be made: ") + std::strerror(errno), path);
+  if (::mkdir(path.c_str(), 0777) != 0 && errno != EEXIST) fail_data(std::string("cannot be created: ") + std::strerror(errno), path);
 }
 
 // The folder around it becomes whole by its rename; its files need none.
@@ -140,7 +140,7 @@ class Writer {
     size_t thick = edge;
     const size_t slice = g.dims[0] * g.dims[1] * tuple_;
     while (context_.memory_limit && thick > 8 && slice * thick > context_.memory_limit / 4) thick /= 2;
-    if (thick < edge) context_.info(fmt::format("chunks are {} slices thick, so that writing stays within the memory allowed", thick));
+    if (thick < edge) context_.info(fmt::format("chunks are {} slices thick, to stay within the allowed memory while writing", thick));
     Level l;
     l.dims = g.dims;
     l.spacing = g.spacing;
@@ -156,7 +156,7 @@ class Writer {
       for (size_t a = 0; a < 3; ++a) {
         l.chunk[a] = std::min(a == 2 ? thick : edge, l.dims[a]);
         if (a == 2 && l.dims[2] > thick) l.chunk[a] = thick;
-        l.halved[a] = l.dims[a] > std::min<size_t>(32, edge);  // or a level that is not the last would be no coarser
+        l.halved[a] = l.dims[a] > std::min<size_t>(32, edge);  // or a level other than the last would not be coarser
         more = more || l.dims[a] > edge;
       }
       if (!more) l.halved = {};
@@ -325,9 +325,9 @@ class Writer {
 void write_zarr_slabs(const std::string& path, const SlabSource& source, const ZarrOptions& options, Context& context) {
   zarr::check_packing({options.compression}, path);
   if (options.chunk < 8 || options.chunk > 512 || options.chunk % 2)
-    fail_usage(fmt::format("chunks of {} samples", options.chunk), path, "an even number from 8 to 512, like 64");
+    fail_usage(fmt::format("chunks of {} samples", options.chunk), path, "give an even number from 8 to 512, e.g. 64");
   for (const size_t n : source.grid.dims)
-    if (n == 0) fail_usage("there is no point to write", path);
+    if (n == 0) fail_usage("there are no points to write", path);
   AtomicFolder folder(path);
   Writer writer(folder.partial(), source, options, context);
   const size_t all = source.grid.dims[2], at_once = source.best_slab ? source.best_slab : std::min(writer.layer(), all);
@@ -337,7 +337,7 @@ void write_zarr_slabs(const std::string& path, const SlabSource& source, const Z
     const Array slab = source.slab(first, count).made_packed();
     if (slab.count() != source.grid.dims[0] * source.grid.dims[1] * count || slab.type() != source.type ||
         slab.components() != source.components)
-      fail_internal("a slab has another size or type than was announced", path);
+      fail_internal("a slab differs in size or type from what was announced", path);
     writer.add(slab, count);
     context.progress(double(first + count) / double(all), "writing chunks");
   }

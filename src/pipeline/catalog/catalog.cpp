@@ -30,7 +30,7 @@ void add_operations(std::vector<CatalogEntry>& all, EntryKind kind, OperationKin
 std::string of_extensions(const Format& f) {
   std::string r;
   for (const std::string_view e : words(f.extensions)) r += (r.empty() ? " (." : " .") + std::string(e);
-  return r.empty() ? " (a folder, or known by its content)" : r + ")";
+  return r.empty() ? " (a folder, or detected by content)" : r + ")";
 }
 
 void add_readers(std::vector<CatalogEntry>& all) {
@@ -39,7 +39,7 @@ void add_readers(std::vector<CatalogEntry>& all) {
     auto params = std::make_shared<ReadParams>();
     Schema schema;
     describe(schema, *params, f);
-    all.push_back({EntryKind::reader, std::string(f.name), fmt::format("Reads {}{}.", f.name, of_extensions(f)), params, std::move(schema),
+    all.push_back({EntryKind::reader, std::string(f.name), fmt::format("Read {}{}.", f.name, of_extensions(f)), params, std::move(schema),
                    nullptr, &f});
   }
 }
@@ -50,8 +50,8 @@ void add_writers(std::vector<CatalogEntry>& all) {
     auto options = std::make_shared<WriteOptions>();
     Schema schema;
     if (f.describe_write) f.describe_write(schema, *options);
-    all.push_back({EntryKind::writer, std::string(f.name), fmt::format("Writes {}{}.", f.name, of_extensions(f)), options,
-                   std::move(schema), nullptr, &f});
+    all.push_back({EntryKind::writer, std::string(f.name), fmt::format("Write {}{}.", f.name, of_extensions(f)), options, std::move(schema),
+                   nullptr, &f});
   }
 }
 
@@ -88,8 +88,8 @@ std::vector<CatalogEntry> catalog() {
   for (const ShowKind& k : show_kinds()) all.push_back(entry_of(EntryKind::show, k.name, k.sentence, k.make_params()));
   add_readers(all);
   add_writers(all);
-  all.push_back(entry<ReadParams>(EntryKind::read, "Reads a file (a step of pipeline files)."));
-  all.push_back(entry<CameraParams>(EntryKind::camera, "Where the picture is taken from (--camera)."));
+  all.push_back(entry<ReadParams>(EntryKind::read, "Read a file (a step of pipeline files)."));
+  all.push_back(entry<CameraParams>(EntryKind::camera, "Viewpoint and projection (--camera)."));
   all.push_back(entry<PictureParams>(EntryKind::picture, "Size, background and annotations (--picture)."));
   all.push_back(entry<FilmParams>(EntryKind::film, "Pictures of a time series, numbered or as a film."));
   return all;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything that can be asked for, in one table: what help, completions, other languages and the browser are made of.
+// Everything that can be requested, in one table: what help, completions, other languages and the browser are made of.
 #pragma once
 #include <memory>
 #include <string>

@@ -12,7 +12,7 @@
 namespace sg {
 
 DatasetPtr gradient_images(const GradientImagesParams& p, Context& ctx) {
-  if (p.path.empty()) fail_usage("path names no file", "gradient_images", "path=FILE.nii");
+  if (p.path.empty()) fail_usage("path does not name a file", "gradient_images", "path=FILE.nii");
   const Series series = open_series(p.path, {}, ctx);
   const size_t steps = series.times.size();
   DatasetParts out;
@@ -27,7 +27,7 @@ DatasetPtr gradient_images(const GradientImagesParams& p, Context& ctx) {
     const Field* f = name.empty() ? d->fields().active(1) : &d->fields().require(name);
     if (!f || f->components() != 1 || f->association == Association::whole)
       fail_usage(f ? fmt::format("field '{}' has {} components", f->name, f->components()) : "there is no field of one component", p.path,
-                 "field names one of one component");
+                 "name one with one component with field=");
     name = f->name;
     if (step == 0) {
       points = f->array.count(), size = element_size(f->array.type());

@@ -12,7 +12,7 @@ struct GradientImagesParams {
   FieldName field;
 };
 inline void describe(Schema& s, GradientImagesParams& p) {
-  s("path", p.path, "File with a series of volumes, like a 4D NIfTI image.").unit("file");
+  s("path", p.path, "File with a series of volumes, e.g. a 4D NIfTI image.").unit("file");
   s("field", p.field, "Field of one component; default: the active scalar.").takes(fields::scalars);
 }
 

@@ -28,7 +28,7 @@ class FileParser {
   PipelineFile parse(const YamlNode& root) {
     PipelineFile file;
     if (root.kind != Kind::map) {
-      mistake(root.line, "a pipeline file is a map with the keys sightglass, steps, show, picture");
+      mistake(root.line, "a pipeline file must be a map with the keys sightglass, steps, show, picture");
       finish();
     }
     static const std::vector<std::string> keys{"sightglass", "steps", "show", "picture"};
@@ -66,18 +66,18 @@ class FileParser {
         int line = map.line;
         for (const auto& [key, value] : map.pairs)
           if (key.text == seen[i]) line = key.line;
-        mistake(line, fmt::format("{}the key '{}' stands twice", of, seen[i]));
+        mistake(line, fmt::format("{}the key '{}' appears twice", of, seen[i]));
       }
   }
 
   void check_version(const YamlNode& value) {
     if (value.kind != Kind::scalar || value.text != "1")
-      mistake(value.line, fmt::format("sightglass: '{}' is no version that this program reads; it reads 1", value.text));
+      mistake(value.line, fmt::format("sightglass: '{}' is not a version this program reads; it reads version 1", value.text));
   }
 
   // "key=value", "key=a,b,c" or the bare key. False after a mistake.
   bool add_word(const std::string& key, const YamlNode& value, int line, const std::string& of, std::vector<std::string>& words) {
-    if (key.find('=') != key.npos) return mistake(line, fmt::format("{}: '{}' is no name", of, key)), false;
+    if (key.find('=') != key.npos) return mistake(line, fmt::format("{}: '{}' is not a valid name", of, key)), false;
     if (value.kind == Kind::null) return words.push_back(key), true;
     if (value.kind == Kind::scalar) return words.push_back(key + "=" + value.text), true;
     if (value.kind == Kind::map) return mistake(value.line, fmt::format("{} {}: must be a value or a list, not a map", of, key)), false;
@@ -85,7 +85,7 @@ class FileParser {
     for (const YamlNode& item : value.items) {
       if (item.kind != Kind::scalar) return mistake(item.line, fmt::format("{} {}: the items of a list must be values", of, key)), false;
       if (item.text.find(',') != item.text.npos)
-        return mistake(item.line, fmt::format("{} {}: '{}': an item of a list has no comma", of, key, item.text)), false;
+        return mistake(item.line, fmt::format("{} {}: '{}': a list item must not contain a comma", of, key, item.text)), false;
       text += (text.empty() && &item == &value.items.front() ? "" : ",") + item.text;
     }
     words.push_back(key + "=" + text);
@@ -97,7 +97,7 @@ class FileParser {
     std::vector<std::string> words;
     if (value.kind == Kind::null) return words;
     if (value.kind != Kind::map) {
-      mistake(value.line, fmt::format("{}: must be a map of parameters, like {{{}: {{key: value}}}}", of, of));
+      mistake(value.line, fmt::format("{}: must be a map of parameters, e.g. {{{}: {{key: value}}}}", of, of));
       return words;
     }
     unique_keys(value, of + ": ");
@@ -112,7 +112,7 @@ class FileParser {
       if (pair.first.text == other) continue;
       if (found) {
         const std::string near = nearest_name(pair.first.text, std::span(&other, 1));
-        mistake(pair.first.line, fmt::format("{}: has '{}' beside '{}', but one {} and '{}' are all it may have{}", of, pair.first.text,
+        mistake(pair.first.line, fmt::format("{}: has '{}' besides '{}', but may have only one {} and '{}'{}", of, pair.first.text,
                                              found->first.text, what, other, near.empty() ? "" : "; did you mean '" + near + "'?"));
         return nullptr;
       }
@@ -123,14 +123,14 @@ class FileParser {
   }
 
   void parse_steps(const YamlNode& steps, PipelineFile& file) {
-    if (steps.kind != Kind::map) return mistake(steps.line, "steps: must be a map of names, like {head: {read: FILE}}");
+    if (steps.kind != Kind::map) return mistake(steps.line, "steps: must be a map of names, e.g. {head: {read: FILE}}");
     if (steps.pairs.size() > most_steps) return mistake(steps.line, fmt::format("steps: more than {}", most_steps));
     unique_keys(steps, "steps: ");
     for (const auto& [key, body] : steps.pairs) {
       PipelineFile::Step step{key.text, {}, {}, {}, key.line};
       const std::string of = fmt::format("step '{}'", key.text);
       if (body.kind != Kind::map) {
-        mistake(body.line, of + ": must be a map, like {read: FILE} or {contour: {values: [1]}}");
+        mistake(body.line, of + ": must be a map, e.g. {read: FILE} or {contour: {values: [1]}}");
         continue;
       }
       unique_keys(body, of + ": ");
@@ -158,7 +158,7 @@ class FileParser {
   }
 
   void parse_shows(const YamlNode& shows, PipelineFile& file) {
-    if (shows.kind != Kind::list) return mistake(shows.line, "show: must be a list, like [{surface: {opacity: 0.5}, of: bone}]");
+    if (shows.kind != Kind::list) return mistake(shows.line, "show: must be a list, e.g. [{surface: {opacity: 0.5}, of: bone}]");
     if (shows.items.size() > most_shows) return mistake(shows.line, fmt::format("show: more than {} items", most_shows));
     for (const YamlNode& body : shows.items) {
       PipelineFile::Show show;
@@ -177,10 +177,10 @@ class FileParser {
             else mistake(v.line, "show: of: must be the name of a step");
           }
       } else {
-        mistake(body.line, "show: each item is a kind, like {surface: {opacity: 0.5}, of: bone}");
+        mistake(body.line, "show: each item must be a way to show, e.g. {surface: {opacity: 0.5}, of: bone}");
         continue;
       }
-      check_known(show.kind, show.line, "show: unknown kind", vocabulary_.show);
+      check_known(show.kind, show.line, "show: unknown way to show", vocabulary_.show);
       file.show.push_back(std::move(show));
     }
   }
@@ -192,7 +192,7 @@ class FileParser {
 
   void parse_picture(const YamlNode& picture, PipelineFile& file) {
     if (picture.kind == Kind::null) return;
-    if (picture.kind != Kind::map) return mistake(picture.line, "picture: must be a map, like {size: 1280x720, output: out.png}");
+    if (picture.kind != Kind::map) return mistake(picture.line, "picture: must be a map, e.g. {size: 1280x720, output: out.png}");
     unique_keys(picture, "picture: ");
     std::map<std::string_view, int> lines;
     for (const auto& [key, value] : picture.pairs) lines[key.text] = key.line;
@@ -204,10 +204,10 @@ class FileParser {
       }
       unique_keys(value, fmt::format("picture {}: ", key.text));
       for (const auto& [k, v] : value.pairs) {
-        if (k.text.find('.') != k.text.npos) mistake(k.line, fmt::format("picture {}: '{}' is no name", key.text, k.text));
+        if (k.text.find('.') != k.text.npos) mistake(k.line, fmt::format("picture {}: '{}' is not a valid name", key.text, k.text));
         const std::string flat = key.text + "." + k.text;
         if (const auto at = lines.find(flat); at != lines.end())
-          mistake(at->second, fmt::format("picture: the key '{}' stands twice", flat));
+          mistake(at->second, fmt::format("picture: the key '{}' appears twice", flat));
         add_word(key.text + "." + k.text, v, k.line, "picture", file.picture);
       }
     }
@@ -251,7 +251,7 @@ std::string value_text(const std::string& value) {
 std::string pair_text(const std::string& word, size_t skip = 0) {
   const size_t eq = word.find('=');
   const std::string key = word.substr(skip, eq == word.npos ? word.npos : eq - skip);
-  if (key.empty()) fail_usage("a word without a name cannot stand in a pipeline file", word);
+  if (key.empty()) fail_usage("a pipeline file cannot contain a word without a name", word);
   return yaml_scalar(key) + (eq == word.npos ? ":" : ": " + value_text(word.substr(eq + 1)));
 }
 

@@ -52,7 +52,7 @@ struct PipelineFile {
   }
 };
 
-/// The words that may stand in a file, for "did you mean". An empty list lets everything pass.
+/// Words allowed in a file, for "did you mean". An empty list lets everything pass.
 struct PipelineVocabulary {
   std::vector<std::string> show{"auto", "surface", "volume", "lines", "points", "labels", "glyphs", "outline"};
   std::vector<std::string> picture{"size", "camera", "output", "background", "background_top", "transparent", "title", "legend", "axes"};
@@ -79,7 +79,7 @@ struct PipelineGraph {
   std::vector<NodeId> show;                           ///< of each show, in file order
   NodeId last = -1;                                   ///< of the last step
 };
-/// Results at hand by the names of their steps, which then do not run; a null dataset: it is above others at hand and not asked for.
+/// Results at hand by the names of their steps, which then do not run; a null dataset: it is above others at hand and not requested.
 using StepResults = std::map<std::string, Data>;
 /// The operation of a step whose numbers came from the memory of a program that used the library: a recipe names it, and only with its
 /// result at hand is it good for anything.

@@ -44,7 +44,7 @@ class GraphBuilder {
   }
 
  private:
-  // The line stands in Mistake::node, so that they sort by it.
+  // The line is in Mistake::node, so that they sort by it.
   void mistake(int line, const std::string& text, ErrorKind kind = ErrorKind::usage) {
     const std::string origin = file_.origin.empty() ? "pipeline" : file_.origin;
     mistakes_.push_back({line, kind, line > 0 ? fmt::format("{}:{}: {}", origin, line, text) : text});
@@ -67,7 +67,7 @@ class GraphBuilder {
     try {
       Schema schema = schema_of(params);
       set_params(schema, step.words, "read");
-      if (params.path.empty()) fail_usage("no file is named", "read path", "write read: FILE");
+      if (params.path.empty()) fail_usage("no file is given", "read path", "write read: FILE");
       check(params.options);
     } catch (const Error& e) {
       mistake(step.line, fmt::format("step '{}': {}", step.name, e.what()));
@@ -79,8 +79,8 @@ class GraphBuilder {
   }
 
   NodeId add_memory(const PipelineFile::Step& step) {
-    mistake(step.line, fmt::format("step '{}': its numbers ({}) were in the memory of the program that made this, not in a file; have it "
-                                   "write them and read that file, then its pictures can be made again",
+    mistake(step.line, fmt::format("step '{}': its numbers ({}) were in the memory of the program that made this, not in a file; make that "
+                                   "program write them to a file and read the file, so that pictures can be remade",
                                    step.name, word_value(step.words, "data").value_or("not described")));
     return built_.graph.add_data(DatasetPtr(), "mistake", step.name);
   }
@@ -97,7 +97,7 @@ class GraphBuilder {
         mistake(step.line, fmt::format("step '{}': its input '{}' comes {}", step.name, name,
                                        name == step.name ? "from itself" : "later; move that step up"));
       else mistake(step.line, fmt::format("step '{}': there is no step '{}'; {}", step.name, name, unknown_name_hint(name, all_names_)));
-      if (built_.last >= 0) inputs.push_back(built_.last);  // keeps the number of inputs, so that one mistake is told once
+      if (built_.last >= 0) inputs.push_back(built_.last);  // keeps the number of inputs, so that one mistake is reported once
     }
     if (step.from.empty() && wants_input(step.operation) && built_.last >= 0) inputs.push_back(built_.last);
     return built_.graph.add_operation(step.operation, with_paths(step), std::move(inputs), step.name);

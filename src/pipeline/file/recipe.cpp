@@ -119,7 +119,7 @@ const std::string* text_in(const Image& image, std::string_view name) {
 PipelineFile recipe_in(const Image& image, const std::string& picture_path) {
   const std::string* recipe = text_in(image, "sightglass");
   if (!recipe)
-    fail_data("has no recipe inside", picture_path, "pictures made by sightglass carry one, unless another program rewrote them");
+    fail_data("contains no recipe", picture_path, "pictures made by sightglass contain one, unless another program rewrote them");
   return parse_pipeline(*recipe, picture_path, picture_vocabulary());
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a recipe may not do. The fence around the process (file/file_fence.h) holds whatever is overlooked here; these rules say it before
-// anything runs, step by step.
+// What a recipe may not do. The fence around the process (file/file_fence.h) holds whatever is overlooked here; these rules report it
+// before anything runs, step by step.
 #include <fmt/core.h>
 
 #include <map>
@@ -32,7 +32,7 @@ Units units_of_step(const PipelineFile::Step& step) {
     return units_of(schema_of(params));
   }
   const Operation* op = known_operation(step.operation);
-  return op ? units_of(op->make_params().schema) : Units{};  // an unknown one is told later, with "did you mean"
+  return op ? units_of(op->make_params().schema) : Units{};  // an unknown one is reported later, with "did you mean"
 }
 
 class Rules {
@@ -46,7 +46,7 @@ class Rules {
       if (unit == units.end()) continue;
       const std::string value = sign == word.npos ? "" : word.substr(sign + 1);
       if (unit->second == "new file")
-        mistake(line, fmt::format("{}: {}={} would write a file, and a recipe writes its picture alone", who, unit->first, value));
+        mistake(line, fmt::format("{}: {}={} would write a file, but a recipe may write only its picture", who, unit->first, value));
       if (unit->second != "file") continue;
       bool good = true;  // of a long list one is enough
       map_series(value, [&](const std::string& part) {
@@ -69,8 +69,8 @@ class Rules {
       check_may_read(at.substr(0, at.find_first_of("*?{")));  // of a pattern its folder
       return true;
     } catch (const Error& e) {
-      mistake(line, fmt::format("{} reads '{}', which is neither below the folder of the picture nor below the working folder; if it is "
-                                "meant, say --read-anywhere",
+      mistake(line, fmt::format("{} reads '{}', which lies neither below the picture's folder nor below the working folder; if that is "
+                                "intended, use --read-anywhere",
                                 who, path));
       return false;
     }

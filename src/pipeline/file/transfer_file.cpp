@@ -25,20 +25,21 @@ std::vector<std::string> read_words(const std::string& path) {
     fail_usage(what, fmt::format("{}:{}", path, line), hint);
   };
   if (root.kind != YamlNode::Kind::map)
-    fail(root.line, "is no transfer function", "a map of the words of --show volume, like opacity: '0:0,1:0.5'");
+    fail(root.line, "is not a transfer function", "use a map of the parameters of --show volume, e.g. opacity: '0:0,1:0.5'");
   std::vector<std::string> words;
   bool known = false;
   for (const auto& [key, value] : root.pairs) {
     if (key.text == head) {
-      if (value.text != "1") fail(value.line, fmt::format("version '{}' is not one that this program reads", value.text), "it reads 1");
+      if (value.text != "1")
+        fail(value.line, fmt::format("version '{}' is not supported by this program", value.text), "it reads version 1");
       known = true;
       continue;
     }
     std::string text = value.text;
-    if (value.kind == YamlNode::Kind::map) fail(value.line, fmt::format("'{}' holds a map", key.text), "a value, or a list of values");
+    if (value.kind == YamlNode::Kind::map) fail(value.line, fmt::format("'{}' holds a map", key.text), "use a value, or a list of values");
     for (size_t i = 0; i < value.items.size(); ++i) {
       if (value.items[i].kind != YamlNode::Kind::scalar)
-        fail(value.items[i].line, fmt::format("'{}' holds more than values", key.text), "a list of values");
+        fail(value.items[i].line, fmt::format("'{}' contains more than values", key.text), "use a list of values");
       text += (i ? "," : "") + value.items[i].text;
     }
     if (key.text == "transfer" || key.text == "save") fail(key.line, fmt::format("'{}' names another file", key.text), "leave it out");
@@ -49,7 +50,7 @@ std::vector<std::string> read_words(const std::string& path) {
     });
     words.push_back(word);
   }
-  if (!known) fail(root.line, "is no transfer function", fmt::format("its first line is '{}: 1'", head));
+  if (!known) fail(root.line, "is not a transfer function", fmt::format("its first line is '{}: 1'", head));
   with_context(fmt::format("reading '{}'", path), [&] { show_params(show_kind<VolumeShow>(), words); });
   return words;
 }

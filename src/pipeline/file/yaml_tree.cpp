@@ -33,7 +33,7 @@ class TreeBuilder : public YAML::EventHandler {
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, const std::string& value) override {
     check_tag(mark, tag);
     YamlNode n = make(mark, anchor, YamlNode::Kind::scalar);
-    if (value.size() > longest) fail(mark, fmt::format("a value of more than {}", human_bytes(longest)));
+    if (value.size() > longest) fail(mark, fmt::format("a value has more than {}", human_bytes(longest)));
     n.text = bytes_of_text(value);
     put(std::move(n));
   }
@@ -58,14 +58,14 @@ class TreeBuilder : public YAML::EventHandler {
 
   YamlNode make(const YAML::Mark& mark, YAML::anchor_t anchor, YamlNode::Kind kind) {
     if (anchor != YAML::NullAnchor) fail(mark, "anchors (&name) are not allowed");
-    if (++nodes_ > most_nodes) fail(mark, fmt::format("more than {} values", most_nodes));
+    if (++nodes_ > most_nodes) fail(mark, fmt::format("has more than {} values", most_nodes));
     YamlNode n;
     n.kind = kind;
     n.line = mark.line + 1;
     return n;
   }
   void open(const YAML::Mark& mark, YamlNode n) {
-    if (stack_.size() >= deepest) fail(mark, fmt::format("more than {} levels", deepest));
+    if (stack_.size() >= deepest) fail(mark, fmt::format("has more than {} levels", deepest));
     stack_.push_back({std::move(n), {}, false});
   }
   void close() {
@@ -82,10 +82,11 @@ class TreeBuilder : public YAML::EventHandler {
     if (top.node.kind == YamlNode::Kind::list) {
       top.node.items.push_back(std::move(n));
     } else if (!top.has_key) {
-      if (n.kind != YamlNode::Kind::scalar || n.text.empty()) fail_usage("a key must be a word", fmt::format("{}:{}", origin_, n.line));
-      if (n.text.size() > 256) fail_usage("a key of more than 256 letters", fmt::format("{}:{}", origin_, n.line));
+      if (n.kind != YamlNode::Kind::scalar || n.text.empty())
+        fail_usage("a key must be a plain word", fmt::format("{}:{}", origin_, n.line));
+      if (n.text.size() > 256) fail_usage("a key has more than 256 characters", fmt::format("{}:{}", origin_, n.line));
       if (top.node.pairs.size() >= most_keys)
-        fail_usage(fmt::format("more than {} keys", most_keys), fmt::format("{}:{}", origin_, n.line));
+        fail_usage(fmt::format("has more than {} keys", most_keys), fmt::format("{}:{}", origin_, n.line));
       top.key = std::move(n);
       top.has_key = true;
     } else {
@@ -127,7 +128,7 @@ YamlNode parse_yaml(std::string_view text, const std::string& origin) {
     YAML::Parser parser(stream);
     if (!parser.HandleNextDocument(builder)) return {};
     TreeBuilder second(name);
-    if (parser.HandleNextDocument(second)) fail_usage("holds more than one document", name, "remove what follows '---'");
+    if (parser.HandleNextDocument(second)) fail_usage("contains more than one document", name, "remove what follows '---'");
   } catch (const YAML::Exception& e) {
     fail_usage(e.msg, fmt::format("{}:{}", name, e.mark.line + 1));
   }

@@ -22,7 +22,7 @@ struct YamlPair {
   YamlNode first, second;
 };
 
-/// One document. Throws Error(usage) "origin:line: ..." for bad syntax, anchors, aliases, tags, keys that are no words, and sizes beyond
+/// One document. Throws Error(usage) "origin:line: ..." for bad syntax, anchors, aliases, tags, keys that are not words, and sizes beyond
 /// the limits.
 YamlNode parse_yaml(std::string_view text, const std::string& origin);
 /// `s` as a scalar that parse_yaml reads back to `s`, quoted when it needs to be; safe inside [] and {}.

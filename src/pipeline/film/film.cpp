@@ -31,7 +31,7 @@ std::vector<Data> results_of(const PipelineFile& file, const std::shared_ptr<Cac
   return built.graph.evaluate(targets, context);
 }
 
-// Computes the results of a step beside the drawing of another, and holds them so that the cache finds them.
+// Computes the results of one step while another is drawn, and holds them so that the cache finds them.
 class Ahead {
  public:
   Ahead(PipelineFile file, std::shared_ptr<Cache> cache, Context& context)
@@ -39,7 +39,7 @@ class Ahead {
           try {
             results_ = results_of(file, cache, context);
           } catch (...) {
-            // The drawing meets the same error and says it.
+            // Drawing meets the same error and reports it.
           }
         }) {}
   ~Ahead() { wait(); }
@@ -94,7 +94,7 @@ PipelineFile with_looks(const PipelineFile& plain, PipelineFile first, const Pic
 
 std::vector<double> make_film(PipelineFile plain, const FilmParams& params, const PictureOptions& options, const FilmCallbacks& callbacks,
                               Context& outer) {
-  // One picture after the other says the same; two are under way at a time.
+  // Every picture gives the same notes; two are under way at a time.
   std::mutex mutex;
   std::set<std::string> told;
   Context context(outer, 0, 1);
@@ -120,7 +120,7 @@ std::vector<double> make_film(PipelineFile plain, const FilmParams& params, cons
   fix_ranges(base, some, context);
 
   const bool prefetch = outer.memory_limit == 0 || 2 * one_step < outer.memory_limit;
-  if (!prefetch) context.info("two steps do not fit into the memory allowed: each is read when it is drawn");
+  if (!prefetch) context.info("two steps do not fit into the allowed memory: each is read when it is drawn");
   std::unique_ptr<Ahead> ahead;
   for (size_t n = 0; n < count; ++n) {
     context.check();

@@ -10,13 +10,13 @@
 
 namespace sg {
 
-/// Is it the name of a film or of numbered pictures?
+/// Whether it is the name of a film or of numbered pictures.
 bool is_film(const std::string& output);
 
 /// One picture of a film.
 struct FilmFrame {
   Image image;
-  const PipelineFile& pipeline;  ///< makes this picture alone
+  const PipelineFile& pipeline;  ///< makes only this picture
   size_t number, count;
   double time;
 };
@@ -29,7 +29,7 @@ struct FilmCallbacks {
 };
 
 /// Makes the pictures; returns their times. A parameter written as {t} takes the time; else the steps that have a time do, unless they
-/// state one. The next step is read or computed while one is drawn, where context.memory_limit lets two be in memory. Notes are told once.
+/// state one. The next step is read or computed while one is drawn, where context.memory_limit lets two be in memory. Notes are given once.
 /// Throws Error(usage) where nothing has times.
 std::vector<double> make_film(PipelineFile file, const FilmParams& params, const PictureOptions& options, const FilmCallbacks& callbacks,
                               Context& context);

@@ -8,11 +8,11 @@
 namespace sg {
 
 void describe(Schema& s, FilmParams& p) {
-  s("output", p.output, "Picture to write; {n} in its name numbers the pictures of a time series; .webm, .mp4: a film of them.")
+  s("output", p.output, "Picture to write; {n} in the name numbers the pictures of a time series; .webm or .mp4 makes a film of them.")
       .unit("new file");
   s("times", p.times,
-    "With {n} in the output, or a film: the times to draw, like 0:10:101 (first:last:count), 0,0.5,1 or 0:114 (the steps of the file in "
-    "between); default: all of the file. A parameter written as {t} takes the time.")
+    "With {n} in the output, or for a film: the times to draw, e.g. 0:10:101 (first:last:count), 0,0.5,1 or 0:114 (the steps of the file "
+    "in between); default: all in the file. {t} as the value of a parameter stands for the time.")
       .unit("time");
   s("fps", p.fps, "Films: pictures per second.").range(0.1, 1000);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is said of a film beside its pipeline and its pictures; in a pipeline file it stands under `picture`.
+// Parameters of a film besides its pipeline and its pictures; in a pipeline file they are under `picture`.
 #pragma once
 #include <string>
 #include <string_view>
@@ -19,7 +19,7 @@ void describe(Schema& s, FilmParams& p);
 
 /// Words under `picture` that are parameters of the film. A recipe and a single picture do without them.
 bool is_film_word(std::string_view word);
-/// Sets what a pipeline file says of its film, and takes it out of the file. Throws Error(usage).
+/// Takes what a pipeline file says about its film out of the file. Throws Error(usage).
 void take_film_words(PipelineFile& file, FilmParams& params);
 
 }  // namespace sg

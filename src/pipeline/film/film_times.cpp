@@ -15,7 +15,7 @@ namespace sg {
 
 namespace {
 
-// Writes the time where a parameter asks for it: 'lic kernel=ripple phase={t}'. False when none does.
+// Writes the time where a parameter requests it: 'lic kernel=ripple phase={t}'. False when none does.
 bool write_time(PipelineFile& file, double time) {
   constexpr std::string_view here = "{t}";
   bool written = false;
@@ -80,24 +80,24 @@ std::vector<double> times_to_draw(const std::string& asked, const PipelineFile& 
   if (!asked.empty() && !range) return parse_times(asked, "--times");
   const auto first = range ? parse_double(ends[0]) : -HUGE_VAL, last = range ? parse_double(ends[1]) : HUGE_VAL;
   if (!first || !last || !(*first <= *last))
-    fail_usage(fmt::format("'{}' is no range of times", asked), "--times", "FIRST:LAST, FIRST:LAST:COUNT, or a list");
+    fail_usage(fmt::format("'{}' is not a range of times", asked), "--times", "write FIRST:LAST, FIRST:LAST:COUNT, or a list");
   std::vector<double> times;
   const bool computed = std::any_of(file.steps.begin(), file.steps.end(), [](const PipelineFile::Step& s) {
     const Operation* op = known_operation(s.operation);
     return op && op->kind == OperationKind::source;
   });
-  if (reads.path.empty() && !computed) fail_usage("has no time steps", reads.first, "a picture without {n} in its name shows it");
+  if (reads.path.empty() && !computed) fail_usage("has no time steps", reads.first, "leave {n} out of the picture's name");
   if (const std::vector<double>& all = reads.times; !reads.path.empty()) {
     for (size_t k = 0; k < all.size(); ++k)
       if (all[k] >= *first && all[k] <= *last) times.push_back(all[k]), steps.push_back(k);
     if (times.empty())
-      fail_usage(
-          fmt::format("no time step of '{}' lies there: it has {} to {}", reads.path, exact_number(all.front()), exact_number(all.back())),
-          "--times", "FIRST:LAST in the times of the file");
+      fail_usage(fmt::format("no time step of '{}' lies in that range: it has {} to {}", reads.path, exact_number(all.front()),
+                             exact_number(all.back())),
+                 "--times", "give FIRST:LAST within the times of the file");
   } else if (range && *last - *first < 1e6) {
     for (int k = 0; *first + k <= *last; ++k) times.push_back(*first + k);
   } else {
-    fail_usage("a series of a source needs its times", "--times", "FIRST:LAST:COUNT, like --times 0:10:101");
+    fail_usage("a series from a source needs times", "--times", "give FIRST:LAST:COUNT, e.g. --times 0:10:101");
   }
   return times;
 }
@@ -140,7 +140,7 @@ PipelineFile at_time(PipelineFile file, const FilmTimes& film, size_t n) {
     }
   }
   if (!moves && !source.empty())
-    fail_usage(fmt::format("the source '{}' has no time, or states one", source), "--times",
+    fail_usage(fmt::format("the source '{}' has no parameter 'time', or it is already set", source), "--times",
                "a series needs a source with a parameter 'time'");
   return file;
 }

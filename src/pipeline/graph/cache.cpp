@@ -139,7 +139,7 @@ struct Cache::State {
 
   void keep(const Key& key, const Data& data, std::vector<Data>& dying) {
     living.insert_or_assign(key, weakened(data));
-    if (living.size() > sweep_at) {  // forget the dead now and then, at constant cost per result
+    if (living.size() > sweep_at) {  // drop dead entries now and then, at constant cost per result
       std::erase_if(living, [](const auto& item) { return !locked(item.second); });
       sweep_at = 2 * living.size() + 64;
     }

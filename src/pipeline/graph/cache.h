@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cache: results by key. Keeps the last used up to a limit of bytes, finds what somebody else still holds, and lets one
-// thread compute what several ask for at once.
+// Cache: results by key. Keeps the most recently used up to a limit of bytes, finds what is still held elsewhere, and lets one thread
+// compute what several request at once.
 #pragma once
 #include <functional>
 #include <memory>
@@ -24,14 +24,14 @@ class Cache {
   Cache(const Cache&) = delete;
   Cache& operator=(const Cache&) = delete;
 
-  /// The result of that key, when it is kept or somebody holds it; counts as a use.
+  /// The result for that key, if it is cached or still held somewhere; counts as a use.
   std::optional<Data> find(const Key& key);
   /// Its bytes when find() would find it; does not count as a use.
   std::optional<uint64_t> peek(const Key& key) const;
 
-  /// find(), or else compute() and remember. While one thread computes, others that ask for the key wait for it (and stop
+  /// find(), or else compute() and remember. While one thread computes, others that request the key wait for it (and stop
   /// waiting when their own context is cancelled). When compute() throws, the error leaves here and a waiting thread computes.
-  /// compute() may ask for other keys, as long as the keys form no circle.
+  /// compute() may request other keys, as long as the keys form no cycle.
   Data find_or_compute(const Key& key, Context& context, const std::function<Data()>& compute);
 
   uint64_t limit() const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Running a plan: from the targets up, each step when it is first asked for.
+// Running a plan: from the targets up, each step when first requested.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ class Evaluation {
   }
 
  private:
-  // Number of steps that will run as far as the cache can tell now.
+  // Number of steps that will run, as far as the cache can tell now.
   void count_work(int step) {
     if (done_[size_t(step)]) return;
     done_[size_t(step)] = 1;

@@ -112,7 +112,7 @@ std::vector<PlannedStep> Graph::plan(std::span<const Target> targets) const {
       for (const int in : plan.steps[i].inputs) needed[size_t(in)] = 1;
     if (runs && plan.steps[i].series >= 0) in_series[size_t(plan.steps[i].series)] = 1;
   }
-  // Behind a series everything is asked for time by time, what hangs on no time once.
+  // Upstream of a series everything is requested for each time, and what does not depend on time once.
   for (size_t i = out.size(); i-- > 0;) {
     if (!in_series[i]) continue;
     if (out[i].state == PlannedStep::State::not_needed) out[i].state = PlannedStep::State::each_time;

@@ -72,7 +72,7 @@ NodeId Graph::State::add(Node node, OperationNode op, const std::vector<NodeId>&
   double joined = 0;
   const bool joins = op.found && op.found->max_inputs < 0;
   for (const NodeId in : inputs) {
-    if (in < 0 || in >= id) mistake(fmt::format("{}: input {} is no earlier step", op.operation, in + 1));
+    if (in < 0 || in >= id) mistake(fmt::format("{}: input {} is not an earlier step", op.operation, in + 1));
     else {
       node.inputs.push_back(in), deepest = std::max(deepest, depth[size_t(in)] + 1);
       const double of = copies[size_t(in)];
@@ -80,8 +80,7 @@ NodeId Graph::State::add(Node node, OperationNode op, const std::vector<NodeId>&
     }
   }
   if (deepest > deepest_chain) mistake(fmt::format("the chain of steps is longer than {}", deepest_chain));
-  if (joined > most_copies)
-    mistake(fmt::format("{}: steps that join their inputs, one upon the other, would join {:.3g} meshes", op.operation, joined));
+  if (joined > most_copies) mistake(fmt::format("{}: nested steps that join their inputs would join {:.3g} meshes", op.operation, joined));
   if (op.found && node.inputs.size() == inputs.size()) {
     const int n = int(inputs.size()), lo = op.found->min_inputs, hi = op.found->max_inputs;
     if (lo == 0 && hi == 0 && n > 0) mistake(fmt::format("{}: is a source and takes no input", op.operation));
@@ -123,7 +122,7 @@ std::optional<std::vector<std::string>> known_fields(const Node& node, const Gra
   }
   auto* given = std::get_if<DataNode>(&node.what);
   if (!given || std::holds_alternative<TablePtr>(given->data)) return std::nullopt;
-  if (auto* d = std::get_if<DatasetPtr>(&given->data); d && !*d) return std::nullopt;  // stands for what is not at hand
+  if (auto* d = std::get_if<DatasetPtr>(&given->data); d && !*d) return std::nullopt;  // placeholder for what is not available
   std::vector<std::string> names;
   std::unordered_set<std::string> known;
   for_each_dataset(given->data, [&](const std::string&, const DatasetPtr& d) {
@@ -193,7 +192,7 @@ void throw_mistakes(const std::vector<Mistake>& mistakes) {
     if (m.kind == ErrorKind::usage) kind = ErrorKind::usage;
   if (mistakes.size() == 1) throw Error(kind, mistakes[0].text);
   constexpr size_t shown = 50;
-  std::string text = fmt::format("{} mistakes:", mistakes.size());
+  std::string text = fmt::format("{} errors:", mistakes.size());
   for (size_t i = 0; i < std::min(shown, mistakes.size()); ++i) text += "\n  " + mistakes[i].text;
   if (mistakes.size() > shown) text += fmt::format("\n  ... and {} more", mistakes.size() - shown);
   throw Error(kind, text);

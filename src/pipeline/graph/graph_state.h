@@ -35,7 +35,7 @@ struct Graph::State {
   std::shared_ptr<Cache> cache;
   std::vector<Node> nodes;
   std::vector<int> depth;      ///< longest chain above each node
-  std::vector<double> copies;  ///< how often one and the same input may stand in each node's result: steps that join several add up
+  std::vector<double> copies;  ///< how often one input may occur in each node's result: steps that join several add up
 
   NodeId add(Node node, OperationNode operation, const std::vector<NodeId>& inputs);
 };
@@ -57,8 +57,8 @@ struct Step {
   ReadOptions read;
   std::vector<int> inputs;  ///< indices of steps, all smaller than its own
   int consumers = 0;        ///< inputs of other steps and targets that refer to it; those behind a series alone have none
-  int series = -1;          ///< step of the input that is taken time by time: it stands here for its key, and is never run as such
-  bool varies = false;      ///< its result belongs to the time asked for; known in plans for one time of a series
+  int series = -1;          ///< step of the input that is taken time by time: it is here for its key and is never run as such
+  bool varies = false;      ///< its result belongs to the requested time; known in plans for one time of a series
 };
 
 struct Plan {
@@ -69,7 +69,7 @@ struct Plan {
 /// The friend of Graph that sees its state.
 class Planner {
  public:
-  /// `constant` (one per node, or null): readers that are not told the time.
+  /// `constant` (one per node, or null): readers that do not get the time.
   static Plan make(const Graph& graph, std::span<const Target> targets, const std::vector<char>* constant = nullptr);
   static const Graph::State& state(const Graph& graph) { return *graph.state_; }
 };

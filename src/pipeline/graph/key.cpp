@@ -63,7 +63,7 @@ bool separates(char c) {
 
 }  // namespace
 
-// Without knowing the formats: every word with a dot in it that is the name of a file beside the header.
+// Without knowing the formats: every word with a dot that names a file next to the header.
 std::vector<FileState> file_and_parts(const std::string& path) {
   std::vector<FileState> files{file_state(path)};
   if (!files[0].exists || files[0].size == 0 || !names_parts(path)) return files;
@@ -84,7 +84,7 @@ std::vector<FileState> file_and_parts(const std::string& path) {
 
 namespace {
 
-// Of a series its files alone: looking into the headers of a thousand of them would take longer than reading one.
+// Of a series only its files: looking into the headers of a thousand of them would take longer than reading one.
 std::vector<FileState> files_behind(const std::string& path) {
   if (!names_series(path)) return file_and_parts(path);
   std::vector<FileState> files;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Key: 128 bits that stand for the content of a result, the same in every run. Equal keys are taken to be equal results.
+// Key: 128 bits that identify the content of a result, the same in every run. Equal keys are taken to be equal results.
 #pragma once
 #include <compare>
 #include <cstdint>
@@ -42,7 +42,7 @@ struct FileState {
 };
 FileState file_state(const std::string& path);
 
-/// The file and the files beside it that a header of its kind (mhd, nhdr, pvtu, vtm, pvd, xdmf, ...) names, as far as they exist.
+/// The file and the files next to it that a header of its kind (mhd, nhdr, pvtu, vtm, pvd, xdmf, ...) names, as far as they exist.
 std::vector<FileState> file_and_parts(const std::string& path);
 
 /// Of path, size and time of change of the file and its parts; with `strict` of their contents too (reads them whole).

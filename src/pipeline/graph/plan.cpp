@@ -21,7 +21,7 @@ void want(std::vector<Request>& wanted, const Request& r) {
   wanted.push_back(r);
 }
 
-// What the reader is told: the user's list of fields, cut to what is needed.
+// What the reader is given: the user's list of fields, cut to what is needed.
 ReadOptions read_for(ReadOptions options, const Request& request) {
   if (request.time && !options.time && options.step < 0) options.time = request.time;
   if (request.pieces > 1 && options.pieces == 1) options.piece = request.piece, options.pieces = request.pieces;
@@ -45,7 +45,7 @@ Key read_key(const std::string& path, const ReadOptions& o, const Request& reque
   for (size_t a = 0; a < 3; ++a) key.add(uint64_t(o.region.lo[a])).add(uint64_t(o.region.hi[a])).add(uint64_t(o.region.stride[a]));
   key.add(uint64_t(o.piece)).add(uint64_t(o.pieces)).add(uint64_t(o.ghost_levels));
   if (request.region) key.add(request_text(request));
-  Request rest = request;  // the fields stand in the options
+  Request rest = request;  // the fields are in the options
   rest.all_fields = true, rest.fields.clear();
   if (custom_reader) key.add(request_text(rest));
   return key.key();
@@ -67,7 +67,7 @@ Request timeless(Request r) {
   return r;
 }
 
-// Consumers that may ask for a result; what only a series refers to is evaluated elsewhere.
+// Consumers that may request a result; what only a series refers to is evaluated elsewhere.
 void count_consumers(Plan& plan) {
   std::vector<char> asked(plan.steps.size(), 0);
   for (const int t : plan.targets) asked[size_t(t)] = 1, ++plan.steps[size_t(t)].consumers;
@@ -95,7 +95,7 @@ Plan Planner::make(const Graph& graph, std::span<const Target> targets, const st
   if (sinks.empty()) return {};
   if (const auto found = find_mistakes(g.nodes, g.options, sinks); !found.empty()) throw_mistakes(found);
 
-  // Up: what every node is asked for. A node has a larger number than its inputs, so going down is an order.
+  // Up: the request to every node. A node has a larger number than its inputs, so going down is an order.
   std::vector<std::vector<Request>> wanted(g.nodes.size());
   for (const Target& t : targets) want(wanted[size_t(t.node)], t.request);
   for (size_t i = g.nodes.size(); i-- > 0;)
@@ -113,7 +113,7 @@ Plan Planner::make(const Graph& graph, std::span<const Target> targets, const st
   auto find_step = [&](NodeId node, const Request& request) {
     for (size_t r = 0; r < wanted[size_t(node)].size(); ++r)
       if (can_merge(wanted[size_t(node)][r], request)) return step_of[size_t(node)][r];
-    fail_internal("a request was lost on its way");
+    fail_internal("a request got lost");
   };
   for (size_t i = 0; i < g.nodes.size(); ++i) {
     const Node& node = g.nodes[i];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Request: what the one who pulls needs of a result. It is rewritten on its way up the graph, so that a reader loads only that.
+// Request: what the consumer needs of a result. It is rewritten on its way up the graph, so that a reader loads only that.
 #pragma once
 #include <optional>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace sg {
 
-/// A result may hold more than was asked for, never less. The default asks for everything.
+/// A result may hold more than requested, never less. The default requests everything.
 struct Request {
   bool all_fields = true;
   std::vector<std::string> fields;  ///< without all_fields: the names needed, sorted, each once; none = the mesh alone
@@ -24,7 +24,7 @@ struct Request {
 
 /// Adds a field name, keeping the order; no effect with all_fields.
 void add_field(Request& request, const std::string& name);
-/// True when one result can serve both: they differ in fields alone.
+/// True when one result can serve both: they differ only in fields.
 bool can_merge(const Request& a, const Request& b);
 /// The fields of both.
 Request merged(Request a, const Request& b);

@@ -18,22 +18,23 @@ std::vector<double> parse_times(std::string_view text, std::string_view who) {
     const auto a = parse_double(ends[0]), b = parse_double(ends[1]);
     const auto n = parse_int(ends[2]);
     if (!a || !b || !n || *n < 1 || *n > 1000000 || !std::isfinite(*a) || !std::isfinite(*b))
-      fail_usage(fmt::format("'{}' is no list of times", text), std::string(who), "FIRST:LAST:COUNT, like 0:10:101");
+      fail_usage(fmt::format("'{}' is not a list of times", text), std::string(who), "give FIRST:LAST:COUNT, e.g. 0:10:101");
     for (int64_t i = 0; i < *n; ++i) times.push_back(*n == 1 ? *a : *a + (*b - *a) * double(i) / double(*n - 1));
     return times;
   }
   for (const std::string_view part : split(text, ',')) {
     const auto t = parse_double(part);
-    if (!t || !std::isfinite(*t)) fail_usage(fmt::format("'{}' is no list of times", text), std::string(who), "like 0,0.5,1 or 0:1:101");
+    if (!t || !std::isfinite(*t))
+      fail_usage(fmt::format("'{}' is not a list of times", text), std::string(who), "write e.g. 0,0.5,1 or 0:1:101");
     times.push_back(*t);
   }
-  if (times.empty()) fail_usage("names no time", std::string(who), "like 0,0.5,1 or 0:1:101");
+  if (times.empty()) fail_usage("does not name any time", std::string(who), "write e.g. 0,0.5,1 or 0:1:101");
   return times;
 }
 
 namespace {
 
-// What the nodes above say of time.
+// Times known to the nodes above.
 struct Above {
   std::vector<double> times;   // of files
   std::string file;            // the first that has them
@@ -62,7 +63,7 @@ Above look_above(const std::vector<Node>& nodes, const GraphOptions& options, No
     else if (times != above.times)
       fail_usage(fmt::format("'{}' has {} time steps ({} to {}), '{}' {} ({} to {})", above.file, above.times.size(), above.times.front(),
                              above.times.back(), read->path, times.size(), times.front(), times.back()),
-                 {}, "files of one series have the same times");
+                 {}, "files of one series must have the same times");
   }
   return above;
 }
@@ -77,7 +78,7 @@ void check_listed(const std::vector<double>& asked, const Above& above) {
       if (std::abs(have - t) < std::abs(near - t)) near = have;
     if (std::abs(near - t) > std::max(1e-12 * std::abs(t), gap < HUGE_VAL ? 1e-6 * gap : 0.0))
       fail_usage(fmt::format("there is no step at the time {}", exact_number(t)), above.file,
-                 fmt::format("it has {} from {} to {}, the nearest is {}", above.times.size(), exact_number(above.times.front()),
+                 fmt::format("it has {} from {} to {}; the nearest is {}", above.times.size(), exact_number(above.times.front()),
                              exact_number(above.times.back()), exact_number(near)));
   }
 }
@@ -95,10 +96,10 @@ Series SeriesInput::open(const Graph& graph, const Node& consumer, const Request
   if (!times.empty() && !above.times.empty()) check_listed(times, above);
   if (times.empty()) times = above.times;
   if (times.empty() && !above.any_time.empty())
-    fail_usage(fmt::format("'{}' can be computed for any time: say for which", above.any_time), who,
-               "times=FIRST:LAST:COUNT, like times=0:10:101");
+    fail_usage(fmt::format("'{}' can be computed for any time, so times are needed", above.any_time), who,
+               "give times=FIRST:LAST:COUNT, e.g. times=0:10:101");
   if (times.empty()) times = {0};
-  // One step after the other says the same.
+  // Every step gives the same note.
   auto told = std::make_shared<std::set<std::string>>();
   Series series;
   series.times = times;

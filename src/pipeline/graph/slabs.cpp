@@ -32,13 +32,13 @@ std::string bounds_word(Vec3 lo, Vec3 hi) {
 
 SlabSource slabs_of_source(const std::string& operation, const std::vector<std::string>& words, Context& context) {
   const Operation& op = find_operation(operation);
-  if (op.kind != OperationKind::source) fail_usage("is no source", operation, "see: sightglass ops");
+  if (op.kind != OperationKind::source) fail_usage("is not a source", operation, "see: sightglass ops");
   const ParamSet params = make_params(op, words);  // all mistakes before any work
   const bool by_place =
       params.schema.find("dims") && params.schema.find("bounds") && params.schema.find("size") && !params.schema.find("seed");
   if (!by_place) return slabs_of_dataset(single_dataset(run_operation(op, {}, words, context), operation), operation, context);
 
-  // A few points of it tell its box, its field and its type.
+  // A few points of it give its box, its field and its type.
   std::vector<std::string> few = without_grid(words);
   for (const std::string& w : words)
     if (says(w, "bounds")) few.push_back(w);

@@ -8,8 +8,8 @@
 
 namespace sg {
 
-/// For sources with the parameters of analytic grids (dims, bounds) whose values depend on the place alone: each slab is a run of its own
-/// with other dims and bounds. Others are computed whole. Throws Error(usage) for results that are no uniform grid with a point field.
+/// For sources with the parameters of analytic grids (dims, bounds) whose values depend only on position: each slab is a run of its own
+/// with other dims and bounds. Others are computed whole. Throws Error(usage) for results that are not a uniform grid with a point field.
 SlabSource slabs_of_source(const std::string& operation, const std::vector<std::string>& words, Context& context);
 
 }  // namespace sg

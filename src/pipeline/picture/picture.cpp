@@ -17,24 +17,25 @@
 namespace sg {
 
 void describe(Schema& s, PictureParams& p) {
-  s("size", p.size, "Width and height in pixels, like 1920x1080.");
-  s("background", p.background, "Colour behind everything, two colours bottom/top for a gradient, or 'transparent'.");
-  s("title", p.title, "Text above the picture.");
-  s("legend", p.legend, "Draw the legends of colours.");
+  s("size", p.size, "Width and height in pixels, e.g. 1920x1080.");
+  s("background", p.background, "Background colour, two colours bottom/top for a gradient, or 'transparent'.");
+  s("title", p.title, "Title above the picture.");
+  s("legend", p.legend, "Draw the colour legends.");
   s("axes", p.axes, "Draw the bounding box with numbers.");
   s("triad", p.triad, "Draw the orientation axes.");
   s("samples", p.samples, "Samples per pixel and axis; 0 chooses 2 for surfaces, 1 for volumes.").range(0, 4);
   s("adaptive", p.adaptive,
-    "Above 0: all samples only where neighbouring pixels differ by more than this share of full scale; 0 takes all of them everywhere.")
+    "Above 0: take all samples only where neighbouring pixels differ by more than this share of full scale; 0: take all of them "
+    "everywhere.")
       .range(0, 1);
-  s("text", p.text, "Size factor of all text.").range(0.2, 10);
+  s("text", p.text, "Scale factor of all text.").range(0.2, 10);
 }
 
 void parse_size(const std::string& text, int& width, int& height) {
   const auto parts = split(text, 'x');
   const auto w = parts.size() == 2 ? parse_int(parts[0]) : std::nullopt, h = parts.size() == 2 ? parse_int(parts[1]) : std::nullopt;
   if (!w || !h || *w < 1 || *h < 1 || *w > 32768 || *h > 32768)
-    fail_usage(fmt::format("'{}' is not a size", text), "size", "write width x height from 1 to 32768, like 1280x720");
+    fail_usage(fmt::format("'{}' is not a size", text), "size", "write width x height from 1 to 32768, e.g. 1280x720");
   width = int(*w), height = int(*h);
 }
 
@@ -70,7 +71,7 @@ StatedPicture stated_in(const PipelineFile& file) {
   } else {
     const auto parts = split(s.picture.background, '/');
     if (parts.empty() || parts.size() > 2)
-      fail_usage(fmt::format("'{}' is not a background", s.picture.background), "background", "like white, or white/skyblue");
+      fail_usage(fmt::format("'{}' is not a background", s.picture.background), "background", "write e.g. white, or white/skyblue");
     s.bottom = parse_color(parts[0], "background");
     if (parts.size() == 2) s.top = parse_color(parts[1], "background");
   }
@@ -120,7 +121,7 @@ bool has_nan(const Scene& scene) {
   return false;
 }
 
-// What the results of all shows come to.
+// The combined results of all shows.
 struct Shown {
   Scene scene;
   std::vector<Legend> legends;  // each once
@@ -174,7 +175,7 @@ Annotation annotation_of(const StatedPicture& stated, const Shown& shown, const 
 Picture make_picture(PipelineFile& file, const PictureOptions& options, Context& context) {
   const StatedPicture stated = stated_in(file);
   load_transfer_files(file);
-  stated_shows(file);  // mistakes are told before anything runs
+  stated_shows(file);  // mistakes are reported before anything runs
   const auto cache = options.cache ? options.cache : std::make_shared<Cache>(0);
   std::vector<Data> held;
   Picture picture;
@@ -189,7 +190,7 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   const std::vector<Data> results = built.graph.evaluate(targets, context);
   held.clear();
 
-  // What the notes say already, and what several parts say alike, is said once.
+  // What the notes already say, or several parts say alike, is given once.
   Context once(context, 0, 1);
   std::vector<std::string> said = picture.notes;
   once.on_log = [&](LogLevel level, std::string_view text) {

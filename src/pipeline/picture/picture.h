@@ -38,7 +38,7 @@ struct Picture;
 /// One of several pictures of a volume that memory does not hold.
 struct PictureDraft {
   std::string made_of;      ///< "level 3 of 7 (204x204x204)": what is in memory; or "bricks"
-  double voxel_pixels = 1;  ///< a voxel covers so many pixels at most (where the memory allowed is enough for that)
+  double voxel_pixels = 1;  ///< largest number of pixels a voxel covers (if the allowed memory suffices)
   bool compared = false;
   double most = 0, mean = 0;  ///< of full scale: change from the picture with voxels of about twice that size, an estimate of the error
 };
@@ -48,7 +48,7 @@ inline constexpr std::string_view auto_show = "auto";
 
 struct PictureOptions {
   std::shared_ptr<Cache> cache;  ///< shared between pictures; null = one of its own
-  /// For volumes that memory does not hold: gets a picture at once, then finer ones; the final one is returned alone. Not called for
+  /// For volumes that memory does not hold: gets a picture at once, then finer ones; only the final one is returned. Not called for
   /// others.
   std::function<void(const Picture&, const PictureDraft&)> on_draft;
   std::optional<std::chrono::steady_clock::time_point> until;  ///< with on_draft: then the finest picture so far is returned
@@ -62,7 +62,7 @@ struct Picture {
   std::vector<PictureDraft> drafts;  ///< with on_draft: of each that was made, this one last
 };
 
-/// Evaluates the steps, shows what is asked for (or what the data suggests when nothing is), renders and annotates.
+/// Evaluates the steps, shows what is requested (or else what the data suggests), renders and annotates.
 /// `file` is completed with what was chosen, so that recipe_of() gives the recipe. All mistakes that can be seen beforehand are
 /// reported together, before anything runs.
 Picture make_picture(PipelineFile& file, const PictureOptions& options, Context& context);
@@ -71,13 +71,13 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
 /// the folder of `picture_path`, where the picture is going to be.
 void attach_recipe(Image& image, const PipelineFile& file, const std::string& picture_path);
 
-/// The recipe inside a picture as it stands there, to be looked at. Throws Error(data) when there is none.
+/// The recipe inside a picture as stored, for inspection. Throws Error(data) when there is none.
 PipelineFile recipe_in(const Image& image, const std::string& picture_path);
 /// The recipe inside a picture, to be followed; its relative paths begin at the picture. Throws Error(data) when there is none,
-/// Error(usage) when it breaks check_recipe(). `changed` receives the inputs whose content is no longer what it was.
+/// Error(usage) when it breaks check_recipe(). `changed` receives the inputs whose content has changed.
 PipelineFile recipe_in(const Image& image, const std::string& picture_path, std::vector<std::string>& changed);
 
-/// A recipe is data from outside, whoever made the picture: it may write no file (parameters in the unit "new file"), and read only below
+/// A recipe is untrusted data, whoever made the picture: it may write no file (parameters in the unit "new file"), and read only below
 /// the folder of the picture or the working folder (unit "file"). Throws one Error(usage) that names all steps and files in the way;
 /// reading is allowed by allow_reading_anywhere(). See docs/security.md.
 void check_recipe(const PipelineFile& recipe, const std::string& picture_path);

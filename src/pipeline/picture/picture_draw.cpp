@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture beside its legends, and the box behind the data.
+// The picture without its legends, and the box behind the data.
 #include "pipeline/picture/picture_parts.h"
 #include "render/render.h"
 
@@ -12,7 +12,7 @@ void place_left(const Frame& part, Frame& whole) {
   for (int y = 0; y < part.height; ++y) {
     const size_t from = size_t(y) * size_t(part.width), to = size_t(y) * size_t(whole.width);
     std::copy_n(&part.rgba[4 * from], 4 * size_t(part.width), &whole.rgba[4 * to]);
-    // The background goes on to the right.
+    // The background continues to the right.
     for (int x = part.width; x < whole.width; ++x)
       std::copy_n(&part.rgba[4 * (from + size_t(part.width) - 1)], 4, &whole.rgba[4 * (to + size_t(x))]);
   }
@@ -73,7 +73,7 @@ Image draw_picture(const Scene& scene, const Camera& camera, const StatedPicture
   RenderOptions options;
   options.width = width_beside_legends(annotation, s), options.height = s.height, options.samples = s.picture.samples;
   options.adaptive = s.picture.adaptive, options.coarser = coarser;
-  // The frame, one of single samples, and one of all columns where a legend stands beside it.
+  // The frame, one of single samples, and one of all columns if a legend is next to it.
   check_picture_memory(s.width, s.height, 1 + (options.width < s.width || options.adaptive > 0 ? 1 : 0));
   Frame frame = render(scene, camera, options, context);
   const Projection projection = make_projection(camera, options.width, options.height);

@@ -13,7 +13,7 @@
 
 namespace sg {
 
-/// What the words under `picture` say.
+/// Settings from the words under `picture`.
 struct StatedPicture {
   PictureParams picture;
   CameraParams camera;
@@ -32,7 +32,7 @@ StatedPicture stated_in(const PipelineFile& file);
 /// The file a step's data comes from, for hints by extension; "" for sources.
 std::string origin_of(const PipelineFile& file, std::string step);
 /// Adds options.coloring to every way to show that colours by a field, and puts what suits the data in the place of every `auto` show (when
-/// nothing is shown: of every step that nobody takes as input), adding steps to the file where needed. Returns the look of the first
+/// nothing is shown: of every step that no other takes as input), adding steps to the file where needed. Returns the look of the first
 /// `auto`; one without shows where there is none. `held` keeps what was looked at, so that the cache finds it again and nothing is computed
 /// twice.
 Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::shared_ptr<Cache>& cache, std::vector<Data>& held,
@@ -40,9 +40,9 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::
 
 /// The edges of the box that do not lie in front of the data: those with a face turned away from the camera.
 LinesItem back_edges(const Box3& box, const Camera& camera);
-/// Width of the picture itself, beside its legends.
+/// Width of the picture itself, without its legends.
 int width_beside_legends(const Annotation& annotation, const StatedPicture& stated);
-/// Renders to the left of the legends, goes on with the background to the right, and annotates.
+/// Renders to the left of the legends, continues the background to the right, and annotates.
 /// `coarser` as in RenderOptions.
 Image draw_picture(const Scene& scene, const Camera& camera, const StatedPicture& stated, const Annotation& annotation, double coarser,
                    Context& context);

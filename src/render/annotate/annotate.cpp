@@ -58,7 +58,7 @@ int legend_width(const Annotation& a, int width, int height) {
 
 void annotate(Image& image, const Annotation& a, const Projection& projection) {
   if (image.channels < 3)
-    fail_usage(fmt::format("an image of {} channels cannot be annotated", image.channels), "annotate", "3 or 4 channels");
+    fail_usage(fmt::format("an image of {} channels cannot be annotated", image.channels), "annotate", "3 or 4 channels are needed");
   if (image.width < 1 || image.height < 1) fail_usage("an image without pixels cannot be annotated", "annotate");
   Overlay overlay(image.width, image.height, a.dark_background);
   const Plan p = plan(overlay, a, image.width, image.height);

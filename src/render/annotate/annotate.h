@@ -24,7 +24,7 @@ struct Annotation {
   bool triad = true;                ///< orientation axes, lower left
   bool show_nan_in_legend = false;  ///< NaN swatch (the data has NaN)
   bool dark_background = false;     ///< light text
-  double scale = 1;                 ///< text size factor; 1 = good for 720 lines, grows with the picture's height by itself
+  double scale = 1;                 ///< text size factor; 1 suits 720 lines, and text grows with the picture's height
 };
 
 /// Pixels on the right that legends will take (0 without legends): the caller moves the picture's centre by half of it.

@@ -12,7 +12,7 @@ double dot_of(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
 
 Vec3 corner(const Box3& b, int i) { return {i & 1 ? b.hi.x : b.lo.x, i & 2 ? b.hi.y : b.lo.y, i & 4 ? b.hi.z : b.lo.z}; }
 
-/// Does the face of the box on the low or high side of an axis turn towards the viewer?
+/// Whether the face of the box on the low or high side of an axis faces the viewer.
 bool faces_viewer(const Box3& b, int axis, bool high, const Projection& p) {
   if (p.parallel) return (high ? -1 : 1) * p.forward[axis] > 1e-9;
   const double slack = 1e-9 * (std::abs(p.eye[axis]) + b.diagonal());

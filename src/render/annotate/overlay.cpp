@@ -34,8 +34,7 @@ void require_a_font(PangoContext* context) {
   PangoFontDescription* wanted = pango_font_description_from_string("DejaVu Sans 10");
   PangoFont* font = pango_context_load_font(context, wanted);
   pango_font_description_free(wanted);
-  if (!font)
-    fail_internal("no font is installed, so nothing can be written on pictures; install the package fonts-dejavu-core", "annotate");
+  if (!font) fail_internal("no font is installed, so pictures cannot have text; install the package fonts-dejavu-core", "annotate");
   g_object_unref(font);
 }
 
@@ -109,7 +108,8 @@ Overlay::Overlay(int width, int height, bool dark_background)
   Parts& p = *parts_;
   p.surface.reset(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height));
   if (cairo_surface_status(p.surface.get()) != CAIRO_STATUS_SUCCESS)
-    fail_usage(fmt::format("a picture of {} x {} pixels cannot be written on", width, height), "annotate", "at most 32767 each way");
+    fail_usage(fmt::format("a picture of {} x {} pixels cannot be annotated", width, height), "annotate",
+               "at most 32767 along each side are supported");
   p.cr.reset(cairo_create(p.surface.get()));
   PangoFontMap* fonts = pango_cairo_font_map_get_default();  // kept by Pango, one per thread: loading fonts is slow
   p.context.reset(pango_font_map_create_context(fonts));

@@ -11,7 +11,7 @@ namespace sg {
 void check_fragments(const FragmentLists& fragments, const Frame& frame) {
   if (fragments.empty()) return;
   if (fragments.start.size() != frame.pixels() + 1 || fragments.start.back() != fragments.fragments.size())
-    fail_internal(fmt::format("the fragment lists are not those of a frame of {} x {}", frame.width, frame.height));
+    fail_internal(fmt::format("the fragment lists do not belong to a frame of {} x {}", frame.width, frame.height));
 }
 
 void composite_fragments(const FragmentLists& fragments, Frame& frame, const Context& context) {

@@ -135,7 +135,7 @@ int glyph_shift(size_t instances, size_t most) {
   while ((size_t(1) << shift) < most) ++shift;
   if ((instances << shift) >= size_t(UINT32_MAX) || instances >= size_t(INT32_MAX) / 12)
     fail_usage(fmt::format("{} glyphs of {} primitives are more than a picture holds", instances, most), "glyphs",
-               "take fewer points (glyph_points) or a simpler shape");
+               "use fewer points (glyph_points) or a simpler shape");
   return shift;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// GlyphSet: shapes that stand at many points, and where. What glyphs are drawn from.
+// GlyphSet: shapes placed at many points. What glyphs are drawn from.
 #pragma once
 #include <memory>
 #include <vector>

@@ -36,10 +36,10 @@ namespace {
 constexpr size_t grain = 1 << 15;
 
 const Field& color_field(const Dataset& data, const FieldColor& c, const char* where) {
-  if (c.association == Association::whole) fail_usage("colours come from points or cells, not from the whole", where);
+  if (c.association == Association::whole) fail_usage("colours need a point or cell field, not one of the whole dataset", where);
   const Field& f = with_context("colouring", [&]() -> const Field& { return data.fields().require(c.field, c.association); });
   if (!c.direct && c.component >= f.components())
-    fail_usage(fmt::format("field '{}' has {} components, no component {}", f.name, f.components(), c.component), where,
+    fail_usage(fmt::format("field '{}' has {} components; there is no component {}", f.name, f.components(), c.component), where,
                fmt::format("give 0 to {}", f.components() - 1));
   return f;
 }
@@ -106,7 +106,7 @@ Scalars scalars_of(const Field& f, int component) {
   return s;
 }
 
-/// May a pixel of this field be left out (out of range and not clamped)?
+/// Whether a pixel of this field may be left out (out of range and not clamped).
 bool may_vanish(const Dataset& data, const Field& f, const FieldColor& c) {
   if (c.scale.clamp) return false;
   const Range r = data.range(f, c.component);
@@ -304,8 +304,8 @@ class Preparation {
     if (!s.normals.empty()) {
       f = &fields.require(s.normals, Association::point);
       if (f->components() != 3)
-        fail_usage(fmt::format("field '{}' has {} components and cannot be normals", f->name, f->components()), "surface",
-                   "normals have 3");
+        fail_usage(fmt::format("field '{}' has {} components and cannot hold normals", f->name, f->components()), "surface",
+                   "normals have 3 components");
     } else {
       for (const Field& g : fields)
         if (g.role == Role::normals && g.association == Association::point && g.components() == 3 && !f) f = &g;
@@ -348,7 +348,7 @@ class Preparation {
       for (size_t c = 0; c < v.count; ++c)
         for (size_t k = 0; k < v.size(c); ++k) points.push_back(uint32_t(v.point(c, k)));
     } else {
-      if (data.point_count() >= UINT32_MAX) fail_usage("more than 4 billion points", "points", "draw a part of them");
+      if (data.point_count() >= UINT32_MAX) fail_usage("more than 4 billion points", "points", "draw only part of them");
       points.resize(data.point_count());
       for (size_t i = 0; i < points.size(); ++i) points[i] = uint32_t(i);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the rasterizer draws from: flat arrays per item. Internal to rendering.
+// Input of the rasterizer: flat arrays per item. Internal to rendering.
 #pragma once
 #include <cstdint>
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is seen through, from the covers of a tile to the lists of a picture.
+// Translucent fragments, from the covers of a tile to the lists of a picture.
 #pragma once
 #include <vector>
 
@@ -19,7 +19,7 @@ inline size_t pixel_in_frame(const PixelBox& box, uint32_t in_tile, int width) {
   return (size_t(box.y0) + in_tile / tile_size) * size_t(width) + size_t(box.x0) + in_tile % tile_size;
 }
 
-/// Sorts what covers each pixel of a tile; the first that hides all behind it becomes the opaque pixel, those before it fragments.
+/// Sorts what covers each pixel of a tile; the first opaque cover becomes the pixel, those in front of it fragments.
 std::vector<TilePixelFragment> resolve(const PreparedScene& scene, const PixelBox& box, std::vector<Cover>& covers, Frame& frame);
 
 /// The fragments of all tiles as one list for each pixel, near to far. Throws Error(usage) above 2^32 of them.

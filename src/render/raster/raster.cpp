@@ -338,8 +338,8 @@ FragmentLists rasterize_prepared(const PreparedScene& scene, const Projection& p
                                  Context& context, const RenderTextures* textures) {
   if (frame.width != projection.width || frame.height != projection.height)
     fail_usage(fmt::format("the frame is {}x{}, the projection {}x{}", frame.width, frame.height, projection.width, projection.height),
-               "rasterize", "make both for the same size");
-  if (!(pixel_scale > 0)) fail_usage(fmt::format("pixel scale {} is no size", pixel_scale), "rasterize", "it must be above 0");
+               "rasterize", "make both the same size");
+  if (!(pixel_scale > 0)) fail_usage(fmt::format("pixel scale {} is not a valid size", pixel_scale), "rasterize", "it must be above 0");
   return raster::Drawing(scene, projection, pixel_scale, frame, context, textures).run();
 }
 

@@ -23,17 +23,17 @@ std::unique_ptr<RaySource> source_of(const VolumeItem& item, std::shared_ptr<con
                                      double coarser, Context& context, Range& reach) {
   if (auto bricked = lattice ? nullptr : bricked_source(item, projection, context.memory_limit / 2, context, coarser)) {
     if (wants_reconstruction(item.sampling))
-      fail_usage("volumes that memory does not hold are read with the linear kernel and central gradients only", "volume",
-                 "leave kernel and gradient as they are, or allow more --memory");
+      fail_usage("volumes larger than memory support only the linear kernel and central gradients", "volume",
+                 "leave out kernel and gradient, or allow more --memory");
     if (item.detail.second == SecondAxis::field)
-      fail_usage("a volume that memory does not hold has no second field beside it", "volume", "allow more --memory");
+      fail_usage("volumes larger than memory do not support a second field", "volume", "allow more --memory");
     return bricked;
   }
   const VolumeSampling& sampling = item.sampling;
   if (!lattice && sampling.kernel != Kernel::linear)
-    fail_usage(fmt::format("kernel '{}' joins the samples of uniform and rectilinear grids; this is a {} mesh", word_of(sampling.kernel),
-                           item.data->kind()),
-               "volume", "leave kernel=linear, or resample to a grid first");
+    fail_usage(
+        fmt::format("kernel '{}' needs a uniform or rectilinear grid; this is a {} mesh", word_of(sampling.kernel), item.data->kind()),
+        "volume", "use kernel=linear, or resample to a grid first");
   if (sampling.antialias == VolumeAntialias::mip)
     if (auto means = mip_source(item, lattice.get(), projection, context)) return means;
   if (!lattice) {
@@ -43,8 +43,7 @@ std::unique_ptr<RaySource> source_of(const VolumeItem& item, std::shared_ptr<con
   }
   if (wants_reconstruction(sampling) && !lattice->nearest) {
     if (item.detail.second == SecondAxis::field)
-      fail_usage("a second field is read with the linear kernel and central gradients only", "volume",
-                 "leave kernel and gradient as they are");
+      fail_usage("a second field supports only the linear kernel and central gradients", "volume", "leave out kernel and gradient");
     return reconstructed_source(std::move(lattice), sampling, &item.data->memo(), &reach);
   }
   std::shared_ptr<const Volume> second;
@@ -110,7 +109,7 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
   v.step = item.sampling.step, v.unit = plan.unit;
   if (v.step > 0 && diagonal / v.step > 1e7)
     fail_usage(fmt::format("a step of {} takes {:.3g} samples through a volume of size {}", v.step, diagonal / v.step, diagonal), "volume",
-               "give a longer step");
+               "use a longer step");
   if (v.step > 0 && item.sampling.classify == VolumeClassify::table && item.mode == RayFunction::composite && !v.detail)
     v.table = std::make_unique<Preintegrated>(*v.medium, Preintegrated::Plan{float(plan.lo - base), float(plan.hi - base), float(v.step)},
                                               &context);

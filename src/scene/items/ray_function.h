@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// RayFunction: what a ray through a volume collects, and one row for each that says what is special about it. To add one: a row here, a
+// RayFunction: what a ray through a volume collects, with one row each for its properties. To add one: a row here, a
 // case in Caster::collect (render/volume/rays/cast.cpp), its search in rays/functions.h.
 #pragma once
 #include <array>
@@ -24,7 +24,7 @@ enum class RayFunction {
 };
 
 struct RayFunctionInfo {
-  /// What the colours (and the axis of the opacity) stand for. Lengths are world lengths.
+  /// What the colours (and the axis of the opacity) represent. Lengths are world lengths.
   enum class Axis { value, value_times_length, length };
   /// Where a ray need not look.
   enum class Skips { nothing, transparent, below_level, without_level };
@@ -35,8 +35,8 @@ struct RayFunctionInfo {
   bool needs_level = false;
   bool absorbs = false;        ///< takes light away along its way: has shadows, occlusion and an extinction
   bool in_parts = false;       ///< parts of a ray, put together, are the ray
-  bool classifies = false;     ///< asks for an opacity that tells materials apart
-  bool shows_opacity = false;  ///< the opacity of values can be read from the picture, and stands in the legend
+  bool classifies = false;     ///< needs an opacity that distinguishes materials
+  bool shows_opacity = false;  ///< the opacity of values can be read from the picture and is shown in the legend
   Skips skips = Skips::nothing;
 
   bool collects() const { return axis != Axis::value; }  ///< what is drawn has another axis than the field's values
@@ -58,24 +58,24 @@ inline constexpr std::array<RayFunctionInfo, 10> ray_functions = [] {
        .skips = Skips::transparent},
       {.function = maximum, .name = "maximum", .about = "the largest value", .classifies = true},
       {.function = minimum, .name = "minimum", .about = "the smallest value"},
-      {.function = average, .name = "average", .about = "integral of the value over the ray / length inside the volume"},
+      {.function = average, .name = "average", .about = "integral of the value along the ray divided by the length inside the volume"},
       {.function = sum,
        .name = "sum",
-       .about = "integral of the value over the ray: an X-ray picture, in value times length",
+       .about = "integral of the value along the ray, as in an X-ray picture, in value times length",
        .axis = Axis::value_times_length},
       {.function = first_hit,
        .name = "first_hit",
-       .about = "the place where the value first reaches the level, lit",
+       .about = "the point where the value first reaches the level, lit",
        .needs_level = true,
        .skips = Skips::below_level},
       {.function = distance,
        .name = "distance",
-       .about = "distance from where the ray enters the volume to that place, through the colour scale",
+       .about = "distance from where the ray enters the volume to that point, through the colour scale",
        .axis = Axis::length,
        .needs_level = true},
       {.function = accumulate,
        .name = "accumulate",
-       .about = "length of the ray on which the value is at least the level, through the colour scale",
+       .about = "length along the ray where the value is at least the level, through the colour scale",
        .axis = Axis::length,
        .needs_level = true,
        .skips = Skips::below_level},
@@ -88,7 +88,7 @@ inline constexpr std::array<RayFunctionInfo, 10> ray_functions = [] {
        .skips = Skips::without_level},
       {.function = maximum_difference,
        .name = "maximum_difference",
-       .about = "MIDA: compositing that lets new maxima shine through (Bruckner, Groeller 2009)",
+       .about = "MIDA: compositing that lets new maxima shine through (Bruckner and Groeller 2009)",
        .absorbs = true,
        .classifies = true,
        .shows_opacity = true},

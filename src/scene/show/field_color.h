@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The colours of an item by a field, as its parameters ask for.
+// Colours of an item by a field, as its parameters request.
 #pragma once
 #include "base/context.h"
 #include "color/legend_content.h"

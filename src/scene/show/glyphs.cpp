@@ -41,10 +41,10 @@ bool is_dark(const Colormap& map) {
 void describe(Schema& s, GlyphsShow& p) {
   describe(s, p.glyphs);
   describe(s, p.coloring);
-  s("opacity", p.opacity, "1 hides what is behind, 0 is invisible.").range(0, 1);
-  s("width", p.width, "Width of the lines of barbs and of shape=line.").unit("pixels").positive();
-  s("lit", p.lit, "Light the shapes; false shows the plain colours.");
-  s("pixels", p.pixels, "Sizes are pixels of the picture, the same at any distance; barbs always.");
+  s("opacity", p.opacity, "Opacity: 1 is opaque, 0 invisible.").range(0, 1);
+  s("width", p.width, "Line width of barbs and of shape=line.").unit("pixels").positive();
+  s("lit", p.lit, "Light the shapes; false shows unlit colours.");
+  s("pixels", p.pixels, "Sizes are in pixels, the same at any distance; always so for barbs.");
 }
 
 const Field* automatic_field(const GlyphsShow& p, const Dataset& d) {

@@ -16,7 +16,7 @@ struct GlyphsShow {
 };
 void describe(Schema& s, GlyphsShow& p);
 
-/// Without a field or colour: the length of the vectors (barbs: one dark colour). The legend shows what size stands for what length. What
+/// Without a field or colour: the length of the vectors (barbs: one dark colour). The legend shows which size represents which length. What
 /// was chosen goes to context.info(). Throws Error(usage) for data without vectors and unknown names.
 std::optional<Legend> add(Scene& scene, const DatasetPtr& data, const GlyphsShow& p, Context& context);
 

@@ -20,9 +20,9 @@ const Field* numbers(const Dataset& d, std::string_view name) {
 }  // namespace
 
 void describe(Schema& s, LabelsShow& p) {
-  s("field", p.field, "Point field whose numbers are written; default: 'value', else the active scalar.");
-  s("size", p.size, "Size of the letters; 1 is that of the numbers at the axes.").range(0.1, 20);
-  s("color", p.color, "Colour of the letters; default: that of all texts.");
+  s("field", p.field, "Point field whose values are written; default: 'value', else the active scalar.");
+  s("size", p.size, "Text size; 1 is the size of the axis numbers.").range(0.1, 20);
+  s("color", p.color, "Text colour; default: that of all text.");
 }
 
 bool is_line_labels(const Dataset& d) { return d.as<PointCloud>() && numbers(d, "value") && numbers(d, "angle") && numbers(d, "line"); }
@@ -32,8 +32,8 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const LabelsSho
   const Field* value = p.field.empty() ? numbers(d, "value") : &d.fields().require(p.field.name);
   if (!value) value = d.fields().active(1);
   if (!value || value->association != Association::point || value->components() != 1)
-    fail_usage(value ? fmt::format("field '{}' has not one number per point", value->name) : "there are no numbers to write", "labels",
-               "line_labels makes labels of contour lines");
+    fail_usage(value ? fmt::format("field '{}' does not have one number per point", value->name) : "there are no values to write", "labels",
+               "use line_labels to label contour lines");
   const Field *angle = numbers(d, "angle"), *towards = d.fields().find("normal", Association::whole);
   Vec3 normal{0, 0, 1};
   if (towards && towards->components() == 3 && towards->array.count() == 1)

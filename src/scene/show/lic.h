@@ -19,7 +19,7 @@ struct LicShow {
 };
 void describe(Schema& s, LicShow& p);
 
-/// The texture that the words ask for; empty without a field. Throws Error(usage) for a field that is no vectors.
+/// The texture that the words request; empty without a field. Throws Error(usage) for a field that does not hold vectors.
 std::optional<SurfaceTexture> surface_texture_of(const Dataset& data, const LicShow& p);
 
 }  // namespace sg

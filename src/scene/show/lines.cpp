@@ -9,10 +9,10 @@ namespace sg {
 
 void describe(Schema& s, LinesShow& p) {
   describe(s, p.coloring);
-  s("opacity", p.opacity, "1 hides what is behind, 0 is invisible.").range(0, 1);
+  s("opacity", p.opacity, "Opacity: 1 is opaque, 0 invisible.").range(0, 1);
   s("width", p.width, "Width of the lines.").unit("pixels").positive();
   s("lit", p.lit, "Light the lines by their direction: bright across the light, dark along it.");
-  s("halo", p.halo, "Border around each line that hides lines behind it, so that crossings show which is in front.")
+  s("halo", p.halo, "Halo around each line that hides lines behind it, so that crossings show which is in front.")
       .unit("pixels")
       .range(0, 100);
   s("halo_color", p.halo_color, "Colour of the halos.");
@@ -23,8 +23,8 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const LinesShow
   item.data = surface_of(input, context);
   if (const auto& m = *item.data->as<SurfaceMesh>(); m.lines.size() == 0 && m.polygons.size() + m.strips.size() > 0)
     context.warn(
-        "lines: these data have cells but no lines, nothing is drawn; -f streamlines, isolines, feature_edges or contour of a flat mesh "
-        "make lines, --show 'surface edges=true' draws the edges of cells");
+        "lines: the data has cells but no lines, so nothing is drawn; -f streamlines, isolines, feature_edges or contour of a flat mesh "
+        "make lines; --show 'surface edges=true' draws the edges of cells");
   item.color_by = field_color(*input, p.coloring, context);
   if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
   item.opacity = p.opacity;

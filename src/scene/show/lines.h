@@ -16,7 +16,7 @@ struct LinesShow {
 };
 void describe(Schema& s, LinesShow& p);
 
-/// Of data without lines it warns, and says what makes some.
+/// For data without lines it warns, and says how to make some.
 std::optional<Legend> add(Scene& scene, const DatasetPtr& data, const LinesShow& p, Context& context);
 
 }  // namespace sg

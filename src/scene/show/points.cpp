@@ -8,9 +8,9 @@ namespace sg {
 
 void describe(Schema& s, PointsShow& p) {
   describe(s, p.coloring);
-  s("opacity", p.opacity, "1 hides what is behind, 0 is invisible.").range(0, 1);
+  s("opacity", p.opacity, "Opacity: 1 is opaque, 0 invisible.").range(0, 1);
   s("size", p.size, "Diameter of the dots.").unit("pixels").positive();
-  s("discs", p.discs, "Draws points that have normals and a field 'radius' as discs in space (see surfels); they hide what is behind.");
+  s("discs", p.discs, "Draw points that have normals and a field 'radius' as discs in space (see surfels) that hide what is behind.");
 }
 
 std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const PointsShow& p, Context& context) {
@@ -18,7 +18,7 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const PointsSho
   item.data = input;
   item.color_by = field_color(*input, p.coloring, context);
   if (item.color_by && item.color_by->association == Association::cell) {
-    context.info("points take their colours from point fields; cell field '" + item.color_by->field + "' is not shown on them");
+    context.info("points are coloured by point fields; cell field '" + item.color_by->field + "' is not shown on them");
     item.color_by.reset();
   }
   if (const Field* normals = input->fields().with_role(Role::normals), *radius = input->fields().find("radius", Association::point);

@@ -16,7 +16,7 @@
 
 namespace sg {
 
-/// One way to show, as all doors see it. Struct and function of each stand in the header of its name.
+/// One way to show, as all doors see it. The struct and function of each are in the header of its name.
 struct ShowKind {
   std::string_view name, sentence;
   ParamSet (*make_params)() = nullptr;
@@ -27,7 +27,7 @@ struct ShowKind {
   ColoringParams* (*coloring)(const ParamSet& params) = nullptr;
   /// The field that colours when none is named; null: automatic_field().
   const Field* (*automatic)(const ParamSet& params, const Dataset& data) = nullptr;
-  /// What makes the parts of a collection one picture beside colours: changes the parameters of each.
+  /// What unites the parts of a collection in one picture, besides colours: changes the parameters of each.
   void (*share)(const std::vector<DatasetPtr>& parts, std::vector<ParamSet>& params) = nullptr;
   /// Adds items for the dataset; returns what the legend shows when a field is mapped to colours.
   std::optional<Legend> (*add)(Scene&, const DatasetPtr&, const ParamSet& params, Context&) = nullptr;
@@ -53,7 +53,7 @@ const Field* shown_field(const ShowKind& kind, const ParamSet& params, const Dat
 
 /// Defaults changed by "key=value" words, and checked; all mistakes in one Error(usage).
 ParamSet show_params(const ShowKind& kind, const std::vector<std::string>& words);
-/// Adds items for the dataset, as "key=value" words ask for.
+/// Adds items for the dataset, as "key=value" words request.
 std::optional<Legend> add_show(Scene& scene, std::string_view kind, const DatasetPtr& data, const std::vector<std::string>& words,
                                Context& context);
 

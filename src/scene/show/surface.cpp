@@ -12,11 +12,11 @@ namespace sg {
 
 void describe(Schema& s, SurfaceShow& p) {
   describe(s, p.coloring);
-  s("opacity", p.opacity, "1 hides what is behind, 0 is invisible.").range(0, 1);
+  s("opacity", p.opacity, "Opacity: 1 is opaque, 0 invisible.").range(0, 1);
   s("edges", p.edges, "Draw the edges of the cells.");
-  s("flat", p.flat, "One normal per polygon instead of smooth shading.");
-  s("lit", p.lit, "Light the surface; false shows the plain colours.");
-  s("feature_angle", p.feature_angle, "Edges sharper than this stay sharp when normals are computed.").unit("deg").range(0, 180);
+  s("flat", p.flat, "Shade with one normal per polygon instead of smoothly.");
+  s("lit", p.lit, "Light the surface; false shows unlit colours.");
+  s("feature_angle", p.feature_angle, "Edges with a larger angle stay sharp when normals are computed.").unit("deg").range(0, 180);
   describe(s, p.lic);
   s("texture", p.texture, "Point field in [0, 1] that darkens and brightens the colours; default: 'lic' or 'spot noise'; 'none' for none.")
       .takes(fields::point_scalars);

@@ -12,7 +12,7 @@ namespace sg {
 
 namespace {
 
-// The colours of a scale, and where they stand.
+// The colours of a scale, and their positions.
 void add_colors(const ColorScale& s, std::vector<std::string>& words) {
   if (s.labels.empty()) words.push_back("colors=" + color_stops_text(s));
   else words.push_back("map=" + s.map.name);

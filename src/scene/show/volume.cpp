@@ -48,7 +48,7 @@ Fields fields_of(const Dataset& d, const VolumeShow& p) {
   if (!f.color && named.field.empty() && !p.color_by.empty())
     for (const Field& other : d.fields())
       if (!f.color && other.association != Association::whole && other.components() == 1 && other.name != p.color_by.name) f.color = &other;
-  if (!f.color) fail_usage("there is no field to see through", "volume", "name one with field=");
+  if (!f.color) fail_usage("there is no field to show as a volume", "volume", "name one with field=");
   f.opacity = f.color;
   if (!p.opacity_by.empty()) f.opacity = &mesh_field(d, p.opacity_by.name, "opacity_by");
   if (!p.color_by.empty()) f.color = &mesh_field(d, p.color_by.name, "color_by");
@@ -64,11 +64,11 @@ int component_of(const VolumeShow& p, const Fields& all, const Field& f) {
 void check_second_field(const Field& value, const Field& second) {
   if (second.components() != 1)
     fail_usage(fmt::format("'{}' has {} components", second.name, second.components()), "volume",
-               "a second field has one number each: -f 'calc expr=mag(NAME)' makes the magnitude");
+               "a second field must be scalar: -f 'calc expr=mag(NAME)' computes the magnitude");
   if (value.association != second.association)
     fail_usage(fmt::format("'{}' is a {} field and '{}' a {} field", value.name, association_name(value.association), second.name,
                            association_name(second.association)),
-               "volume", "both must lie on the points or both on the cells: -f cell_to_point makes point fields");
+               "volume", "both must be point fields or both cell fields: -f cell_to_point converts");
 }
 
 // The second axis and its part of opacity; colours by it.
@@ -122,7 +122,7 @@ void take_second_axis(const VolumeShow& p, const Fields& fields, const ColorScal
   }
 }
 
-// The value at which something begins, when nobody says.
+// The default level: the value at which something begins.
 void choose_level(const Field& field, VolumeItem& item, Context& context) {
   const Range r = item.data->range(field, field.components() > 1 ? item.component : 0);
   if (r.empty()) return item.levels.push_back(0);
@@ -130,9 +130,8 @@ void choose_level(const Field& field, VolumeItem& item, Context& context) {
   double level = 0.5 * (r.lo + r.hi);
   if (!found.empty()) level = found[0].value;
   item.levels.push_back(*parse_double(short_number(level, 4)));
-  context.info(
-      fmt::format("level {}: {}", short_number(item.levels[0]),
-                  found.empty() ? "the middle of the range" : "the strongest border of materials (the mean gradient peaks there)"));
+  context.info(fmt::format("level {}: {}", short_number(item.levels[0]),
+                           found.empty() ? "the middle of the range" : "the strongest material boundary (where the mean gradient peaks)"));
 }
 
 // Opacity, and for CT the colours, where nothing is stated.
@@ -163,7 +162,7 @@ void choose_transfer(const VolumeShow& p, const Field& field, VolumeItem& item, 
       }
       return context.info(why);
     }
-    context.info(fmt::format("no borders of materials stand out in '{}'; opacity comes from its histogram", field.name));
+    context.info(fmt::format("no material boundaries stand out in '{}'; opacity is chosen from its histogram", field.name));
   }
   const std::string why =
       choose_volume_look(*item.data, field, p.coloring, item, value_of_word<TransferChoice>(p.transfer) == TransferChoice::automatic);
@@ -243,7 +242,7 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const VolumeSho
   item.light = p.light;
   if (!p.clip.empty()) item.clip = parse_clip(p.clip);
 
-  // Colours as asked for, over the field that they belong to.
+  // Colours as requested, over the field that they belong to.
   ColoringParams coloring = p.coloring;
   coloring.component = component_of(p, fields, *fields.color);
   ColorScale colors = choose_scale(*input, *fields.color, coloring, context);

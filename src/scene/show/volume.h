@@ -7,7 +7,7 @@
 
 namespace sg {
 
-/// What decides on opacity where none is stated. Beside these words `transfer` takes a FILE.yaml: pipelines put its words in its place.
+/// What decides on opacity where none is stated. Besides these words `transfer` takes a FILE.yaml: pipelines put its words in its place.
 enum class TransferChoice { automatic, histogram, boundaries };
 constexpr auto enum_words(TransferChoice) {
   using enum TransferChoice;
@@ -44,7 +44,7 @@ void describe(Schema& s, VolumeShow& p);
 /// Throws Error(usage) for what no data could make right; all mistakes at once.
 void check(const VolumeShow& p);
 
-/// Adds one VolumeItem; what was chosen and why goes to context.info(). A preset gives way to what is stated beside it: what `schema`, the
+/// Adds one VolumeItem; what was chosen and why goes to context.info(). Explicit parameters override a preset: what `schema`, the
 /// one of `p`, knows as stated, and all that is not a default. Throws Error(usage) for data without volume, unknown fields and presets, and
 /// transfer functions that cannot be.
 std::optional<Legend> add(Scene& scene, const DatasetPtr& data, const VolumeShow& p, const Schema& schema, Context& context);

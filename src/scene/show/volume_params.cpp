@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The declaration of the words, and what can be said about them without data.
+// The declaration of the words, and the checks possible without data.
 #include <fmt/core.h>
 
 #include "base/text/text.h"
@@ -12,7 +12,7 @@ namespace sg {
 namespace {
 
 std::string what_a_ray_collects() {
-  std::string help = "What a ray collects.";
+  std::string help = "Ray function: what a ray collects.";
   for (const RayFunctionInfo& f : ray_functions) help += fmt::format(" {}: {}.", f.name, f.about);
   return help;
 }
@@ -27,45 +27,42 @@ void describe(Schema& s, VolumeShow& p) {
     presets += fmt::format("{}{} ({})", presets.empty() ? "" : ", ", preset.name, preset.about);
     names.emplace_back(preset.name);
   }
-  s("preset", p.preset, fmt::format("A whole look by name; words stated besides it win: {}.", presets)).choices(names);
+  s("preset", p.preset, fmt::format("A named set of parameters; those given explicitly override it: {}.", presets)).choices(names);
   s("transfer", p.transfer,
-    "What decides on opacity (and colours) where none are stated: auto, histogram, boundaries (of materials: where gradients are large), "
-    "or a "
-    "FILE.yaml made with save.");
-  s("save", p.save, "Writes the look to this file, for transfer=FILE.yaml.").unit("new file");
+    "How opacity (and colours) are chosen where none are given: auto, histogram, boundaries (of materials, where gradients are large), or "
+    "a FILE.yaml written with save.");
+  s("save", p.save, "Write the transfer function to this file, for transfer=FILE.yaml.").unit("new file");
   s("opacity", p.opacity,
-    "Opacity as place:opacity points with straight lines between them, ascending: 0:0,0.3:0.1,1:0.8. A place is a position on the range, "
-    "or with @ a "
-    "value: @-500:0,@200:0.4. Two points at one place make a step. Per 'unit' of length.");
-  s("colors", p.colors, "Colours as place:colour stops instead of a map: 0:#000000,0.4:#aa3311,1:white, or @-500:black,@300:ivory.");
-  s("opacity_by", p.opacity_by, "Field whose values decide on opacity, while 'field' gives the colours.");
-  s("color_by", p.color_by, "Field whose values give the colours, while 'field' decides on opacity.");
+    "Piecewise linear opacity as ascending position:opacity points: 0:0,0.3:0.1,1:0.8. A position is a fraction of the range, or a value "
+    "written with @: @-500:0,@200:0.4. Two points at one position make a step. Per 'unit' of length.");
+  s("colors", p.colors, "Colours as position:colour stops instead of a map: 0:#000000,0.4:#aa3311,1:white, or @-500:black,@300:ivory.");
+  s("opacity_by", p.opacity_by, "Field whose values determine opacity, while 'field' determines the colours.");
+  s("color_by", p.color_by, "Field whose values determine the colours, while 'field' determines opacity.");
   s("second", p.second,
-    "Second axis: none, gradient (its magnitude), second_derivative (along the gradient), curvature (mean curvature of the level set), or "
-    "a field.");
+    "Second axis of the transfer function: none, gradient (magnitude), second_derivative (along the gradient), curvature (mean curvature "
+    "of the level set), or a field.");
   s("second_opacity", p.second_opacity,
-    "Factor of opacity over the second axis, points as in opacity: 0:0,0.2:1. Positions: 0 to the largest gradient; minus to plus the "
-    "largest "
-    "second derivative or curvature; the range of the field.");
+    "Factor on opacity over the second axis, written like opacity: 0:0,0.2:1. Positions 0 to 1 run from 0 to the largest gradient, from "
+    "minus to plus the largest second derivative or curvature, or over the range of the field.");
   s("widgets", p.widgets,
-    "Regions of the plane (value, second) that are drawn, instead of opacity: 'triangle LO HI BASE TOP OPACITY COLOR; rectangle LO HI LOW "
-    "HIGH "
-    "OPACITY COLOR'. Places as in opacity; second=gradient unless stated.");
-  s("unit", p.unit, "World length to which opacity refers; 0 is a hundredth of the diagonal.").at_least(0);
-  s("method", p.method, "The algorithm; ray is the reference.");
+    "Regions of the (value, second) plane to draw, instead of opacity: 'triangle LO HI BASE TOP OPACITY COLOR; rectangle LO HI LOW HIGH "
+    "OPACITY COLOR'. Positions as in opacity; second defaults to gradient.");
+  s("unit", p.unit, "World length to which opacity refers; 0: a hundredth of the diagonal.").at_least(0);
+  s("method", p.method, "Rendering algorithm; ray is the reference.");
   s("mode", p.mode, what_a_ray_collects());
-  s("levels", p.levels, "Values of first_hit, distance and accumulate (one), and isosurface; default: the strongest border of materials.")
+  s("levels", p.levels,
+    "Values for first_hit, distance and accumulate (one) and isosurface (any number); default: the strongest material boundary.")
       .unit("@field");
   s("shaded", p.shaded, "Light the volume by the gradient of the field.");
   describe(s, p.sampling);
   describe(s, p.light);
   s("clip", p.clip,
-    "What is cut away: planes 'nx,ny,nz,offset; ...' draw the side where n.x <= offset, 'box x0,x1,y0,y1,z0,z1' its inside.");
+    "Clip the volume: planes 'nx,ny,nz,offset; ...' keep the side where n.x <= offset, 'box x0,x1,y0,y1,z0,z1' keeps its inside.");
 }
 
 namespace {
 
-// Are there positions beside @values, so that only data can tell which comes first?
+// Whether there are positions as well as @values, so that only data can decide which comes first.
 bool mixes_places(const std::string& points) {
   int values = 0, positions = 0;
   for (const std::string_view part : split(points, ','))
@@ -99,7 +96,7 @@ void check(const VolumeShow& p) {
     numbers.insert(numbers.end(), p.levels.begin(), p.levels.end());
     for (const double v : numbers)
       if (!std::isfinite(v))
-        fail_usage(fmt::format("{} is not a finite number", exact_number(v)), "volume", "unit, step and levels are finite");
+        fail_usage(fmt::format("{} is not a finite number", exact_number(v)), "volume", "unit, step and levels must be finite");
   });
   if (p.opacity && !mixes_places(*p.opacity)) each([&] { parse_opacity(*p.opacity, axis); });
   if (p.second_opacity && !mixes_places(*p.second_opacity)) each([&] { parse_opacity(*p.second_opacity, ColorScale{}, "second_opacity"); });
@@ -111,30 +108,29 @@ void check(const VolumeShow& p) {
   if (!p.widgets.empty())
     each([&] {
       if (!mixes_ends(p.widgets)) parse_widgets(p.widgets, axis, ColorScale{});
-      if (p.opacity)
-        fail_usage("both opacity and widgets are stated", "widgets", "the widgets decide on opacity; leave out one of the two");
+      if (p.opacity) fail_usage("both opacity and widgets are given", "widgets", "the widgets determine opacity; leave out one of the two");
     });
   if (!p.clip.empty()) each([&] { parse_clip(p.clip); });
   each([&] {
     if (!value_of_word<TransferChoice>(p.transfer)) {
       std::vector<std::string> names;
       for (const Word<TransferChoice>& w : enum_words(TransferChoice())) names.emplace_back(w.word);
-      fail_usage(fmt::format("'{}' is no way to choose a transfer function", p.transfer), "transfer",
+      fail_usage(fmt::format("'{}' is not a way to choose a transfer function", p.transfer), "transfer",
                  unknown_name_hint(p.transfer, names) + "; files end in .yaml");
     }
     const int by = !p.opacity_by.empty() + !p.color_by.empty();
-    if (by == 2) fail_usage("both opacity_by and color_by are stated", "opacity_by", "state one of them, and the other field as field=");
+    if (by == 2) fail_usage("both opacity_by and color_by are given", "opacity_by", "give one of them, and the other field as field=");
     const bool second = value_of_word<SecondAxis>(p.second) != SecondAxis::none;
     if (by == 1 && second)
-      fail_usage("a second field already is the second axis", "second", "leave out second=, or opacity_by and color_by");
+      fail_usage("the second field already is the second axis", "second", "leave out second=, or opacity_by and color_by");
     if (!second && p.second_opacity && p.widgets.empty() && by == 0)
-      fail_usage("there is no second axis", "second_opacity", "state one: second=gradient");
+      fail_usage("there is no second axis", "second_opacity", "give one, e.g. second=gradient");
   });
   if (!problems.empty()) fail_usage(problems);
 }
 
 std::vector<ClipPlane> parse_clip(const std::string& text) {
-  const char* form = "write planes as nx,ny,nz,offset with ; between them, or box x0,x1,y0,y1,z0,z1";
+  const char* form = "write planes as nx,ny,nz,offset separated by ';', or box x0,x1,y0,y1,z0,z1";
   std::vector<ClipPlane> planes;
   for (std::string_view part : split(text, ';')) {
     if (part.empty()) continue;

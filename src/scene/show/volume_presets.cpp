@@ -32,12 +32,12 @@ struct Look {
 const std::vector<Look>& looks() {
   using enum Look::Axis;
   static const std::vector<Look> all{
-      {{"ct_bone", "CT: bone alone"},
+      {{"ct_bone", "CT: bone only"},
        hounsfield,
        {{180, 0}, {260, 0.25}, {450, 0.6}, {1000, 0.85}, {3000, 0.95}},
        {{100, "#b5651d"}, {250, "#d9a066"}, {450, "#efdcb8"}, {1000, "#fbf6e8"}, {1800, "#ffffff"}},
        [](VolumeShow& p) { p.light.specular = 0.3, p.light.power = 40; }},
-      {{"ct_skin", "CT: the surface of the body"},
+      {{"ct_skin", "CT: the skin"},
        hounsfield,
        {{-650, 0}, {-450, 0.1}, {-250, 0.6}, {0, 0.85}, {3000, 0.95}},
        {{-700, "#8a4f3a"}, {-350, "#d89b7c"}, {0, "#ecbfa3"}, {300, "#f2d3bd"}},
@@ -48,7 +48,7 @@ const std::vector<Look>& looks() {
        {{100, "#5c0a0a"}, {220, "#b3201a"}, {380, "#e05a3a"}, {600, "#e8c9a0"}, {1200, "#fbf6e8"}},
        [](VolumeShow& p) { p.light.specular = 0.35, p.light.power = 48; },
        true},
-      {{"mr", "tissue by its brightness, borders stronger"},
+      {{"mr", "tissue by its brightness, with emphasised boundaries"},
        foreground,
        {{0, 0}, {0.15, 0.02}, {0.45, 0.10}, {0.75, 0.35}, {1, 0.6}},
        {{0, "#2a1512"}, {0.3, "#8a4a3c"}, {0.55, "#c98b72"}, {0.8, "#ecd2bd"}, {1, "#fffaf2"}},
@@ -63,12 +63,12 @@ const std::vector<Look>& looks() {
        {{0, 0}, {0.02, 1}, {1, 1}},
        {},
        [](VolumeShow& p) { p.mode = RayFunction::maximum, p.coloring.map = "gray", p.shaded = false; }},
-      {{"combustion", "what is hot glows, what is cold is clear"},
+      {{"combustion", "hot regions glow, cold ones are transparent"},
        foreground,
        {{0, 0}, {0.1, 0.006}, {0.35, 0.06}, {0.7, 0.25}, {1, 0.7}},
        {{0, "#2b0b06"}, {0.3, "#8f1d0a"}, {0.55, "#e0560f"}, {0.8, "#fbb526"}, {1, "#fff6c8"}},
        [](VolumeShow& p) { p.shaded = false; }},
-      {{"density", "opacity grows evenly with the value"},
+      {{"density", "opacity increases linearly with the value"},
        foreground,
        {{0, 0}, {1, 0.35}},
        {},
@@ -119,20 +119,20 @@ VolumeShow volume_of_preset(std::string_view name, const Dataset& data, const Fi
       constexpr double faint = 120, bright = 500;
       const Range f = rounded_foreground(field, component, r);
       per = (f.hi - f.lo) / (bright - faint), zero = f.lo - faint * per;
-      reason = fmt::format("preset {}: '{}' does not look like CT in Hounsfield units; its foreground {} to {} is taken for vessels", name,
+      reason = fmt::format("preset {}: '{}' does not look like CT in Hounsfield units; its foreground {} to {} is taken as vessels", name,
                            field.name, short_number(f.lo), short_number(f.hi));
     } else {
       // Nobody knows: as if the data went from air to dense bone.
       constexpr double air = -1000, bone = 2000;
       per = (r.hi - r.lo) / (bone - air), zero = r.lo - air * per;
-      reason = fmt::format("preset {}: '{}' does not look like CT in Hounsfield units; its range {} to {} is taken for -1000 to 2000", name,
+      reason = fmt::format("preset {}: '{}' does not look like CT in Hounsfield units; its range {} to {} is taken as -1000 to 2000", name,
                            field.name, short_number(r.lo), short_number(r.hi));
     }
   } else {
     const Range f = rounded_foreground(field, component, r);
     zero = f.lo, per = f.hi - f.lo;
-    reason =
-        fmt::format("preset {}: the foreground of '{}' goes from {} to {}", name, field.name, short_number(f.lo, 3), short_number(f.hi, 3));
+    reason = fmt::format("preset {}: the foreground of '{}' ranges from {} to {}", name, field.name, short_number(f.lo, 3),
+                         short_number(f.hi, 3));
   }
   VolumeShow show;
   look.rest(show);

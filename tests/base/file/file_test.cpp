@@ -74,7 +74,7 @@ TEST_CASE("file: without commit nothing is left, and the old file stays") {
 
 TEST_CASE("file: errors of writing say what to do, and leave nothing") {
   CHECK(test::error_of([] { write_file("/nowhere/at/all.txt", "x"); }) ==
-        "/nowhere/at/all.txt: cannot be written: the folder does not exist; make the folder first");
+        "/nowhere/at/all.txt: cannot be written: the folder does not exist; create the folder first");
   const std::string folder = fresh_folder("write_errors");
   CHECK(test::error_of([&] { write_file(test::temp_folder() + "write_errors", "x"); }).find("it is a folder") != std::string::npos);
   CHECK(files_in(folder) == 0);

@@ -57,14 +57,14 @@ TEST_CASE("json: an object of 100,000 members is read and searched without looki
   CHECK(v.find("m100000") == nullptr);
 }
 
-TEST_CASE("json: what is no JSON, and what is nested too deeply, names the file") {
+TEST_CASE("json: what is no JSON, and what is nested too deeplyly, names the file") {
   for (const char* bad : {"", "{", "[1,]", "{\"a\":}", "NaN", "[1] 2", "\"\xff\"", "{1:2}"}) {
     CAPTURE(bad);
     try {
       parse_json(bad, "some.json");
       FAIL("was taken");
     } catch (const Error& e) {
-      CHECK(std::string(e.what()).find("is no valid JSON") != std::string::npos);
+      CHECK(std::string(e.what()).find("is not valid JSON") != std::string::npos);
       CHECK(std::string(e.what()).find("some.json") != std::string::npos);
     }
   }

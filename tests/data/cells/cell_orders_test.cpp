@@ -32,8 +32,8 @@ TEST_CASE("orders: those that do not fit the cells are refused with the cell's n
   CHECK(test::error_of([] { validate(one(lagrange_hexahedron, 24, {1, 2, 2})); }).find("cell 0 is a LagrangeHexahedron of 24") == 0);
   CHECK(test::error_of([] { validate(one(lagrange_quad, 24, {11, 1, 0})); }).find("orders are 1 to 10") != std::string::npos);
   CHECK(test::error_of([] { validate(one(lagrange_wedge, 12, {2, 1, 1})); }).find("wedge are equal") != std::string::npos);
-  CHECK(test::error_of([] { validate(one(lagrange_quad, 6, {1, 2, 0, 1, 2, 0})); }).find("3 u8 a cell") != std::string::npos);
-  CHECK(test::error_of([] { validate(one(lagrange_quad, 6, {1, 2}, 2)); }).find("3 u8 a cell") != std::string::npos);
+  CHECK(test::error_of([] { validate(one(lagrange_quad, 6, {1, 2, 0, 1, 2, 0})); }).find("3 u8 per cell") != std::string::npos);
+  CHECK(test::error_of([] { validate(one(lagrange_quad, 6, {1, 2}, 2)); }).find("3 u8 per cell") != std::string::npos);
 }
 
 TEST_CASE("rational weights: one finite f64 a point") {
@@ -46,9 +46,9 @@ TEST_CASE("rational weights: one finite f64 a point") {
   CHECK(r.weights()[2] == 0.7);
   CHECK(r.orders() == std::array<int, 3>{2, 0, 0});
   m.weights = Array::from_vector(std::vector<double>{1, 1});
-  CHECK(test::error_of([&] { validate(m); }).find("one f64 a point") != std::string::npos);
+  CHECK(test::error_of([&] { validate(m); }).find("one f64 per point") != std::string::npos);
   m.weights = Array::from_vector(std::vector<float>{1, 1, 1});
-  CHECK(test::error_of([&] { validate(m); }).find("one f64 a point") != std::string::npos);
+  CHECK(test::error_of([&] { validate(m); }).find("one f64 per point") != std::string::npos);
   m.weights = Array::from_vector(std::vector<double>{1, 1, std::nan("")});
   CHECK(test::error_of([&] { validate(m); }).find("point 2") != std::string::npos);
 }

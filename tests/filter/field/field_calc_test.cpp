@@ -123,16 +123,16 @@ TEST_CASE("calc: mistakes say where and what would be right") {
   CHECK(error("sqr(T)").find("did you mean 'sqrt'") != std::string::npos);
   CHECK(error("(T").find("a ')' is missing") != std::string::npos);
   CHECK(error("T T").find("character 3") != std::string::npos);
-  CHECK(error("velocity + grad").find("joins 3 numbers with 9") != std::string::npos);
+  CHECK(error("velocity + grad").find("combines 3 numbers with 9") != std::string::npos);
   CHECK(error("velocity[3]").find("component 3 of 3") != std::string::npos);
   CHECK(error("sqrt(T, 2)").find("takes 1 argument, not 2") != std::string::npos);
   CHECK(error("T * rho").find("cell_to_point") != std::string::npos);
-  CHECK(error("").find("nothing to compute") != std::string::npos);
+  CHECK(error("").find("the expression is empty") != std::string::npos);
   CHECK(error(std::string(5000, '(')).find("nested too deeply") != std::string::npos);
   CHECK(error(std::string(5000, '-') + "1").find("nested too deeply") != std::string::npos);
   std::string many = "T";
   for (int i = 0; i < 3000; ++i) many += "+T";
-  CHECK(error(many).find("more than 2000 parts") != std::string::npos);
+  CHECK(error(many).find("more than 2000 terms") != std::string::npos);
 }
 
 TEST_CASE("calc: NaN goes through, and any number of threads gives the same bytes") {

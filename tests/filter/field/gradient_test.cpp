@@ -232,11 +232,11 @@ TEST_CASE("gradient: refuses what it cannot do and says what would be right") {
   CHECK(error_of([] { run(cube(3, 1, linear), "g"); }).find("field 'g'") != std::string::npos);
   PointCloud cloud;
   cloud.points.xyz = Array::from_vector(std::vector<float>{0, 0, 0}, 3);
-  CHECK(error_of([&] { run(make_dataset(cloud)); }).find("nothing connects") != std::string::npos);
+  CHECK(error_of([&] { run(make_dataset(cloud)); }).find("not connected") != std::string::npos);
   FieldSet fields;
   fields.add({"w", Association::whole, Array::from_vector(std::vector<float>(1)), "", Role::none});
   const auto whole = make_dataset(uniform({2, 2, 2}, {0, 0, 0}, {1, 1, 1}), fields);
-  CHECK(error_of([&] { run(whole, "w"); }).find("on no points or cells") != std::string::npos);
+  CHECK(error_of([&] { run(whole, "w"); }).find("on neither points nor cells") != std::string::npos);
   CHECK(error_of([&] { run(whole); }).find("no field of one or three components") != std::string::npos);
 }
 

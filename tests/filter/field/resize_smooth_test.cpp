@@ -166,5 +166,5 @@ TEST_CASE("gaussian_smooth: bad requests say what would be right") {
   CHECK_THROWS_WITH_AS(gaussian_smooth(labels, {{"f"}, {1}, ""}, context), doctest::Contains("labels"), Error);
   const DatasetPtr in = grid_of({4, 4, 4}, plane);
   CHECK_THROWS_WITH_AS(gaussian_smooth(in, {{}, {1, 2}, ""}, context), doctest::Contains("one or three"), Error);
-  CHECK_THROWS_WITH_AS(gaussian_smooth(in, {{}, {-1}, ""}, context), doctest::Contains("no length"), Error);
+  CHECK_THROWS_WITH_AS(gaussian_smooth(in, {{}, {-1}, ""}, context), doctest::Contains("not a valid length"), Error);
 }

@@ -145,7 +145,7 @@ TEST_CASE("geographic: latitudes that are none, and fields on cells, are refused
   parts.mesh = g;
   parts.fields.add({"v", Association::point, Array::from_vector(std::vector<double>(2700, 1.0), 3), "m/s", Role::none});
   const auto message = [&](const DatasetPtr& d) { return test::error_of([&] { geographic_flow(d, "v", 1, "streamlines"); }); };
-  CHECK(message(make_dataset(parts)).find("latitudes from 0 to 299") != std::string::npos);
+  CHECK(message(make_dataset(parts)).find("latitudes range from 0 to 299") != std::string::npos);
   parts.fields = {};
   parts.fields.add({"v", Association::cell, Array::from_vector(std::vector<double>(598 * 3, 1.0), 3), "m/s", Role::none});
   CHECK(message(make_dataset(parts)).find("cell_to_point") != std::string::npos);

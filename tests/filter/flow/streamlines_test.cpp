@@ -212,14 +212,14 @@ TEST_CASE("streamlines: bad input is named") {
   CHECK(contains(error_with(plain, {}), "no vector field"));
   CHECK(contains(error_with(with_velocity(plain, [](Vec3) { return Vec3(); }), {}), "zero or NaN everywhere"));
   CHECK(contains(error_with(with_velocity(plain, [](Vec3) { return Vec3(NAN, NAN, NAN); }), {}), "zero or NaN everywhere"));
-  CHECK(contains(error_with(good, from_points({7, 7, 7})), "none of 1 seeds lies in the flow; the mesh lies in x -1 to 1"));
-  CHECK(contains(error_with(good, from_points({7, 7})), "2 numbers make no points"));
+  CHECK(contains(error_with(good, from_points({7, 7, 7})), "none of 1 seeds lies in the flow; the mesh extends over x -1 to 1"));
+  CHECK(contains(error_with(good, from_points({7, 7})), "2 numbers do not make points"));
   StreamlinesParams p;
   p.field.name = "velocity";
   CHECK(contains(error_with(good, p), "velocity"));
   p = {};
   p.integration.step = 0.5, p.integration.min_step = 2;
-  CHECK(contains(error_with(good, p), "leave no step"));
+  CHECK(contains(error_with(good, p), "leave no valid step"));
   p = {};
   p.seeds.seeds = SeedKind::mesh;
   CHECK(contains(error_with(good, p), "no second input"));
@@ -232,7 +232,7 @@ TEST_CASE("streamlines: bad input is named") {
   PointCloud cloud{{Array::from_vector(std::vector<float>(30), 3), {}}};
   FieldSet fields;
   fields.add({"u", Association::point, Array::from_vector(std::vector<float>(30, 1), 3), "", Role::vectors});
-  CHECK(contains(error_with(make_dataset(cloud, fields), {}), "no flow between the points"));
+  CHECK(contains(error_with(make_dataset(cloud, fields), {}), "no flow between its points"));
 }
 
 TEST_CASE("streamlines: lines end where the flow is NaN, and at cells that are hidden") {
@@ -364,7 +364,7 @@ TEST_CASE("seeds: bright pixels of a picture on a plane") {
     CHECK(std::abs(x.y) <= 0.5);
     CHECK(x.z == 0);
   }
-  CHECK(contains(error_of([&] { seeds_of(mesh, p, mesh); }), "need a picture"));
+  CHECK(contains(error_of([&] { seeds_of(mesh, p, mesh); }), "needs a picture"));
   std::vector<uint8_t> black(2400);
   FieldSet none;
   none.add({"picture", Association::point, Array::from_vector(black, 3), "", Role::none});
@@ -378,5 +378,5 @@ TEST_CASE("seeds: numbers that make no seeds are named") {
   CHECK(said({.normal = Vec3(0, 0, 0)}, "no direction"));
   CHECK(said({.seeds = SeedKind::plane, .size = {1, 2, 3}}, "a plane has 2 edges"));
   CHECK(said({.seeds = SeedKind::grid, .counts = {1, 2}}, "a box has 3 edges"));
-  CHECK(said({.seeds = SeedKind::points}, "0 numbers make no points"));
+  CHECK(said({.seeds = SeedKind::points}, "0 numbers do not make points"));
 }

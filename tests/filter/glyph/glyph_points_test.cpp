@@ -157,7 +157,8 @@ TEST_CASE("glyph_points: along lines at even spacing, with tangents, and not bes
   CHECK(p->fields().require("tangent").array.get(3, 0) == 1);
   CHECK(run(two_lines(), {.mode = GlyphPlaces::lines, .spacing = 2})->point_count() == 6);  // the other line is too near
   CHECK(error_of([] { run(box_grid(3, 3, 1), {.mode = GlyphPlaces::lines}); }).find("has no lines") != std::string::npos);
-  CHECK(error_of([] { run(two_lines(), {.mode = GlyphPlaces::lines, .spacing = 1e-200}); }).find("a larger spacing") != std::string::npos);
+  CHECK(error_of([] { run(two_lines(), {.mode = GlyphPlaces::lines, .spacing = 1e-200}); }).find("use a larger spacing") !=
+        std::string::npos);
 }
 
 TEST_CASE("trails: the stretch before a time, cut exactly, with ages and heads") {
@@ -180,7 +181,7 @@ TEST_CASE("trails: the stretch before a time, cut exactly, with ages and heads")
   CHECK(faded.role == Role::colors);
   CHECK(faded.array.get(size_t(lines.point(0, 1)), 3) == 128);
   CHECK(faded.array.get(size_t(lines.point(0, 2)), 3) == 255);
-  CHECK(error_of([&] { trails(two_lines(), {.color = {1}}, context); }).find("no colour") != std::string::npos);
+  CHECK(error_of([&] { trails(two_lines(), {.color = {1}}, context); }).find("not make a colour") != std::string::npos);
   CHECK(trails(two_lines(), {.time = 20, .length = 1}, context)->cell_count() == 0);
   CHECK(trails(two_lines(), {}, context)->as<SurfaceMesh>()->lines.size() == 1);  // the last second: 9 to 10
   CHECK(error_of([&] { trails(two_lines(), {.field = {"tim"}}, context); }).find("'tim'") != std::string::npos);

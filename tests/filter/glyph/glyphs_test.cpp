@@ -168,7 +168,7 @@ TEST_CASE("barbs: units become knots, the hemisphere follows latitude, no wind i
   CHECK(knots_per("m/s") == doctest::Approx(1.943844));
   CHECK(knots_per(" KM/H ") == doctest::Approx(0.539957));
   CHECK(knots_per("kt") == 1);
-  CHECK(error_of([] { knots_per("furlong"); }).find("no unit of speed") != std::string::npos);
+  CHECK(error_of([] { knots_per("furlong"); }).find("not a unit of speed") != std::string::npos);
   Context context;
   auto numbers = [&](const DatasetPtr& d, BarbParams p = {}) {
     const DatasetPtr r = barb_places(d, "v", p, context);
@@ -233,7 +233,7 @@ TEST_CASE("glyphs: mistakes are named") {
   CHECK(message([](GlyphParams& p) { p.vectors.name = "w"; }, d).find("'w'") != std::string::npos);
   CHECK(message([](GlyphParams& p) { p.size_by = "lenght"; }, d).find("did you mean 'length'") != std::string::npos);
   CHECK(message([](GlyphParams& p) { p.size = 1, p.factor = 1; }, d).find("give one of them") != std::string::npos);
-  CHECK(message([](GlyphParams& p) { p.shape.shape = "barbs", p.vectors.name = "none"; }, d).find("barbs show a wind") !=
+  CHECK(message([](GlyphParams& p) { p.shape.shape = "barbs", p.vectors.name = "none"; }, d).find("barbs need a wind") !=
         std::string::npos);
   CHECK(message([](GlyphParams& p) { p.size_by = "length", p.shape.shape = "cube"; }, plain).find("no vectors") != std::string::npos);
   // A field of zeros and NaN is a picture without glyphs, and says so.

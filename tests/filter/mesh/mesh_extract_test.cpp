@@ -47,7 +47,7 @@ TEST_CASE("extract: cells by their numbers, by a field of ids, by their points, 
   CHECK(extract(d, {{0}, IdsOf::point, {}, false}, ctx)->cell_count() == 1);
   CHECK(extract(d, {{364}, IdsOf::point, {}, false}, ctx)->cell_count() == 8);  // the middle
   CHECK(test::error_of([&] { extract(d, {{512}, IdsOf::cell, {}, false}, ctx); }).find("0 to 511") != std::string::npos);
-  CHECK(test::error_of([&] { extract(d, {{}, IdsOf::cell, {}, false}, ctx); }).find("no numbers") != std::string::npos);
+  CHECK(test::error_of([&] { extract(d, {{}, IdsOf::cell, {}, false}, ctx); }).find("nothing is selected") != std::string::npos);
   CHECK(test::error_of([&] { extract(d, {{1}, IdsOf::cell, {"r"}, false}, ctx); }).size() > 0);
 }
 

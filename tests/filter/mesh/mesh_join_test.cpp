@@ -52,8 +52,8 @@ TEST_CASE("merge_points: cells that fall together go, with a note") {
   std::string said;
   ctx.on_log = [&](LogLevel, std::string_view t) { said = t; };
   CHECK(merge_points(soup(4), {10}, ctx)->cell_count() == 0);
-  CHECK(said.find("4 cells fell together") != std::string::npos);
-  CHECK(test::error_of([&] { merge_points(soup(4), {1e-30}, ctx); }).find("finer than the coordinates") != std::string::npos);
+  CHECK(said.find("4 cells collapsed") != std::string::npos);
+  CHECK(test::error_of([&] { merge_points(soup(4), {1e-30}, ctx); }).find("below the precision of the coordinates") != std::string::npos);
 }
 
 TEST_CASE("components: numbered by size, kept by number or by place") {

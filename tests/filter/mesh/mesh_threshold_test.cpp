@@ -102,7 +102,7 @@ TEST_CASE("threshold: mistakes say what would be right") {
   const DatasetPtr box = uniform_box(2, 2, 2);
   CHECK(error_of([&] { threshold(box, {.field = {"ff"}}, ctx); }).find("did you mean 'f'") != std::string::npos);
   CHECK(error_of([&] { threshold(box, {.field = {"f"}, .min = 2, .max = 1}, ctx); }).find("min 2 is above max 1") != std::string::npos);
-  CHECK(error_of([&] { threshold(box, {.field = {"f"}, .component = 2}, ctx); }).find("not component 2") != std::string::npos);
+  CHECK(error_of([&] { threshold(box, {.field = {"f"}, .component = 2}, ctx); }).find("no component 2") != std::string::npos);
   CHECK(error_of([&] { threshold(make_dataset(UniformGrid{}), {}, ctx); }).find("no scalar field") != std::string::npos);
   FieldSet whole;
   whole.add(make_field("w", Association::whole, {1}));
@@ -129,7 +129,7 @@ TEST_CASE("threshold: several ranges, several fields") {
   p.ranges = {5};
   CHECK(error_of([&] { threshold(box, p, ctx); }).find("pairs") != std::string::npos);
   p.ranges = {0, 1}, p.min = 2;
-  CHECK(error_of([&] { threshold(box, p, ctx); }).find("both given") != std::string::npos);
+  CHECK(error_of([&] { threshold(box, p, ctx); }).find("together with") != std::string::npos);
 }
 
 TEST_CASE("threshold: a lattice by bits keeps the cells that a list of them keeps") {

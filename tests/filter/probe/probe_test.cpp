@@ -224,10 +224,10 @@ TEST_CASE("probe and resample: wrong parameters are refused with what would be r
   auto at = [&](ProbeAtParams p) { return error_of([&] { probe_at(source, p, context); }); };
   CHECK(at({}).find("points=x,y,z") != std::string::npos);
   CHECK(at({.points = {1, 2, 3}, .from = Vec3()}).find("either") != std::string::npos);
-  CHECK(at({.points = {1, 2, 3, 4}}).find("three numbers a point") != std::string::npos);
+  CHECK(at({.points = {1, 2, 3, 4}}).find("three numbers per point") != std::string::npos);
   CHECK(at({.from = Vec3()}).find("add to=") != std::string::npos);
   auto grid = [&](ResampleParams p) { return error_of([&] { resample(source, p, context); }); };
-  CHECK(grid({.dims = {4, 4}}).find("three: nx,ny,nz") != std::string::npos);
+  CHECK(grid({.dims = {4, 4}}).find("give three: nx,ny,nz") != std::string::npos);
   CHECK(grid({.bounds = {0, 1}}).find("six: xmin") != std::string::npos);
   CHECK(grid({.bounds = {0, 1, 2, 1, 0, 1}}).find("bounds of y") != std::string::npos);
   CHECK(grid({.dims = {4, 4, 4}, .bounds = {0, 1, 0, 1, 0, 0}}).find("no extent") != std::string::npos);

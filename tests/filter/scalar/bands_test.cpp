@@ -148,11 +148,11 @@ TEST_CASE("bands: a constant field, outer bands left out, NaN, and bad input") {
   CHECK(areas(*bands(square(7, x), {.count = 6}, ctx)).size() == 6);
   const DatasetPtr nan = bands(square(3, [](Vec3 p) { return p.x > 1 && p.y > 1 ? std::nan("") : p.x; }), {.values = {0.3}}, ctx);
   CHECK(total(areas(*nan)) == doctest::Approx(9 * 0.75).epsilon(1e-12));
-  CHECK(said.find("1 polygons without a value") != std::string::npos);
+  CHECK(said.find("1 polygons with a corner without a value") != std::string::npos);
   CHECK(bands(square(3, x), {.values = {100}, .outside = false}, ctx)->cell_count() == 0);
   CHECK(said.find("nothing is left") != std::string::npos);
   auto error = [&](const BandsParams& p, const DatasetPtr& d) { return test::error_of([&] { bands(d, p, ctx); }); };
-  CHECK(error({.values = {HUGE_VAL}}, square(3, x)).find("no border") != std::string::npos);
+  CHECK(error({.values = {HUGE_VAL}}, square(3, x)).find("not a valid band limit") != std::string::npos);
   CHECK(error({.field = {"g"}}, square(3, x)).find("'g'") != std::string::npos);
   CHECK(error({.field = {"c"}}, test::meshes::uniform_box(2, 2, 0)).find("cell_to_point") != std::string::npos);
   CHECK(error({.component = 3}, square(3, x)).find("component") != std::string::npos);

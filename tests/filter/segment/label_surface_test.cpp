@@ -219,7 +219,7 @@ TEST_CASE("label surface: labels beyond 32 bits, values that are no labels, cell
   CHECK(s->cell_count() == 11);
   CHECK(around_label(*s, int64_t(1) << 40).closed);
   const auto half = test::image_of<float>({3, 3, 3}, [](Vec3 p) { return p.x + 0.5; });
-  CHECK(test::error_of([&] { run(half); }).find("no label field") != std::string::npos);
+  CHECK(test::error_of([&] { run(half); }).find("not a label field") != std::string::npos);
 
   RectilinearGrid r;
   r.x = Array::from_vector<double>({0, 1, 2, 3, 4}), r.y = Array::from_vector<double>({5, 3, 1, -1}),

@@ -246,9 +246,8 @@ TEST_CASE("degenerate points and lines: the same bytes for 1 and 8 threads; the 
   CHECK(s->point_count() > 4);
   CHECK(equal_fields(*s, *t));
   Context context;
-  CHECK(error_of([&] { degenerate_points(volume, {}, context); }).find("slice it first, or ask for its degenerate_lines") !=
-        std::string::npos);
-  CHECK(error_of([&] { degenerate_lines(flat, {}, context); }).find("degenerate_points finds those of flat meshes") != std::string::npos);
+  CHECK(error_of([&] { degenerate_points(volume, {}, context); }).find("slice it first, or use degenerate_lines") != std::string::npos);
+  CHECK(error_of([&] { degenerate_lines(flat, {}, context); }).find("use degenerate_points for flat meshes") != std::string::npos);
   CHECK(error_of([&] { degenerate_points(tensor_points({diagonal(1, 2, 3)}), {}, context); }).find("has no degenerate points") !=
         std::string::npos);
   Listener l;
@@ -267,7 +266,7 @@ TEST_CASE("degenerate_lines: eigenvalues that are equal all over a surface are t
   });
   const DatasetPtr found = degenerate_lines(sphere, {}, l.context);
   CHECK(found->cell_count() > 100);
-  CHECK(l.warnings.find("all over surfaces") != std::string::npos);
+  CHECK(l.warnings.find("on whole surfaces") != std::string::npos);
   Listener quiet;
   const DatasetPtr axis = tensor_grid({17, 17, 17}, {-1, -1, -1}, {1, 1, 1}, [](Vec3 p) {
     return SymTensor{3, p.x + 0.03 - 0.1 * p.z, -p.x - 0.03 + 0.1 * p.z, 0, p.y + 0.011, 0};

@@ -189,16 +189,16 @@ TEST_CASE("tensor_fit: text files of gradients in rows or columns, images as sin
     change(q);
     return error_of([&] { tensor_fit(in, q, l.context); });
   };
-  CHECK(with([&](auto& q) { q.bvals = text_file("bad1", "0 1000 x"); }).find("bad1: line 1: 'x' is no number") != std::string::npos);
+  CHECK(with([&](auto& q) { q.bvals = text_file("bad1", "0 1000 x"); }).find("bad1: line 1: 'x' is not a number") != std::string::npos);
   CHECK(with([&](auto& q) { q.bvals = text_file("bad2", "0 1000"); }).find("do not fit 2 b-values") != std::string::npos);
-  CHECK(with([&](auto& q) { q.bvals = text_file("bad3", ""); }).find("there is no number in it") != std::string::npos);
+  CHECK(with([&](auto& q) { q.bvals = text_file("bad3", ""); }).find("it contains no numbers") != std::string::npos);
   CHECK(with([&](auto& q) { q.bvecs = text_file("bad4", "1 2 3\n4 5\n"); }).find("line 2 has 2 numbers, the first has 3") !=
         std::string::npos);
   CHECK(with([&](auto& q) { q.bvals = text_file("bad5", "0 1 2 3 -4 5 6"); }).find("b-value 5 is -4") != std::string::npos);
   CHECK(with([&](auto& q) {
           q.bvecs = text_file("bad6", rows[0] + "\n" + rows[1] + "\n" + "0 0 0 0 0 0 nan\n");
-        }).find("volume 7 has b = 700 and no direction") != std::string::npos);
-  CHECK(with([](auto& q) { q.bvals = ""; }).find("bvals names no file, and the data carry no field 'bval'") != std::string::npos);
+        }).find("volume 7 has b = 700 but no direction") != std::string::npos);
+  CHECK(with([](auto& q) { q.bvals = ""; }).find("bvals names no file, and the data has no field 'bval'") != std::string::npos);
   CHECK(with([](auto& q) { q.fields.pop_back(); }).find("6 images for 7 b-values") != std::string::npos);
   CHECK(with([](auto& q) { q.fields = {}; }).find("no field has 7 components") != std::string::npos);
   CHECK(with([](auto& q) { q.bvecs = "/nowhere/bvecs"; }).find("/nowhere/bvecs") != std::string::npos);

@@ -141,7 +141,7 @@ TEST_CASE("tensor_glyphs: strides, counts, cells, masks and what gets none") {
   const DatasetPtr few = tensor_glyphs(grid, p, l.context);
   CHECK(few->point_count() <= 100 * nv);
   CHECK(few->point_count() > 50 * nv);
-  CHECK(l.notes.find("one at every 5. point along each axis") != std::string::npos);
+  CHECK(l.notes.find("stride 5 along each axis") != std::string::npos);
   // The longest axis is the distance.
   CHECK(few->fields().require("eigenvalue 1").array.get(0) == 3);
   p.scale = TensorScale::eigenvalues;

@@ -373,7 +373,7 @@ TEST_CASE("tensor_lic: what is no tensor, no surface or too fine is refused, asy
   CHECK_THROWS_WITH_AS(run(make_dataset(parts), {}), doctest::Contains("no tensor field"), Error);
   parts.fields.add({"s", Association::point, Array::from_vector<float>(std::vector<float>(25, 1.0f)), ""});
   p.tensors.field = {"s"};
-  CHECK_THROWS_WITH_AS(run(make_dataset(parts), p), doctest::Contains("no tensor"), Error);
+  CHECK_THROWS_WITH_AS(run(make_dataset(parts), p), doctest::Contains("not a tensor"), Error);
   // 2D tensors on a sphere.
   DatasetParts round = globe(4, [](Vec3) { return SymTensor{}; })->parts();
   round.fields = {};

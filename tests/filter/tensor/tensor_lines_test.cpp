@@ -316,7 +316,7 @@ TEST_CASE("tensor lines: bad input is named, and what gives no line is told") {
   CHECK(none->cell_count() == 0);
   CHECK(l.notes.find("2 of 2 seeds give no line") != std::string::npos);
   CHECK(error_of([&] { hyperstreamlines(mesh, lines_from({0, 0}), l.context); }).find("seeds has 2 numbers") != std::string::npos);
-  CHECK(error_of([&] { tractography(tensor_points({diagonal(1, 2, 3)}), {}, l.context); }).find("there is nothing between the points") !=
+  CHECK(error_of([&] { tractography(tensor_points({diagonal(1, 2, 3)}), {}, l.context); }).find("has nothing between its points") !=
         std::string::npos);
   const DatasetPtr flat = tensor_grid({3, 3, 1}, {-1, -1, 0}, {1, 1, 0}, [](Vec3) { return diagonal(2, 1, 0); });
   HyperstreamlinesParams third = lines_from({0, 0, 0});

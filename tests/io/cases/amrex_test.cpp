@@ -157,16 +157,16 @@ TEST_CASE("amrex: errors say what is wrong and where") {
     return error_of([&] { read_plot("plt_bad", files); });
   };
   CHECK(contains(refused("Header", "\n2\nrho", "\n3\nrho"), "Header"));
-  CHECK(contains(refused("Header", "0.5 0.5", "-0.5 0.5"), "a spacing of -0.5"));
-  CHECK(contains(refused("Header", "\n2\n((", "\n0\n(("), "ratio of 0"));
+  CHECK(contains(refused("Header", "0.5 0.5", "-0.5 0.5"), "a spacing is -0.5"));
+  CHECK(contains(refused("Header", "\n2\n((", "\n0\n(("), "ratio is 0"));
   CHECK(contains(refused("Header", "((2,2,2) (5", "((2,2,2) (1"), "the domain of level 0"));
-  CHECK(contains(refused("Level_0/Cell_H", "(1 0", "(2 0"), "'(1 0' is due"));
+  CHECK(contains(refused("Level_0/Cell_H", "(1 0", "(2 0"), "'(1 0' was expected"));
   CHECK(contains(refused("Level_0/Cell_H", "((2,2,2) (5,5,5)", "((2,2,2) (50,5,5)"), "does not cover its box"));
   CHECK(contains(refused("Level_0/Cell_H", "00000 0", "00000 9999999"), "the file has"));
   CHECK(contains(refused("Level_0/Cell_H", "Cell_D_00000", "Cell_D_00001"), "Cell_D_00001"));
   CHECK(contains(refused("Level_0/Cell_D_00000", "(8 7 6 5 4 3 2 1)", "(2 1 4 3 6 5 8 7)"), "mixed byte order"));
   CHECK(contains(refused("Level_0/Cell_D_00000", "(64 11", "(16 11"), "numbers of 16 bits"));
-  CHECK(contains(refused("Level_0/Cell_D_00000", "0)) 2\n", "0)) 1\n"), "components, 2 are due"));
+  CHECK(contains(refused("Level_0/Cell_D_00000", "0)) 2\n", "0)) 1\n"), "components, expected 2"));
   CHECK(contains(refused("Level_0/Cell_D_00000", "(5,5,5)", "(9000000,9000000,9000000)"), "too large"));
   CHECK(contains(refused("Level_0/Cell_D_00000", "(5,5,5)", "(5,5,9)"), "bytes, "));
   // Many boxes that share the bytes of one.

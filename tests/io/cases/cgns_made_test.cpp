@@ -209,7 +209,7 @@ TEST_CASE("cgns: wrong connectivity is told with its node" * doctest::skip(no_cg
   CHECK(contains(message(20, {10, 1, 2, 3}, {}), "list ends"));
   CHECK(contains(message(20, {10, 1, 2, 3, 4}, {0, 9}), "ElementStartOffset"));
   CHECK(contains(message(22, {5, 1, 2}, {}), "list ends"));
-  CHECK(contains(message(23, {1, 2, 3, 4}, {0, 4}), "no polygon"));
+  CHECK(contains(message(23, {1, 2, 3, 4}, {0, 4}), "not a polygon"));
 }
 
 TEST_CASE("cgns: links lead below the folder of the file or the working folder, to files, and nowhere else" * doctest::skip(no_cgns())) {

@@ -371,26 +371,26 @@ TEST_CASE("ensight: errors say what is wrong and where") {
     s.replace(at, from.size(), to);
     return error_of([&] { read_any(write_case("ens_bad", files) + "m.case"); });
   };
-  CHECK(contains(refused("m.case", "ensight gold", "ensight"), "type 'ensight' is not read"));
-  CHECK(contains(refused("m.case", "model: m.geo", ""), "no geometry"));
+  CHECK(contains(refused("m.case", "ensight gold", "ensight"), "type 'ensight' is not supported"));
+  CHECK(contains(refused("m.case", "model: m.geo", ""), "not name a geometry"));
   CHECK(contains(refused("m.case", "pressure m.scl", "pressure"), "line 8"));
   CHECK(contains(refused("m.case", "pressure m.scl", "pressure none.scl"), "none.scl"));
   CHECK(contains(refused("m.case", "pressure m.scl", "3 pressure m.scl"), "time set 3"));
   CHECK(contains(refused("m.case", "pressure m.scl", "pressure m.**"), "no time set"));
-  CHECK(contains(refused("m.case", "gamma 1.4", "gamma x"), "'x' is no number"));
-  CHECK(contains(refused("m.geo", "node id given", "node id maybe"), "off, given, assign or ignore"));
+  CHECK(contains(refused("m.case", "gamma 1.4", "gamma x"), "'x' is not a number"));
+  CHECK(contains(refused("m.geo", "node id given", "node id maybe"), "use off, given, assign or ignore"));
   CHECK(contains(refused("m.geo", "coordinates\n        10", "coordinates\n2147483647"), "do not fit"));
   CHECK(contains(refused("m.geo", "coordinates\n        10", "coordinates\n        -1"), "do not fit"));
   CHECK(contains(refused("m.geo", fmt::format("{:10}{:10}{:10}", 1, 2, 9), fmt::format("{:10}{:10}{:10}", 1, 2, 11)),
-                 "node 11, there are 1 to 10"));
+                 "node 11, but nodes are 1 to 10"));
   CHECK(contains(refused("m.geo", "block rectilinear\n         2", "block rectilinear\n         0"), "a block of 0 x 3 x 2"));
-  CHECK(contains(refused("m.geo", "         9\n         3         4", "         9\n         3        44"), "a range of 3 to 44"));
+  CHECK(contains(refused("m.geo", "         9\n         3         4", "         9\n         3        44"), "a range from 3 to 44"));
   CHECK(contains(refused("m.scl", "part\n         2", "part\n         7"), "part 7 is not in the geometry"));
-  CHECK(contains(refused("m.scl", "coordinates", "cordinates"), "where 'coordinates' is due"));
+  CHECK(contains(refused("m.scl", "coordinates", "cordinates"), "where 'coordinates' was expected"));
   CHECK(contains(refused("m.scl", "         6\n", "         9\n"), "place 9 of 6"));
-  CHECK(contains(refused("m.vel", "hexa8", "nsided"), "no elements 'nsided' (any more)"));
+  CHECK(contains(refused("m.vel", "hexa8", "nsided"), "no (further) elements 'nsided'"));
   const std::string message = refused("m.vel", "7.00000e+00", "seven");
-  CHECK(contains(message, "'seven' is no number"));
+  CHECK(contains(message, "'seven' is not a number"));
   CHECK(contains(message, "m.vel"));
 }
 

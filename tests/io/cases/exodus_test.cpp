@@ -301,8 +301,8 @@ TEST_CASE("exodus: wrong elements, sides and shapes are told with their place") 
   CHECK(contains(with("elem_ss1", 1, INT32_MIN), "elem_ss1"));
   CHECK(contains(with("side_ss1", 0, 7), "1..6"));
   CHECK(contains(with("side_ss1", 2, 0), "1..4"));
-  CHECK(contains(error_of([] { read_any("odd.exo", one_element("BLOB", 17)); }), "no known shape"));
-  CHECK(contains(error_of([] { read_any("odd.exo", one_element("HEX8", 5)); }), "no known shape"));
+  CHECK(contains(error_of([] { read_any("odd.exo", one_element("BLOB", 17)); }), "unknown shape"));
+  CHECK(contains(error_of([] { read_any("odd.exo", one_element("HEX8", 5)); }), "unknown shape"));
 }
 
 TEST_CASE("exodus: cut and damaged files are refused or read") {

@@ -353,22 +353,22 @@ TEST_CASE("openfoam: errors say what is wrong and where") {
   const std::string mesh = "constant/polyMesh/";
   CHECK(contains(refused(mesh + "points", "FoamFile", "Foam"), "FoamFile header"));
   CHECK(contains(refused(mesh + "points", "20\n(", "2147483648\n("), "does not fit"));
-  CHECK(contains(refused(mesh + "points", "(1 0 0)", "(1 x 0)"), "no list of 20 values"));
+  CHECK(contains(refused(mesh + "points", "(1 0 0)", "(1 x 0)"), "not a list of 20 values"));
   CHECK(contains(refused(mesh + "faces", "4(", "3("), "of a face is due"));
   CHECK(contains(refused(mesh + "owner", "\n0\n", "\n99\n"), "belongs to cell 99"));
   CHECK(contains(refused(mesh + "owner", "\n0\n", "\n-7\n"), "belongs to cell -7"));
-  CHECK(contains(refused(mesh + "faces", "(1 ", "(77 "), "the point 77, there are 20"));
+  CHECK(contains(refused(mesh + "faces", "(1 ", "(77 "), "the point 77, but there are 20"));
   CHECK(contains(refused(mesh + "boundary", "nFaces 5", "nFaces 6"), "patch 'outlet'"));
   CHECK(contains(refused("10/p", "nonuniform List<scalar> 6", "nonuniform List<scalar> 5"), "due"));
-  CHECK(contains(refused("10/U", "(1 2 -3)", "(1 2)"), "is no number"));
+  CHECK(contains(refused("10/U", "(1 2 -3)", "(1 2)"), "is not a number"));
   CHECK(contains(refused("10/p", "internalField", "internal"), "has no internalField"));
-  CHECK(contains(refused("10/p", "[1 -1", "[a -1"), "dimensions are seven numbers"));
+  CHECK(contains(refused("10/p", "[1 -1", "[a -1"), "dimensions must be seven numbers"));
   const std::string missing = [] {
     CaseFiles files = foam_case({});
     files.erase("constant/polyMesh/faces");
     return error_of([&] { read_any(write_case("foam_missing", files)); });
   }();
-  CHECK(contains(missing, "no file 'faces'"));
+  CHECK(contains(missing, "lacks the file 'faces'"));
   CHECK(contains(error_of([] { read_any(write_case("foam_none", {{"a.foam", ""}}) + "a.foam"); }), "has no mesh"));
   CHECK(contains(error_of([] { read_any(write_case("foam_odd", {{"a.stl", ""}}) + "a.stl"); }), "is empty"));
 }

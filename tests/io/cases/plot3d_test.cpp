@@ -193,7 +193,7 @@ TEST_CASE("plot3d: a meta file names the steps") {
   CHECK(leaf(read_any(root + "s.p3d", o), 0)->point_count() == 12);
   CHECK(contains(error_of([&] { read_any(root + "none.p3d"); }), "g9.xyz"));
   CHECK(contains(error_of([&] { read_any(root + "odd.p3d"); }), "names no \"xyz\""));
-  CHECK(contains(error_of([&] { read_any(root + "wrong.p3d"); }), "do not fit the grid"));
+  CHECK(contains(error_of([&] { read_any(root + "wrong.p3d"); }), "do not match the grid"));
 }
 
 TEST_CASE("plot3d: damaged files give an error or a valid grid") {

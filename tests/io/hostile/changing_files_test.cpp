@@ -110,7 +110,7 @@ TEST_CASE("changing files: of a mapped file that is cut, what is gone reads as z
   CHECK(r.hi == 1);
   const std::string error = change_told();
   CHECK(error.find(path) != std::string::npos);
-  CHECK(error.find("the file changed while it was read") != std::string::npos);
+  CHECK(error.find("the file changed while it was being read") != std::string::npos);
 }
 
 TEST_CASE("changing files: a bus error anywhere else ends the program as ever") {
@@ -169,7 +169,7 @@ TEST_CASE("changing files: nothing is written that was made of a file that has c
     SurfaceMesh s;
     s.points.xyz = Array::from_vector(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}, 3);
     s.polygons.fixed = 3, s.polygons.connectivity = Array::from_vector(std::vector<int32_t>{0, 1, 2});
-    CHECK(test::error_of([&] { write_data(out, make_dataset(s), {}, context); }).find("the file changed while it was read") !=
+    CHECK(test::error_of([&] { write_data(out, make_dataset(s), {}, context); }).find("the file changed while it was being read") !=
           std::string::npos);
     CHECK(MappedFile(out).text() == "before");
   }
@@ -194,6 +194,6 @@ TEST_CASE("changing files: what is changed while a reader is at work is told, wh
     const std::string error = test::error_of([&] { read_data(path, {}, context); });
     CHECK(said > 0);
     CHECK(error.find(path) != std::string::npos);
-    CHECK(error.find("the file changed while it was read") != std::string::npos);
+    CHECK(error.find("the file changed while it was being read") != std::string::npos);
   }
 }

@@ -194,7 +194,7 @@ TEST_CASE(
   });
   CHECK(array.find("not enough memory") != std::string::npos);
   const std::string dies = error_within(enough, [](Context&) -> Data { std::abort(); });
-  CHECK(dies.find("the library that reads it gave up") != std::string::npos);
+  CHECK(dies.find("the library that reads it failed") != std::string::npos);
   CHECK(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() < 20);
 }
 

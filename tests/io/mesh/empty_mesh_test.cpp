@@ -91,8 +91,8 @@ TEST_CASE("vtk xml: pieces without points and cells add nothing, but the first t
 
 TEST_CASE("obj: a text without vertices is an empty surface only when it is nothing but comments") {
   CHECK(test::read_text("none.obj", "# nothing\n\n  # here\n")->point_count() == 0);
-  CHECK(test::refusal("none.obj", "# x\nhello\n").find("no vertex") != std::string::npos);
-  CHECK(test::refusal("none.obj", "# x\nvn 0 0 1\n").find("no vertex") != std::string::npos);
+  CHECK(test::refusal("none.obj", "# x\nhello\n").find("no vertices") != std::string::npos);
+  CHECK(test::refusal("none.obj", "# x\nvn 0 0 1\n").find("no vertices") != std::string::npos);
 }
 
 TEST_CASE("a mesh without points has an empty list of positions of three components, whoever made it") {

@@ -115,7 +115,7 @@ TEST_CASE("ucd: what is wrong is named with its line; damaged files are refused"
   };
   CHECK(message(ucd, "hex 14", "hex 99").find("line 14: node 99") != std::string::npos);
   CHECK(message(ucd, "2 8 pyr", "2 8 cone").find("'cone'") != std::string::npos);
-  CHECK(message(ucd, "2 1 2\nT", "2 1 3\nT").find("promises 3") != std::string::npos);
+  CHECK(message(ucd, "2 1 2\nT", "2 1 3\nT").find("announces 3") != std::string::npos);
   test::check_survives("robust.inp", ucd);
   test::check_survives_sizes("robust.inp", ucd);
 }

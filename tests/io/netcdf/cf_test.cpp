@@ -207,7 +207,7 @@ TEST_CASE("netcdf: what holds no grid is refused by name") {
   f.var<double>("one", {0}, {1});
   const std::string message = refusal("none.nc", f.bytes());
   CAPTURE(message);
-  CHECK(contains(message, "holds no variable on a grid"));
+  CHECK(contains(message, "contains no variable on a grid"));
 }
 
 TEST_CASE("netcdf: cut and damaged files are refused or read, never more") {

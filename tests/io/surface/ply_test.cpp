@@ -207,19 +207,19 @@ TEST_CASE("ply: bad files are refused") {
   CHECK(contains(refusal("b.ply", "ply\nformat morse 1.0\n"), "unknown format 'morse'"));
   CHECK(contains(refusal("b.ply", "ply\nelement vertex 3\nend_header\n"), "no 'format'"));
   CHECK(contains(refusal("b.ply", header("ascii", "element vertex many\n")), "line 3"));
-  CHECK(contains(refusal("b.ply", header("ascii", "property float x\n")), "before the first element"));
+  CHECK(contains(refusal("b.ply", header("ascii", "property float x\n")), "precedes the first element"));
   CHECK(contains(refusal("b.ply", header("ascii", "element vertex 3\nproperty complex x\n")), "unknown type 'complex'"));
-  CHECK(contains(refusal("b.ply", header("ascii", "element vertex 3\nproperty list float int x\n")), "counted in floats"));
-  CHECK(contains(refusal("b.ply", header("ascii", "elephant vertex 3\n")), "unknown word 'elephant'"));
+  CHECK(contains(refusal("b.ply", header("ascii", "element vertex 3\nproperty list float int x\n")), "cannot be a float"));
+  CHECK(contains(refusal("b.ply", header("ascii", "elephant vertex 3\n")), "unknown keyword 'elephant'"));
   CHECK(contains(refusal("b.ply", header("ascii", "element face 0\n")), "no element 'vertex'"));
   CHECK(contains(refusal("b.ply", header("ascii", "element vertex 0\nproperty float x\n")), "no 'y'"));
   CHECK(contains(refusal("b.ply", header("ascii", xyz + "element face 1\nproperty uchar a\n") + rows + "1\n"), "no list 'vertex_indices'"));
-  CHECK(contains(refusal("b.ply", header("ascii", xyz) + "0 0 0\n1 0 zero\n0 1 0\n"), "line 9: vertex 1: no number for 'z'"));
-  CHECK(contains(refusal("b.ply", header("ascii", xyz) + "0 0 0\n1 0 0       \n"), "are promised"));
+  CHECK(contains(refusal("b.ply", header("ascii", xyz) + "0 0 0\n1 0 zero\n0 1 0\n"), "line 9: vertex 1: 'z' has no number"));
+  CHECK(contains(refusal("b.ply", header("ascii", xyz) + "0 0 0\n1 0 0       \n"), "are announced"));
   CHECK(contains(refusal("b.ply", header("ascii", xyz + face) + rows + "3 0 1 7\n"), "point id 7"));
   CHECK(contains(refusal("b.ply", header("ascii", xyz + face) + rows + "3 0 1 -1\n"), "point id -1"));
-  CHECK(contains(refusal("b.ply", header("ascii", xyz + face) + rows + "3 0 1\n"), "has not the 3 numbers"));
-  CHECK(contains(refusal("b.ply", header("ascii", xyz + face) + rows + "300000 0 1 2\n"), "promises 300000 entries"));
+  CHECK(contains(refusal("b.ply", header("ascii", xyz + face) + rows + "3 0 1\n"), "does not have the 3 numbers"));
+  CHECK(contains(refusal("b.ply", header("ascii", xyz + face) + rows + "300000 0 1 2\n"), "announces 300000 entries"));
   CHECK(contains(
       refusal("b.ply", header("ascii", "element vertex 4000000000000000000\nproperty float x\nproperty float y\nproperty float z\n")),
       "do not fit"));

@@ -157,16 +157,16 @@ TEST_CASE("stl: other meshes are told to extract their surface") {
 
 TEST_CASE("stl: bad files are refused") {
   CHECK(contains(refusal("b.stl", "hello"), "too short for STL"));
-  CHECK(contains(refusal("b.stl", binary_stl(torus(4, 4)).substr(0, 500)), "32 triangles need 1684 bytes, there are 500"));
+  CHECK(contains(refusal("b.stl", binary_stl(torus(4, 4)).substr(0, 500)), "32 triangles need 1684 bytes, but there are 500"));
   std::vector<float> nan{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, std::nanf(""), 0};
   CHECK(contains(refusal("b.stl", binary_stl(nan)), "triangle 1 has a coordinate"));
   const std::string facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
-  CHECK(contains(refusal("b.stl", "solid\n" + facet), "cut off"));
-  CHECK(contains(refusal("b.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n"), "line 4: 'vertex' without three numbers"));
+  CHECK(contains(refusal("b.stl", "solid\n" + facet), "truncated"));
+  CHECK(contains(refusal("b.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n"), "line 4: 'vertex' does not have three numbers"));
   CHECK(contains(
       refusal("b.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0 1 0\nendloop\nendfacet\n" + facet + "endsolid\n"),
       "three vertices"));
-  CHECK(contains(refusal("b.stl", "solid\nfacet normal 0 0 1\npoint 0 0 0\nendsolid\n"), "line 3: 'point' is no word of STL"));
+  CHECK(contains(refusal("b.stl", "solid\nfacet normal 0 0 1\npoint 0 0 0\nendsolid\n"), "line 3: 'point' is not an STL keyword"));
 }
 
 TEST_CASE("stl: cut and damaged files give errors, never crashes") {

@@ -77,9 +77,9 @@ TEST_CASE("gml: nodes and edges are tables, nested keys are joined") {
 TEST_CASE("gml: what is wrong is named with its line, and damaged files are read or refused") {
   using test::contains;
   auto message = [](const std::string& s) { return test::error_of([&] { test::read_bytes("b.gml", s); }); };
-  CHECK(contains(message("graph [\n node [ id 1\n"), "line 3: a list that does not end"));
+  CHECK(contains(message("graph [\n node [ id 1\n"), "line 3: a list has no end"));
   CHECK(contains(message("graph [\n node [ id ] ]"), "line 2: 'id' has no value"));
-  CHECK(contains(message("graph [ label \"x ]"), "does not end"));
+  CHECK(contains(message("graph [ label \"x ]"), "has no end"));
   CHECK(contains(message("tree [ id 1 ]"), "no 'graph"));
   CHECK(contains(message("graph [ directed 1 ]"), "neither nodes nor edges"));
   std::string deep = "graph [ node [ ";

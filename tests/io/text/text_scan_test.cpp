@@ -108,7 +108,8 @@ TEST_CASE("text_scan: numbers of any layout, many threads") {
   CHECK(parse_numbers("3.0 1e2 -7", ElementType::i16, 3, 1, "here").get(1) == 100);
   CHECK(parse_numbers("18446744073709551615", ElementType::u64, 1, 1, "here").view<uint64_t>()[0] == UINT64_MAX);
   CHECK(test::contains(test::error_of([] { parse_numbers("1 2", ElementType::f32, 2, 2, "here"); }), "cannot hold"));
-  CHECK(test::contains(test::error_of([] { parse_numbers("1      2", ElementType::f32, 3, 1, "here"); }), "has 2 numbers, 3 are needed"));
+  CHECK(
+      test::contains(test::error_of([] { parse_numbers("1      2", ElementType::f32, 3, 1, "here"); }), "has 2 numbers, but 3 are needed"));
   CHECK(test::contains(test::error_of([] { parse_numbers("1 2x 3", ElementType::f32, 3, 1, "here", 4); }), "line 5: '2x'"));
   CHECK(test::contains(test::error_of([] { parse_numbers("1.5", ElementType::i32, 1, 1, "here"); }), "no i32"));
 }

@@ -83,7 +83,7 @@ TEST_CASE("bov: a brick without a header tells its size by its name and its type
   CHECK(contains(said, "has no header; read as 5x4x3 f32, big-endian"));
   CHECK(std::get<DatasetPtr>(read_any(root + "y_5x4x3.bov"))->fields()[0].array.type() == ElementType::u8);
   CHECK(contains(error_of([&] { read_any(root + "z_5x4x3.bov"); }), "give --dims"));
-  CHECK(contains(error_of([&] { read_any(root + "w.bov"); }), "say no size"));
+  CHECK(contains(error_of([&] { read_any(root + "w.bov"); }), "do not tell the size"));
   ReadOptions o;
   o.raw_dims = {3, 4, 5}, o.raw_type = "u8";
   CHECK(std::get<DatasetPtr>(read_any(root + "w.bov", o))->point_count() == 60);
@@ -94,13 +94,13 @@ TEST_CASE("bov: errors say what is wrong and where") {
     return error_of([&] { read_bov_case("bov_bad", {{"a.bov", header}, {"v.dat", data}}); });
   };
   CHECK(contains(refused(head, floats(23)), "96 bytes are needed"));
-  CHECK(contains(refused(head + "DATA_SIZE: 4 3\n"), "line 7: three numbers are due"));
-  CHECK(contains(refused(head + "DATA_SIZE: 4 3 0\n"), "'0' is no count from 1"));
+  CHECK(contains(refused(head + "DATA_SIZE: 4 3\n"), "line 7: expected three numbers"));
+  CHECK(contains(refused(head + "DATA_SIZE: 4 3 0\n"), "'0' is not a valid count from 1"));
   CHECK(contains(refused(head + "DATA_SIZE: 9223372036854775807 9223372036854775807 4\n"), "too large"));
   CHECK(contains(refused(head + "DATA_FORMAT: HALF\n"), "unknown DATA_FORMAT 'HALF'"));
   CHECK(contains(refused(head + "DATA_FILE: v%d.dat\nDATA_BRICKLETS: 3 3 2\n"), "do not divide"));
   CHECK(contains(refused(head + "DATA_FILE: none.dat\n"), "none.dat"));
-  CHECK(contains(refused(head + "no colon\n"), "no KEY: VALUE"));
+  CHECK(contains(refused(head + "no colon\n"), "not of the form KEY: VALUE"));
 }
 
 TEST_CASE("bov: damaged files give an error or a valid brick") {

@@ -271,7 +271,7 @@ TEST_CASE("dicom: frames of one file are slices; several series and several volu
 TEST_CASE("dicom: what cannot be read is said") {
   SliceOptions o;
   o.pixels = stored({1, 2, 3, 4, 5});
-  CHECK(contains(refusal("b.dcm", slice(o)), "need 12 bytes, there are 10"));
+  CHECK(contains(refusal("b.dcm", slice(o)), "need 12 bytes, but there are 10"));
   o.pixels = stored({1, 2, 3, 4, 5, 6});
   o.rows = 65535, o.columns = 65535;
   CHECK(contains(refusal("b.dcm", slice(o)), "there are 12"));
@@ -284,16 +284,16 @@ TEST_CASE("dicom: what cannot be read is said") {
   CHECK(contains(refusal("b.dcm", slice(o)), "12 bits"));
   Dicom none;
   none.text(0x00080060, "CS", "SR");
-  CHECK(contains(refusal("b.dcm", none.file()), "holds no picture"));
+  CHECK(contains(refusal("b.dcm", none.file()), "contains no picture"));
   none.body += "\xe0\x7f\x10";
   CHECK(contains(refusal("b.dcm", none.file()), "ends inside an element"));
-  CHECK(contains(refusal("b.dcm", "some text that is long enough to look at"), "no DICOM file"));
+  CHECK(contains(refusal("b.dcm", "some text that is long enough to look at"), "not a DICOM file"));
   // Sequences without an end, and one inside the other.
   Dicom deep;
   for (int i = 0; i < 1000; ++i)
     deep.body += i % 2 ? std::string("\xfe\xff\x00\xe0\xff\xff\xff\xff", 8) : std::string("\x08\x00\x40\x11SQ\0\0\xff\xff\xff\xff", 12);
-  CHECK(contains(refusal("b.dcm", deep.file()), "deeper than 16"));
-  CHECK(contains(error_of([] { read_file(folder("empty")); }), "folder of no known kind"));
+  CHECK(contains(refusal("b.dcm", deep.file()), "more than 16 deep"));
+  CHECK(contains(error_of([] { read_file(folder("empty")); }), "folder of unknown kind"));
 }
 
 TEST_CASE("dicom: cut and damaged files give errors, never crashes") {

@@ -124,18 +124,18 @@ TEST_CASE("metaimage: bad headers are refused") {
   const std::string end = "ElementType = MET_SHORT\nElementDataFile = LOCAL\n" + shorts(false);
   CHECK(contains(refusal("b.mha", "NDims = 3\nDimSize = 3 2\n" + end), "2 numbers but NDims is 3"));
   CHECK(contains(refusal("b.mha", "NDims = 30\nDimSize = 3 2\n" + end), "NDims is '30'"));
-  CHECK(contains(refusal("b.mha", "NDims = 2\nDimSize = 3 x\n" + end), "'x' is no size"));
+  CHECK(contains(refusal("b.mha", "NDims = 2\nDimSize = 3 x\n" + end), "'x' is not a valid size"));
   CHECK(contains(refusal("b.mha", head + "ElementType = MET_STRING\nElementDataFile = LOCAL\n"), "'MET_STRING' is unknown"));
-  CHECK(contains(refusal("b.mha", head + "ElementSpacing = 1 1\n" + end), "2 numbers, 3 are needed"));
-  CHECK(contains(refusal("b.mha", head + "ElementSpacing = 1 1 nan\n" + end), "is no number"));
-  CHECK(contains(refusal("b.mha", head + "TransformMatrix = 1 0 0 1 0 0 0 0 1\n" + end), "in one plane"));
+  CHECK(contains(refusal("b.mha", head + "ElementSpacing = 1 1\n" + end), "2 numbers, but 3 are needed"));
+  CHECK(contains(refusal("b.mha", head + "ElementSpacing = 1 1 nan\n" + end), "is not a number"));
+  CHECK(contains(refusal("b.mha", head + "TransformMatrix = 1 0 0 1 0 0 0 0 1\n" + end), "coplanar"));
   CHECK(contains(refusal("b.mha", head + "ElementType = MET_SHORT\n"), "no ElementDataFile"));
   CHECK(contains(refusal("b.mha", head + "ElementNumberOfChannels = 0\n" + end), "ElementNumberOfChannels"));
   CHECK(contains(refusal("b.mha", head + "HeaderSize = -2\n" + end), "HeaderSize"));
-  CHECK(contains(refusal("b.mha", head + "ElementType = MET_SHORT\nElementDataFile = LIST\n"), "no names follow"));
+  CHECK(contains(refusal("b.mha", head + "ElementType = MET_SHORT\nElementDataFile = LIST\n"), "not followed by names"));
   CHECK(contains(refusal("b.mha", "ObjectType = Tube\nNDims = 3\nDimSize = 1 1 1\n" + end), "MetaIO Tube"));
   CHECK(contains(refusal("b.mha", "NDims = 3\nDimSize = 9999999 9999999 9999999\n" + end), "too large"));
-  CHECK(contains(refusal("b.mha", "NDims = 3\nDimSize = 3000 3000 30\n" + end), "bytes are needed, there are 24"));
+  CHECK(contains(refusal("b.mha", "NDims = 3\nDimSize = 3000 3000 30\n" + end), "bytes are needed, but there are 24"));
   CHECK(contains(refusal("b.mha", "NDims = 3\nDimSize = 3000 3000 30\nCompressedData = True\n" + end), "cannot hold"));
   CHECK(contains(refusal("b.mha", head + "CompressedData = True\n" + end), "damaged"));
 }

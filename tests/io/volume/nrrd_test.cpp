@@ -72,7 +72,7 @@ TEST_CASE("nrrd: data in several files by list and by pattern") {
   CHECK(holds(*read_text("p.nhdr", head + "encoding: raw\nendian: little\ndata file: slice%02d.raw 2 1 -1\n"), turned));
   CHECK(contains(refusal("p.nhdr", head + "encoding: raw\nendian: little\ndata file: LIST\nslice01.raw\n"), "too short"));
   CHECK(contains(refusal("p.nhdr", head + "encoding: raw\nendian: little\ndata file: slice%02d.raw 1 3 1\n"), "3 data files"));
-  CHECK(contains(refusal("p.nhdr", head + "encoding: raw\nendian: little\ndata file: slice%s.raw 1 3 1\n"), "no pattern"));
+  CHECK(contains(refusal("p.nhdr", head + "encoding: raw\nendian: little\ndata file: slice%s.raw 1 3 1\n"), "not a pattern"));
   CHECK(contains(refusal("p.nhdr", head + "encoding: raw\nendian: little\ndata file: slice%d.raw 1 3 0\n"), "steps of 0"));
   CHECK(contains(refusal("p.nhdr", head + "encoding: raw\nendian: little\ndata file: slice%d.raw 0 2000000000000 1\n"), "files numbered"));
   CHECK(contains(refusal("p.nhdr", head + "encoding: raw\nendian: little\ndata file: slice%d.raw 1 2 -9223372036854775808\n"),
@@ -234,25 +234,25 @@ TEST_CASE("nrrd: bad headers are refused with their line") {
   CHECK(contains(refusal("b.nrrd", "NRRD0004\nsizes: 4 3\n" + ok), "before 'dimension'"));
   CHECK(contains(refusal("b.nrrd", "NRRD0004\ndimension: 99\n" + ok), "'dimension' is '99'"));
   CHECK(contains(refusal("b.nrrd", "NRRD0004\ndimension: 2\nsizes: 4 3 2\n" + ok), "3 entries for 2 axes"));
-  CHECK(contains(refusal("b.nrrd", "NRRD0004\ndimension: 2\nsizes: 4 -3\n" + ok), "'-3' is no size"));
+  CHECK(contains(refusal("b.nrrd", "NRRD0004\ndimension: 2\nsizes: 4 -3\n" + ok), "'-3' is not a valid size"));
   CHECK(contains(refusal("b.nrrd", "NRRD0004\nsome words\n" + ok), "neither 'field: value'"));
   CHECK(contains(refusal("b.nrrd", "NRRD0004\ncolour: red\n" + ok), "unknown field 'colour'"));
   CHECK(contains(refusal("b.nrrd", head + ok), "no 'encoding'"));
   CHECK(contains(refusal("b.nrrd", "NRRD0004\ntype: float\nencoding: raw\n" + ok), "no 'dimension'"));
   CHECK(contains(refusal("b.nrrd", head + "encoding: raw\n"), "ends inside its header"));
   CHECK(contains(refusal("b.nrrd", head + "encoding: raw\nspace directions: (1,0,0) (1,0,0) (0,0,1)\nspace dimension: 3\n" + ok),
-                 "in one plane"));
+                 "coplanar"));
   CHECK(contains(refusal("b.nrrd", head + "encoding: raw\nspace directions: (1,0,0) (0,0,0) (0,0,1)\n" + ok), "no length"));
   CHECK(contains(refusal("b.nrrd", head + "encoding: raw\nspace: lps\nspace directions: (1,0) (0,0,0) (0,0,1)\n" + ok),
                  "vector of 2 numbers"));
-  CHECK(contains(refusal("b.nrrd", head + "encoding: raw\nendian: middle\n" + ok), "little or big"));
+  CHECK(contains(refusal("b.nrrd", head + "encoding: raw\nendian: middle\n" + ok), "use little or big"));
 }
 
 TEST_CASE("nrrd: sizes are checked before memory is asked for") {
   auto with = [](const std::string& sizes, const std::string& encoding) {
     return "NRRD0004\ntype: double\ndimension: 3\nsizes: " + sizes + "\nencoding: " + encoding + "\nendian: little\n\n0 0 0 0";
   };
-  CHECK(contains(refusal("s.nrrd", with("100 100 100", "raw")), "8000000 bytes are needed, there are 7"));
+  CHECK(contains(refusal("s.nrrd", with("100 100 100", "raw")), "8000000 bytes are needed, but there are 7"));
   CHECK(contains(refusal("s.nrrd", with("4000000000 4000000000 4000000000", "raw")), "too large"));
   CHECK(contains(refusal("s.nrrd", with("1000000 1000000 100", "ascii")), "cannot hold"));
   CHECK(contains(refusal("s.nrrd", with("1000000 1000000 100", "hex")), "cannot hold"));
@@ -262,10 +262,11 @@ TEST_CASE("nrrd: sizes are checked before memory is asked for") {
   CHECK(contains(refusal("s.nrrd", with("2 1 1", "bz2")), "damaged"));
   CHECK(contains(refusal("s.nrrd", with("2 1 1", "hex")), "cannot hold"));
   CHECK(contains(refusal("s.nrrd", with("5 1 1", "ascii")), "cannot hold"));
-  CHECK(contains(refusal("s.nrrd", "NRRD0004\ntype: uchar\ndimension: 1\nsizes: 2\nencoding: ascii\n\n1 256"), "'256' is no u8"));
-  CHECK(contains(refusal("s.nrrd", "NRRD0004\ntype: uchar\ndimension: 1\nsizes: 2\nencoding: ascii\n\n1 ten"), "line 7: 'ten' is no u8"));
-  CHECK(
-      contains(refusal("s.nrrd", "NRRD0004\ntype: uchar\ndimension: 1\nsizes: 2\nencoding: hex\n\n01 0g"), "'g' is no hexadecimal digit"));
+  CHECK(contains(refusal("s.nrrd", "NRRD0004\ntype: uchar\ndimension: 1\nsizes: 2\nencoding: ascii\n\n1 256"), "'256' is not a valid u8"));
+  CHECK(contains(refusal("s.nrrd", "NRRD0004\ntype: uchar\ndimension: 1\nsizes: 2\nencoding: ascii\n\n1 ten"),
+                 "line 7: 'ten' is not a valid u8"));
+  CHECK(contains(refusal("s.nrrd", "NRRD0004\ntype: uchar\ndimension: 1\nsizes: 2\nencoding: hex\n\n01 0g"),
+                 "'g' is not a hexadecimal digit"));
 }
 
 TEST_CASE("nrrd: a stream that unpacks to far more than promised is refused, not unpacked") {
@@ -285,7 +286,7 @@ TEST_CASE("nrrd: a stream that unpacks to far more than promised is refused, not
   const MappedFile file(path);
   const std::string packed(file.text().substr(file.text().find("\n\n") + 2));
   const std::string small = "NRRD0004\ntype: uchar\ndimension: 1\nsizes: 1000\nencoding: gzip\n";
-  CHECK(contains(refusal("bomb1.nrrd", small + "byte skip: -1\n\n" + packed), "though the header promises 1000 B"));
+  CHECK(contains(refusal("bomb1.nrrd", small + "byte skip: -1\n\n" + packed), "though the header announces 1000 B"));
 }
 
 TEST_CASE("nrrd: cut and damaged files give errors, never crashes") {

@@ -30,10 +30,10 @@ TEST_CASE("raw: a wrong size says what is needed and what there is") {
   o.raw_dims = {10, 10, 10};
   o.raw_type = "f32";
   const std::string little = refusal("b.raw", "0123456789ab", o);
-  CHECK(contains(little, "needs 4000 bytes, there are 12"));
+  CHECK(contains(little, "needs 4000 bytes, but there are 12"));
   CHECK(contains(refusal("b.raw", std::string(4100, 'x'), o), "with a header of 100 bytes it would fit"));
   o.raw_header = 4096;
-  CHECK(contains(refusal("b.raw", std::string(4000, 'x'), o), "needs 4000 bytes, there are 0"));
+  CHECK(contains(refusal("b.raw", std::string(4000, 'x'), o), "needs 4000 bytes, but there are 0"));
   o.raw_dims = {size_t(1) << 40, size_t(1) << 40, 1};
   CHECK(contains(refusal("b.raw", "x", o), "too large"));
   o.raw_dims = {2, 2, 2};

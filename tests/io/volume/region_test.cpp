@@ -49,7 +49,7 @@ void check_regions(const std::string& path, ReadOptions o = {}) {
   CHECK(contains(error_of([&] { read_file(path, o); }), "axis y"));
   o.region.lo = {0, 0, 0};
   o.region.stride = {1, 0, 1};
-  CHECK(contains(error_of([&] { read_file(path, o); }), "stride of 0"));
+  CHECK(contains(error_of([&] { read_file(path, o); }), "stride is 0"));
 }
 
 }  // namespace
@@ -104,6 +104,6 @@ TEST_CASE("region: a cut gzip stream is refused where the wanted rows are missin
                     p = packed(numbers(false));
   ReadOptions o;
   o.region.lo = {0, 0, 3};
-  CHECK(contains(refusal("r.nrrd", head + p.substr(0, p.size() / 2), o), "damaged or cut off"));
+  CHECK(contains(refusal("r.nrrd", head + p.substr(0, p.size() / 2), o), "damaged or truncated"));
   CHECK(contains(refusal("r.nrrd", head + packed(numbers(false, 0, 100)), o), "more are needed"));
 }

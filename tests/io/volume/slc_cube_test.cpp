@@ -50,7 +50,7 @@ TEST_CASE("slc: raw and packed slices are the same bytes") {
 TEST_CASE("slc: bad headers and slices are refused") {
   CHECK(contains(refusal("b.slc", slc("4 3 9", 0, slice_a)), "too short: slice 1"));
   CHECK(contains(refusal("b.slc", slc("0 3 2", 0, slice_a)), "size of 0"));
-  CHECK(contains(refusal("b.slc", slc("999999 999999 2", 1, "20 X" + std::string(40, 'x'))), "cannot unpack"));
+  CHECK(contains(refusal("b.slc", slc("999999 999999 2", 1, "20 X" + std::string(40, 'x'))), "cannot decompress"));
   CHECK(contains(refusal("b.slc", slc("9999999999 3 2", 0, slice_a)), "a size is"));
   CHECK(contains(refusal("b.slc", slc("4 3 2", 7, slice_a)), "compression 7"));
   CHECK(contains(refusal("b.slc", slc("4 3 1", 1, "2 X\x04\x07")), "make 4 of 12 bytes"));
@@ -101,10 +101,10 @@ TEST_CASE("cube: orbitals are components, negative counts mean Angstrom, a regio
 TEST_CASE("cube: what is wrong is said with its line") {
   auto refused = [](const std::string& bytes) { return error_of([&] { read_parts(bytes); }); };
   CHECK(contains(refused(title + "1 0 0\n"), "line 3: 4 numbers are needed"));
-  CHECK(contains(refused(title + "1 0 0 x\n"), "line 3: 'x' is no number"));
-  CHECK(contains(refused(title + "1.5 0 0 0\n" + axes), "'1.5' is no count"));
+  CHECK(contains(refused(title + "1 0 0 x\n"), "line 3: 'x' is not a number"));
+  CHECK(contains(refused(title + "1.5 0 0 0\n" + axes), "'1.5' is not a valid count"));
   CHECK(contains(refused(title + "0 0 0 0\n2 1 0 0\n0 0 1 0\n2 0 0 1\n1 2 3 4"), "line 5: no points"));
-  CHECK(contains(refused(title + "0 0 0 0\n2 1 0 0\n3 2 0 0\n2 0 0 1\n1 2 3 4"), "one plane"));
+  CHECK(contains(refused(title + "0 0 0 0\n2 1 0 0\n3 2 0 0\n2 0 0 1\n1 2 3 4"), "coplanar"));
   CHECK(contains(refused(title + "99999999 0 0 0\n" + axes), "99999999 atoms"));
   CHECK(contains(refused(title + "0 0 0 0\n999999999 1 0 0\n999999999 0 1 0\n999999999 0 0 1\n1 2"), "too large"));
   CHECK(contains(refused(title + "0 0 0 0\n9999 1 0 0\n9999 0 1 0\n9999 0 0 1\n1 2"), "cannot hold"));

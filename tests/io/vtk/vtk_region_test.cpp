@@ -121,7 +121,7 @@ TEST_CASE("vtk xml: regions out of the grid and strides of 0 are the caller's mi
   CHECK(error_of([&] { read(temp("small.vti"), o); }).find("0 to 3") != std::string::npos);
   o.region = {};
   o.region.stride = {1, 0, 1};
-  CHECK(error_of([&] { read(temp("small.vti"), o); }).find("stride of 0") != std::string::npos);
+  CHECK(error_of([&] { read(temp("small.vti"), o); }).find("stride is 0") != std::string::npos);
 }
 
 TEST_CASE("vtk legacy: arrays that are not asked for are passed over, text or binary") {

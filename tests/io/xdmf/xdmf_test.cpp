@@ -148,8 +148,8 @@ TEST_CASE("xdmf: binary data of either byte order, from any byte on") {
   CHECK(big.array.get(0) == 1);
   CHECK(big.array.get(1) == 2);
   CHECK(read(with("Endian=\"Little\" Seek=\"11\"", "1"))->fields().require("b").array.get(0) == 1);
-  CHECK(contains(refusal("t.xdmf", file(with("Seek=\"3\"", "4"))), "asks for 16 bytes from byte 3 on, but 't.bin' has 15"));
-  CHECK(contains(refusal("t.xdmf", file(with("Seek=\"3\"", "4611686018427387904"))), "more numbers than can be counted"));
+  CHECK(contains(refusal("t.xdmf", file(with("Seek=\"3\"", "4"))), "needs 16 bytes from byte 3 on, but 't.bin' has 15"));
+  CHECK(contains(refusal("t.xdmf", file(with("Seek=\"3\"", "4611686018427387904"))), "too many numbers to count"));
   CHECK(contains(refusal("t.xdmf", file(with("Compression=\"Zlib\"", "1"))), "packed with 'Zlib'"));
 }
 
@@ -177,7 +177,7 @@ TEST_CASE("xdmf: hyperslabs and functions") {
                                             fmt::format("<DataItem ItemType=\"Function\" Function=\"{}\" Dimensions=\"4\">", function) +
                                                 item("4", "0 1 2 3") + "</DataItem>"))));
   };
-  CHECK(contains(wrong("$1"), "names an argument that is not there"));
+  CHECK(contains(wrong("$1"), "names an argument that does not exist"));
   CHECK(contains(wrong("WHERE($0)"), "calls 'where'"));
   CHECK(contains(wrong(std::string(500, '(').c_str()), "nested too deep"));
   CHECK(contains(refusal("t.xdmf", file(grid(triangle_mesh + attribute("h", "",
@@ -227,7 +227,7 @@ TEST_CASE("xdmf: times of a series may stand in a list; spatial collections have
 }
 
 TEST_CASE("xdmf: faults are named with their line") {
-  CHECK(contains(refusal("t.xdmf", "<Xdmf><Domain><Grid>"), "is no well-formed XML"));
+  CHECK(contains(refusal("t.xdmf", "<Xdmf><Domain><Grid>"), "is not well-formed XML"));
   CHECK(contains(refusal("t.xdmf", file("")), "has no Grid"));
   CHECK(contains(refusal("t.xdmf", file(grid("<Topology TopologyType=\"Triangle\"/>"))), "has no Geometry"));
   const std::string message = refusal("t.xdmf", file(grid(triangle_mesh + attribute("s", "Center=\"Node\"", item("3", "1 2 3")))));

@@ -109,7 +109,7 @@ TEST_CASE("zarr: hostile shapes and chunks are refused before memory is asked fo
   CHECK(contains(refused(array_with("[]", "[]")), "axes"));
   CHECK(contains(refused(array_with("[1,1,1,1,1,1,1,1,1]", "[1,1,1,1,1,1,1,1,1]")), "axes"));
   CHECK(contains(refused(array_with("[1048576, 1048576, 32]", "[64, 64, 32]")), "no coarser level"));
-  CHECK(contains(refused(array_with("[256, 256, 128]", "[64, 64, 64]")), "there is no chunk"));
+  CHECK(contains(refused(array_with("[256, 256, 128]", "[64, 64, 64]")), "no chunk of this array"));
   // A chunk much larger than the array, whose file is tiny.
   const std::string path = array_with("[2, 2]", "[8192, 8192]");
   write_file(path + "/0.0", "abcd");
@@ -122,8 +122,8 @@ TEST_CASE("zarr: descriptions that cannot be right are refused, and say where") 
     write_file(path + "/.zarray", text);
     return refused(path);
   };
-  CHECK(contains(with("{"), "no valid JSON"));
-  CHECK(contains(with("[]"), "no JSON object"));
+  CHECK(contains(with("{"), "not valid JSON"));
+  CHECK(contains(with("[]"), "not a JSON object"));
   CHECK(contains(with(std::string(100000, '[')), ".zarray"));
   CHECK(contains(with("{\"a\":" + std::string(100, '[') + std::string(100, ']') + "}"), "nested more than"));
   CHECK(contains(with(R"({"zarr_format": 2, "shape": [2], "chunks": [2], "dtype": "<U4"})"), "type '<U4'"));
@@ -155,11 +155,11 @@ TEST_CASE("zarr: descriptions that cannot be right are refused, and say where") 
   };
   CHECK(contains(moved(R"({"type": "scale", "scale": [1, 1]})"), "2 numbers for 3"));
   CHECK(contains(moved(R"({"type": "scale", "scale": [1, 0, 1]})"), "above 0"));
-  CHECK(contains(moved(R"({"type": "scale", "scale": [1, "a", 1]})"), "no number"));
+  CHECK(contains(moved(R"({"type": "scale", "scale": [1, "a", 1]})"), "not a number"));
   CHECK(contains(moved(R"({"type": "affine", "affine": []})"), "affine"));
   // Levels must go together.
   CHECK(contains(described(R"({"multiscales": [{"axes": ["z", "y", "x"], "datasets": [{"path": "1"}, {"path": "0"}]}]})"), "in level 0"));
-  CHECK(contains(refused(fresh("empty.zarr")), "folder of no known kind"));
+  CHECK(contains(refused(fresh("empty.zarr")), "folder of unknown kind"));
 }
 
 TEST_CASE("zarr: version 3 that cannot be right is refused") {

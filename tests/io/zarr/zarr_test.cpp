@@ -372,7 +372,7 @@ TEST_CASE("zarr: a folder is replaced when it is a Zarr folder, and only then; a
   const std::string mine = folder("mine.zarr");
   std::filesystem::create_directories(mine);
   write_file(mine + "/letter.txt", "dear");
-  CHECK(error_of([&] { write(mine, ramp({5, 4, 3})); }).find("no Zarr folder") != std::string::npos);
+  CHECK(error_of([&] { write(mine, ramp({5, 4, 3})); }).find("not a Zarr folder") != std::string::npos);
   CHECK(file_exists(mine + "/letter.txt"));
   CHECK(error_of([&] { write(temp_folder() + "nowhere/x.zarr", ramp({5, 4, 3})); }).find("does not exist") != std::string::npos);
 }

@@ -248,8 +248,9 @@ TEST_CASE("pipeline file: of words with one key the last is written") {
   CHECK(back.steps[0].words == Words{"mode=plain", "by=2"});
   CHECK(back.picture == Words{"size=2", "camera.a=3"});
   CHECK(has(error_of("sightglass: 1\nsteps: {a: {ramp: }}\npicture: {camera: {a: 1},\n camera.a: 2}"),
-            "p.yaml:4: picture: the key 'camera.a' stands twice"));
-  CHECK(has(error_of("sightglass: 1\nsteps: {a: {ramp: }}\npicture: {camera: {a.b: 1}}"), "p.yaml:3: picture camera: 'a.b' is no name"));
+            "p.yaml:4: picture: the key 'camera.a' appears twice"));
+  CHECK(has(error_of("sightglass: 1\nsteps: {a: {ramp: }}\npicture: {camera: {a.b: 1}}"),
+            "p.yaml:3: picture camera: 'a.b' is not a valid name"));
 }
 
 TEST_CASE("pipeline file: every mistake of form is told with its line, all at once") {
@@ -275,8 +276,8 @@ TEST_CASE("pipeline file: every mistake of form is told with its line, all at on
       "  - {surface: , of: [a]}\n"                     // 19
       "  - [surface]\n"                                // 20
       "picture: {sise: 1x1, camera: {a: {b: 1}}}\n");  // 21
-  for (const char* part : {"20 mistakes:",
-                           "p.yaml:1: sightglass: '2' is no version",
+  for (const char* part : {"20 errors:",
+                           "p.yaml:1: sightglass: '2' is not a version",
                            "p.yaml:2: unknown key 'stpes'; did you mean 'steps'?",
                            "p.yaml:4: step 'a': must be a map",
                            "p.yaml:5: step 'b': has 'form' beside 'contour'",
@@ -285,24 +286,24 @@ TEST_CASE("pipeline file: every mistake of form is told with its line, all at on
                            "p.yaml:7: contour: must be a map of parameters",
                            "p.yaml:8: contour values: must be a value or a list, not a map",
                            "p.yaml:9: contour values: the items of a list must be values",
-                           "p.yaml:10: contour words: 'a,b': an item of a list has no comma",
+                           "p.yaml:10: contour words: 'a,b': a list item must not contain a comma",
                            "p.yaml:11: step 'h': from: must be the name",
                            "p.yaml:12: read path: the items of a list must be values",
-                           "p.yaml:13: steps: the key 'i' stands twice",
-                           "p.yaml:14: contour: the key 'a' stands twice",
-                           "p.yaml:15: contour: 'a=b' is no name",
-                           "p.yaml:17: show: unknown kind 'surfcae'; did you mean 'surface'?",
+                           "p.yaml:13: steps: the key 'i' appears twice",
+                           "p.yaml:14: contour: the key 'a' appears twice",
+                           "p.yaml:15: contour: 'a=b' is not a valid name",
+                           "p.yaml:17: show: unknown way to show 'surfcae'; did you mean 'surface'?",
                            "p.yaml:18: show: has no kind",
                            "p.yaml:19: show: of: must be the name of a step",
-                           "p.yaml:20: show: each item is a kind",
+                           "p.yaml:20: show: each item must be a way to show",
                            "p.yaml:21: picture: unknown key 'sise'; did you mean 'size'?",
                            "p.yaml:21: picture camera.a: must be a value or a list"})
     CHECK_MESSAGE(text.find(part) != std::string::npos, part << " in " << text);
 }
 
 TEST_CASE("pipeline file: a file that is none says what one is") {
-  CHECK(has(error_of(""), "a pipeline file is a map"));
-  CHECK(has(error_of("hello"), "p.yaml:1: a pipeline file is a map"));
+  CHECK(has(error_of(""), "a pipeline file must be a map"));
+  CHECK(has(error_of("hello"), "p.yaml:1: a pipeline file must be a map"));
   CHECK(has(error_of("steps: {a: {read: x}}"), "the key 'sightglass' is missing; begin the file with sightglass: 1"));
   CHECK(has(error_of("sightglass: 1"), "there are no steps"));
   CHECK(has(error_of("sightglass: 1\nsteps: [a]\nshow: {}\npicture: 7"), "p.yaml:2: steps: must be a map of names"));
@@ -314,8 +315,8 @@ TEST_CASE("pipeline file: bad syntax is told with its line") {
   CHECK(has(error_of("sightglass: 1\nsteps: {a: [\n"), "p.yaml:3:"));
   CHECK(has(error_of("sightglass: 1\nsteps:\n\ta: b\n"), "p.yaml:"));
   CHECK(has(error_of("a: 1\n---\nb: 2\n"), "more than one document"));
-  CHECK(has(error_of("? [a]\n: b\n"), "p.yaml:1: a key must be a word"));
-  CHECK(has(error_of(std::string(300, 'k') + ": 1\n"), "more than 256 letters"));
+  CHECK(has(error_of("? [a]\n: b\n"), "p.yaml:1: a key must be a plain word"));
+  CHECK(has(error_of(std::string(300, 'k') + ": 1\n"), "more than 256 characters"));
 }
 
 TEST_CASE("pipeline file: anchors, aliases, tags, depth and size are bounded") {
@@ -404,13 +405,13 @@ TEST_CASE("pipeline file: mistakes in operations and names are told with their l
       "  - {surface: , of: z}\n";
   const std::string text = test::error_of([&] { build_graph(parse_pipeline(yaml, "/p.yaml"), test_options()); });
   for (const char* part :
-       {"15 mistakes:", "/p.yaml:3: step 'a': scale: takes 1 input, not 0", "/p.yaml:4: step 'b': ramp n: '0' is not in range",
+       {"15 errors:", "/p.yaml:3: step 'a': scale: takes 1 input, not 0", "/p.yaml:4: step 'b': ramp n: '0' is not in range",
         "/p.yaml:5: step 'c': unknown operation 'scael'; did you mean 'scale'?",
         "/p.yaml:6: step 'd': there is no step 'bb'; did you mean 'b'?",
         "/p.yaml:6: step 'd': scale: unknown parameter 'bye'; did you mean 'by'?", "did you mean 'fancy'?",
         "/p.yaml:7: step 'e': its input 'f' comes later; move that step up", "/p.yaml:8: step 'f': its input 'f' comes from itself",
         "/p.yaml:9: step 'g': /absent.vti: no such file", "/p.yaml:9: step 'g': read takes no input",
-        "/p.yaml:10: step 'h': read dims: '1,2' is not a list of 3", "/p.yaml:11: step 'i': read type: 'u7' is not a type of numbers",
+        "/p.yaml:10: step 'h': read dims: '1,2' is not a list of 3", "/p.yaml:11: step 'i': read type: 'u7' is not a number type",
         "/p.yaml:12: step 'j': read path: no file is named", "/p.yaml:13: step 'k': read type: a raw brick needs the type",
         "/p.yaml:14: step 'l': ramp: is a source and takes no input", "/p.yaml:16: show surface: there is no step 'z'"})
     CHECK_MESSAGE(text.find(part) != std::string::npos, part << " in " << text);
@@ -428,7 +429,7 @@ TEST_CASE("pipeline file: of very many mistakes the first are told") {
   PipelineFile f;
   for (int i = 0; i < 3000; ++i) f.steps.push_back({"s" + std::to_string(i), i ? "scael" : "ramp", {}, {}, i + 1});
   const std::string text = test::error_of([&] { build_graph(f, test_options()); });
-  CHECK(has(text, "2999 mistakes:"));
+  CHECK(has(text, "2999 errors:"));
   CHECK(text.ends_with("... and 2949 more"));
 }
 

@@ -120,6 +120,6 @@ TEST_CASE("film: what has no time says so before anything is drawn") {
   const FilmCallbacks callbacks{nullptr, [&](FilmFrame&&) { drawn = true; }};
   CHECK(error_of([&] { make_film(file, params, {}, callbacks, context); }).find("--times") != std::string::npos);
   params.times = "0,1";
-  CHECK(error_of([&] { make_film(file, params, {}, callbacks, context); }).find("has no time") != std::string::npos);
+  CHECK(error_of([&] { make_film(file, params, {}, callbacks, context); }).find("has no parameter 'time'") != std::string::npos);
   CHECK_FALSE(drawn);
 }

@@ -250,7 +250,7 @@ TEST_CASE("graph: all mistakes are told together before anything runs") {
   const NodeId e = g.add_read(test::temp_folder() + "absent.vti"), f = g.add_operation("add", {}, {b});
   const NodeId all = g.add_operation("join", {}, {a, b, c, d, e, f});
   const std::string text = test::error_of([&] { g.evaluate(all, {}, context); });
-  for (const char* part : {"7 mistakes:", "step 1: ramp n: '0' is not in range", "did you mean 'start'?",
+  for (const char* part : {"7 errors:", "step 1: ramp n: '0' is not in range", "did you mean 'start'?",
                            "step 3: unknown operation 'sclae'; did you mean 'scale'?",
                            "step 'big': scale mode: 'fnacy' is not one of the choices; did you mean 'fancy'?",
                            "scale by: '1e9' is not in range: it must be from -1000 to 1000",
@@ -271,7 +271,7 @@ TEST_CASE("graph: mistakes in steps that are not needed do not stop the others")
   CHECK(test::error_of([&] { g.validate(); }).find("step 2: unknown operation 'rmap'") == 0);
   CHECK(test::error_of([&] { g.evaluate(7, {}, context); }) == "there is no step 8");
   const NodeId bad = g.add_operation("scale", {}, {9}), extra = g.add_operation("ramp", {}, {good});
-  CHECK(test::error_of([&] { g.evaluate(bad, {}, context); }).find("input 10 is no earlier step") != std::string::npos);
+  CHECK(test::error_of([&] { g.evaluate(bad, {}, context); }).find("input 10 is not an earlier step") != std::string::npos);
   CHECK(test::error_of([&] { g.evaluate(extra, {}, context); }).find("is a source and takes no input") != std::string::npos);
 }
 
@@ -318,7 +318,7 @@ TEST_CASE("graph: without a reader of its own it reads files by read_data") {
   Context context;
   const NodeId read = g.add_read(some_file("nothing.unknown"));
   const std::string text = test::error_of([&] { g.evaluate(read, {}, context); });
-  CHECK(text.find("is in no known format") != std::string::npos);
+  CHECK(text.find("has an unknown format") != std::string::npos);
   CHECK(text.find("while reading (step 1)") != std::string::npos);
 }
 

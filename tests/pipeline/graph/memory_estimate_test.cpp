@@ -37,7 +37,7 @@ TEST_CASE("memory estimates: a mesh appended to itself forty times is refused be
     for (int i = 0; i < 40; ++i) last = g.add_operation("append", {}, {last, last});
     g.evaluate(last, {}, context);
   });
-  CHECK(has(error, {"append", "one upon the other"}));
+  CHECK(has(error, {"append", "nested steps"}));
 }
 
 TEST_CASE("memory estimates: what append would make is told with what is allowed") {

@@ -108,7 +108,7 @@ TEST_CASE("series: a source of any time takes the times of the parameter") {
   const NodeId open = g.add_operation("alone", {}, {scaled});
   CHECK(test::error_of([&] { g.evaluate(open, {}, context); }).find("times=FIRST:LAST:COUNT") != std::string::npos);
   const NodeId bad = g.add_operation("alone", {"times=1:x:5"}, {scaled});
-  CHECK(test::error_of([&] { g.evaluate(bad, {}, context); }).find("no list of times") != std::string::npos);
+  CHECK(test::error_of([&] { g.evaluate(bad, {}, context); }).find("not a list of times") != std::string::npos);
 }
 
 TEST_CASE("series: a time asked for goes to the operation, not to what lies above") {
@@ -142,7 +142,7 @@ TEST_CASE("series: files with and without time stand together; different times d
   g.evaluate(g.add_operation("alone", {}, {g.add_operation("add", {}, {moving, still})}), {}, context);
   CHECK(seen.values == std::vector<double>{-1, 9, 19});
   const NodeId bad = g.add_operation("alone", {}, {g.add_operation("add", {}, {moving, other})});
-  CHECK(test::error_of([&] { g.evaluate(bad, {}, context); }).find("files of one series have the same times") != std::string::npos);
+  CHECK(test::error_of([&] { g.evaluate(bad, {}, context); }).find("files of one series must have the same times") != std::string::npos);
 }
 
 TEST_CASE("series: a file whose step the user chose, and given data, are one step") {

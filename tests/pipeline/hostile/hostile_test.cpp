@@ -210,6 +210,6 @@ TEST_CASE("fronts: seeds so close together that there are millions of them are r
       said = e.what();
     }
     CHECK(said.find("seeds are too many") != said.npos);
-    CHECK(said.find("a larger spacing") != said.npos);
+    CHECK(said.find("use a larger spacing") != said.npos);
   }
 }

@@ -54,7 +54,7 @@ TEST_CASE("operations: every operation of this build has a sentence, a family, a
 TEST_CASE("operations: an unknown name gets the nearest one") {
   CHECK(test::error_of([] {
           find_operation("scael", test::operations());
-        }).find("unknown operation 'scael'; did you mean 'scale'? has: ramp, moment") == 0);
+        }).find("unknown operation 'scael'; did you mean 'scale'? available: ramp, moment") == 0);
   CHECK(&find_operation("add", test::operations()) == &test::operations()[4]);
 }
 
@@ -97,7 +97,7 @@ TEST_CASE("operations: filters are applied to each part of a collection, and err
   const Data whole = run("whole", {in});
   CHECK(std::get<CollectionPtr>(whole) == CollectionPtr(outer));
   CHECK(std::get<CollectionPtr>(run("join", {in, test::line_of(2)}))->parts.size() == 2);
-  CHECK(test::error_of([&] { run("add", {test::line_of(5), in}); }).find("add: needs one mesh but got 3 parts") == 0);
+  CHECK(test::error_of([&] { run("add", {test::line_of(5), in}); }).find("add: needs a single mesh but got 3 parts") == 0);
 }
 
 TEST_CASE("requests: default is everything, named fields and carried fields narrow it") {

@@ -70,7 +70,7 @@ TEST_CASE("gradient_images: the volumes of a series stand side by side" * doctes
     const Array v = std::get<DatasetPtr>(s.load(step))->fields().require("NIFTI").array;
     for (size_t i = 0; i < 1000; i += 37) CHECK(a.get(i, int(step)) == v.get(i));
   }
-  CHECK(error_of([&] { gradient_images({}, context); }).find("path names no file") != std::string::npos);
+  CHECK(error_of([&] { gradient_images({}, context); }).find("path does not name a file") != std::string::npos);
   GradientImagesParams p;
   p.path = data_file(brain), p.field = {"bvec"};
   CHECK(error_of([&] { gradient_images(p, context); }).find("'bvec' has 3 components") != std::string::npos);

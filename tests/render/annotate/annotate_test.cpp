@@ -346,7 +346,7 @@ TEST_CASE("annotate: the same bytes every time; broken UTF-8 and strange numbers
 TEST_CASE("annotate: wrong images are refused") {
   const Projection p = look({1, -1, 1}, unit_box, 64, 48);
   Image grey(64, 48, 1), none(0, 0, 3);
-  CHECK(test::error_of([&] { annotate(grey, {}, p); }).find("3 or 4 channels") != std::string::npos);
+  CHECK(test::error_of([&] { annotate(grey, {}, p); }).find("3 or 4 channels are needed") != std::string::npos);
   CHECK(test::error_of([&] { annotate(none, {}, p); }).find("without pixels") != std::string::npos);
   Image wide(40000, 1, 3);
   CHECK(test::error_of([&] { annotate(wide, {}, p); }).find("32767") != std::string::npos);

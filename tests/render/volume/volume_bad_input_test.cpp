@@ -28,7 +28,7 @@ TEST_CASE("volume: an opacity without points, that does not ascend or leaves 0..
     return error_of([&] { look(scene_of({v})); });
   };
   CHECK(error({}).find("no points") != std::string::npos);
-  CHECK(error({{0, 0}, {1, 0.5}, {0.5, 0.2}}).find("do not ascend: 0.5 comes after 1") != std::string::npos);
+  CHECK(error({{0, 0}, {1, 0.5}, {0.5, 0.2}}).find("not in ascending order: 0.5 comes after 1") != std::string::npos);
   CHECK(error({{0, 0}, {NAN, 0.5}}).find("ascend") != std::string::npos);
   CHECK(error({{0, -0.1}}).find("not between 0 and 1") != std::string::npos);
   CHECK(error({{0, 1.1}}).find("not between 0 and 1") != std::string::npos);

@@ -142,7 +142,7 @@ TEST_CASE("volume words: what cannot be is refused before any data is read, all 
   CHECK(says(check_error({"mode=maximal"}), "did you mean 'maximum'"));
   CHECK(says(check_error({"kernel=cubic"}), "choices"));
   CHECK(says(check_error({"second_opacity=0:0,0.2:1"}), "second=gradient"));
-  CHECK(says(check_error({"opacity_by=a", "color_by=b"}), "state one of them"));
+  CHECK(says(check_error({"opacity_by=a", "color_by=b"}), "give one of them"));
   CHECK(says(check_error({"color_by=b", "second=gradient"}), "already is the second axis"));
   CHECK(says(check_error({"widgets=triangle 0 1 0 1", "opacity=0:0,1:1"}), "leave out one"));
   CHECK(says(check_error({"clip=1,0,0"}), "has 3 numbers"));
@@ -159,7 +159,7 @@ TEST_CASE("volume words: what cannot be is refused before any data is read, all 
   CHECK_NOTHROW(show_params(find_show("volume"), {"opacity=0:0,@-500:0.1,1:1", "colors=0:black,@-500:white", "widgets="}));
   CHECK_NOTHROW(show_params(find_show("volume"), {"widgets=triangle 0 @-500 0 1"}));
   const DatasetPtr d = two_fields();
-  CHECK(says(show_error(d, {"field=T", "opacity=0:0,@100:0.5,1:1"}), "'@100:0.5' lies below the point before it (100 after 200)"));
+  CHECK(says(show_error(d, {"field=T", "opacity=0:0,@100:0.5,1:1"}), "'@100:0.5' lies below the previous point (100 after 200)"));
   CHECK(show(d, {"field=T", "opacity=0:0,@250:0.5,1:1"}).item.opacity.at(250) == 0.5);
 }
 
@@ -335,7 +335,7 @@ TEST_CASE("volume: automatic looks say in one line what was chosen and why") {
   const Made none =
       show(test::cube_of(17, "f", [&](Vec3) { return double((state = state * 6364136223846793005u + 1442695040888963407u) >> 40); }),
            {"transfer=boundaries"});
-  CHECK(says(none.notes, "no borders"));
+  CHECK(says(none.notes, "no material boundaries"));
 }
 
 TEST_CASE("volume: a spike of one value, like letters burnt in, is not the background") {

@@ -79,7 +79,7 @@ void linear_functions(CellType type, Vec3 p, double* n, Vec3* dn) {
       return;
     }
     case CellType::pyramid: return pyramid_functions(p, n, dn);
-    default: fail_internal(fmt::format("{} is no linear cell with a reference map", cell_type_info(type).name));
+    default: fail_internal(fmt::format("{} is not a linear cell with a reference map", cell_type_info(type).name));
   }
 }
 

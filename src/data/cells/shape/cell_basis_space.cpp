@@ -156,7 +156,7 @@ std::vector<double> nodal_coefficients(const Space& space, std::span<const Vec3>
     size_t pivot = c;
     for (size_t r = c + 1; r < n; ++r)
       if (std::abs(row(r)[c]) > std::abs(row(pivot)[c])) pivot = r;
-    if (!(std::abs(row(pivot)[c]) > 1e-9)) fail_internal("the nodes of a cell do not determine its functions");
+    if (!(std::abs(row(pivot)[c]) > 1e-9)) fail_internal("the nodes of a cell do not determine its shape functions");
     std::swap_ranges(row(c), row(c) + 2 * n, row(pivot));
     const double scale = 1 / row(c)[c];
     for (size_t i = 0; i < 2 * n; ++i) row(c)[i] *= scale;

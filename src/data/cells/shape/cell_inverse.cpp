@@ -159,7 +159,7 @@ InverseResult invert_solid(const CellGeometry& g, Vec3 x, double tolerance) {
   bool possible = true;
   for (int a = 0; a < 3; ++a) possible = possible && x[a] >= box.lo[a] - margin[a] && x[a] <= box.hi[a] + margin[a];
   if (!possible) {
-    // One step tells the direction, for those who walk from cell to cell.
+    // One step gives the direction, for walking from cell to cell.
     Vec3 column[3], d;
     const Vec3 p = g.frame(r.rst, column);
     if (solve_columns(column, x - p, d)) r = {r.rst + d, true, 0};
@@ -170,7 +170,7 @@ InverseResult invert_solid(const CellGeometry& g, Vec3 x, double tolerance) {
     r.found = true;
     r.outside = g.shape->outside(r.rst);
     if (r.outside <= tolerance) return r;
-    // A second place may be inside, unless a plane between x and the nodes tells that it is not.
+    // A second solution may be inside, unless a plane between x and the nodes excludes it.
     if (hull && separated(g, x, r.rst)) return r;
   } else {
     r = {};

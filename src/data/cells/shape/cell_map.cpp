@@ -27,7 +27,7 @@ void CellMap::open(size_t cell) {
     if (!shape_) {
       const bool pyramid = linear_type(type) == CellType::pyramid;
       fail_data(fmt::format("cell {} is a {} of {} points", cell, cell_type_info(type).name, nodes), {},
-                pyramid ? "pyramids have 5, 13, 14 or 19 points (Bezier ones 5)" : "that count fits no order from 1 to 10");
+                pyramid ? "pyramids have 5, 13, 14 or 19 points (Bezier pyramids 5)" : "that count does not fit any order from 1 to 10");
     }
   }
   if (shape_ && n_.size() < nodes) n_.resize(nodes), dn_.resize(nodes);

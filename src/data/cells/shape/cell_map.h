@@ -68,7 +68,7 @@ class CellMap {
   double integrate(double* weights);
   double integrate_pieces(double* weights);
   void fitted_gradient(Vec3 x, std::span<Vec3> out) const;
-  /// Triangles of polygons, strips and polyhedra, as places in ids(), made when first asked for.
+  /// Triangles of polygons, strips and polyhedra, as indices into ids(), made on first use.
   const std::vector<uint32_t>& triangles();
 
   CellReader reader_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The open cell of a CellMap as a CellGeometry, and what those who walk from cell to cell ask of it besides. Internal to cell_map*.cpp and
+// The open cell of a CellMap as a CellGeometry, with what walking from cell to cell needs besides. Internal to cell_map*.cpp and
 // to filter/flow.
 #pragma once
 #include "data/cells/shape/cell_inverse.h"

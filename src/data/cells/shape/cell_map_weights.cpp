@@ -13,7 +13,7 @@ namespace sg {
 
 void CellMap::weights(const CellPlace& place, std::span<double> out) {
   if (out.size() != reader_.ids().size())
-    fail_internal(fmt::format("room for {} weights of a cell of {} points", out.size(), reader_.ids().size()));
+    fail_internal(fmt::format("room for {} weights, but the cell has {} points", out.size(), reader_.ids().size()));
   if (!shape_) return pieces_weights(place, out);
   CellGeometry g = Geometry(*this);
   g.n = out.data();

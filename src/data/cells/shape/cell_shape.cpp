@@ -53,7 +53,7 @@ Orders lattice_orders(CellType type, size_t nodes, Orders asked) {
 
 }  // namespace
 
-/// All shapes that were ever asked for.
+/// All shapes requested so far.
 class CellShapeTable {
  public:
   static const CellShape* find(CellType type, size_t nodes, Orders orders) {

@@ -31,7 +31,7 @@ class Positions {
     else if (auto* s = d->as<SurfaceMesh>()) points_ = &s->points;
     else if (auto* c = d->as<PointCloud>()) points_ = &c->points;
     if (!lattice_ && !points_ && on == Association::point)
-      fail_usage("the positions of the points of an AMR grid are not known by name", "calc", "compute on cells: on=cell");
+      fail_usage("the point positions of an AMR grid cannot be used in expressions", "calc", "compute on cells: on=cell");
   }
   void fill(size_t begin, size_t n, double* out) const {
     if (on_ == Association::cell) {
@@ -208,7 +208,7 @@ Association place_of(const DatasetPtr& in, const Program& program, std::optional
     if (found && (*found == Association::point ? at_points : at_cells)) continue;
     if (found)
       fail_usage(fmt::format("field '{}' is not on the {}s", name, association_name(*found)), "calc expr",
-                 "move it first: point_to_cell or cell_to_point");
+                 "convert it first with point_to_cell or cell_to_point");
     found = at_points ? Association::point : Association::cell;
   }
   return found.value_or(Association::point);
@@ -238,7 +238,7 @@ Array compute(const Program& program, const std::vector<Array>& fields, const Po
 }  // namespace
 
 DatasetPtr calc(const DatasetPtr& in, const CalcParams& p, Context& ctx) {
-  if (p.expr.empty()) fail_usage("there is nothing to compute", "calc expr", "like expr=mag(velocity)*rho");
+  if (p.expr.empty()) fail_usage("the expression is empty", "calc expr", "write e.g. expr=mag(velocity)*rho");
   if (p.name.empty()) fail_usage("the new field has no name", "calc name");
   const Program program = calc_detail::parse(
       p.expr,

@@ -25,15 +25,14 @@ struct CalcParams {
 
 inline void describe(Schema& s, CalcParams& p) {
   s("expr", p.expr,
-    "What to compute, like mag(velocity)*rho; names of fields as they are, or in \"quotes\"; also x, y, z, position, time, pi. Operators "
-    "and "
+    "Expression, e.g. mag(velocity)*rho. Field names as they are, or in \"quotes\"; also x, y, z, position, time, pi. Operators and "
     "functions are listed below.");
   s("name", p.name, "Name of the new field.");
-  s("on", p.on, "Where: auto follows the fields of the expression (points when it has none).");
+  s("on", p.on, "Where to compute: auto follows the fields of the expression (points if it has none).");
 }
 
 /// Adds a field computed from others, tuple by tuple, in double; the result is f32 when every field used is f32 or a small
-/// integer, else f64; comparisons are 0 or 1. NaN goes through.
+/// integer, else f64; comparisons are 0 or 1. NaN propagates.
 ///
 ///   expression   or && ||, comparison < <= > >= == !=, + -, * / %, ^ (right to left), - !, a ? b : c, a.x .y .z, a[i], (a)
 ///   numbers      1.5e-3, pi, e, nan
@@ -42,7 +41,7 @@ inline void describe(Schema& s, CalcParams& p) {
 ///                atan2 pow mod min max hypot clamp(a,lo,hi) if(c,a,b) isnan
 ///   vectors      mag norm dot cross vec(a,b,c) sum; a scalar meets each component of a vector; trace det of 3x3 tensors
 ///
-/// Units are carried: products and powers combine them, sums need equal ones (else the result has none, and a note says so).
+/// Units are carried: products and powers combine them, sums need equal ones (otherwise the result has no unit, and a note says so).
 /// Throws Error(usage) with the place in the expression, and for point fields mixed with cell fields.
 DatasetPtr calc(const DatasetPtr& in, const CalcParams& p, Context& ctx);
 

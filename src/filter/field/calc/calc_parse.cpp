@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recursive descent from text to instructions; sizes and units are checked here, so that running is arithmetic alone.
+// Recursive descent from text to instructions; sizes and units are checked here, so that running is pure arithmetic.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -46,7 +46,8 @@ constexpr Function1 functions1[] = {
     {"sign", "sign(a)", "1, -1 or 0 as a is positive, negative or zero.", sign_of, Function1::drops_unit},
     {"floor", "floor(a)", "Largest whole number not above a.", [](double x) { return std::floor(x); }, Function1::keeps_unit},
     {"ceil", "ceil(a)", "Smallest whole number not below a.", [](double x) { return std::ceil(x); }, Function1::keeps_unit},
-    {"round", "round(a)", "Nearest whole number, halves away from zero.", [](double x) { return std::round(x); }, Function1::keeps_unit},
+    {"round", "round(a)", "Nearest whole number; halves are rounded away from zero.", [](double x) { return std::round(x); },
+     Function1::keeps_unit},
     {"isnan", "isnan(a)", "1 where a is NaN, else 0.", is_nan, Function1::drops_unit},
 };
 
@@ -62,7 +63,7 @@ constexpr FunctionN functions_n[] = {
     {"min", "min(a, b)", "The smaller of two numbers.", Op::minimum, 2},
     {"max", "max(a, b)", "The larger of two numbers.", Op::maximum, 2},
     {"hypot", "hypot(a, b)", "Square root of a^2 + b^2.", Op::hypot, 2},
-    {"clamp", "clamp(a, b, c)", "a, but not below b and not above c.", Op::clamp, 3},
+    {"clamp", "clamp(a, b, c)", "a, limited to the range from b to c.", Op::clamp, 3},
     {"if", "if(a, b, c)", "b where a is not 0, else c; as a ? b : c.", Op::choose, 3},
     {"mag", "mag(u)", "Length of a vector: square root of the sum of squares.", Op::mag, 1},
     {"norm", "norm(u)", "The vector divided by its length.", Op::norm, 1},
@@ -76,30 +77,30 @@ constexpr FunctionN functions_n[] = {
 
 // Besides functions. In all forms a, b, c are numbers or fields of any size, u and v vectors, t a tensor of nine numbers, rows first.
 constexpr HelpWord other_words[] = {
-    {"operator", "a + b", "Sum; a number meets each component of a vector."},
+    {"operator", "a + b", "Sum; a number is added to each component of a vector."},
     {"operator", "a - b", "Difference."},
     {"operator", "a * b", "Product, component by component."},
     {"operator", "a / b", "Quotient, component by component."},
     {"operator", "a % b", "Remainder of a / b, with the sign of a."},
     {"operator", "a ^ b", "Power; right to left: a ^ b ^ c is a ^ (b ^ c), and -a ^ b is -(a ^ b)."},
     {"operator", "-a", "Negative."},
-    {"operator", "a < b", "1 where it holds, else 0."},
-    {"operator", "a <= b", "1 where it holds, else 0."},
-    {"operator", "a > b", "1 where it holds, else 0."},
-    {"operator", "a >= b", "1 where it holds, else 0."},
-    {"operator", "a == b", "1 where it holds, else 0."},
-    {"operator", "a != b", "1 where it holds, else 0."},
+    {"operator", "a < b", "1 where true, else 0."},
+    {"operator", "a <= b", "1 where true, else 0."},
+    {"operator", "a > b", "1 where true, else 0."},
+    {"operator", "a >= b", "1 where true, else 0."},
+    {"operator", "a == b", "1 where true, else 0."},
+    {"operator", "a != b", "1 where true, else 0."},
     {"operator", "a && b", "1 where both are not 0, else 0."},
     {"operator", "a || b", "1 where one of them is not 0, else 0."},
     {"operator", "!a", "1 where a is 0, else 0."},
     {"operator", "a ? b : c", "b where a is not 0, else c."},
     {"operator", "u.x", "First component; also .y and .z."},
     {"operator", "u[1]", "Component by number, counted from 0."},
-    {"operator", "(a)", "What stands in parentheses comes first."},
-    {"name", "\"a\"", "A field by its name in quotes: for names with blanks or signs."},
-    {"name", "x", "Position along x where no field has that name, of points or of middles of cells; also y and z."},
+    {"operator", "(a)", "Parentheses are evaluated first."},
+    {"name", "\"a\"", "A field by its quoted name, for names with spaces or operators."},
+    {"name", "x", "x coordinate of the point or cell centre, unless a field has that name; also y and z."},
     {"name", "position", "The three coordinates as a vector."},
-    {"name", "time", "The time of the data."},
+    {"name", "time", "Time of the data."},
     {"name", "pi", "3.14159..."},
     {"name", "e", "2.71828..."},
     {"name", "nan", "Not a number: no value."},
@@ -125,7 +126,8 @@ class Parser {
  private:
   [[noreturn]] void fail(const std::string& problem, const std::string& hint = {}, size_t at = SIZE_MAX) {
     const size_t place = at == SIZE_MAX ? at_ : at;
-    const std::string what = place < text_.size() ? fmt::format("'{}' {}", text_.substr(place, 20), problem) : "it ends too early";
+    const std::string what =
+        place < text_.size() ? fmt::format("'{}' {}", text_.substr(place, 20), problem) : "the expression ends too early";
     fail_usage(fmt::format("{} (character {} of '{}')", what, place + 1, text_.substr(0, 200)), "calc expr", hint);
   }
   void blanks() {
@@ -143,17 +145,17 @@ class Parser {
   int components(int r) const { return program_.code[size_t(r)].components; }
   const Unit& unit(int r) const { return units_[size_t(r)]; }
   int emit(Instruction i, Unit unit) {
-    if (program_.code.size() >= most_instructions) fail_usage(fmt::format("has more than {} parts", most_instructions), "calc expr");
+    if (program_.code.size() >= most_instructions) fail_usage(fmt::format("has more than {} terms", most_instructions), "calc expr");
     program_.code.push_back(i);
     units_.push_back(std::move(unit));
     return int(program_.code.size()) - 1;
   }
   int constant(double v) { return emit({Op::constant, 1, -1, -1, -1, v}, {}); }
 
-  // The size of a result of two operands; a scalar goes with every component of the other.
+  // The size of a result of two operands; a scalar is combined with every component of the other.
   int joint(int a, int b, size_t place) {
     const int m = components(a), n = components(b);
-    if (m != n && m != 1 && n != 1) fail(fmt::format("joins {} numbers with {}", m, n), "take components: v.x or v[0]", place);
+    if (m != n && m != 1 && n != 1) fail(fmt::format("combines {} numbers with {}", m, n), "use components, e.g. v.x or v[0]", place);
     return std::max(m, n);
   }
   void note_units(const Unit& a, const Unit& b, const char* what) {
@@ -194,7 +196,7 @@ class Parser {
   }
   int choose(int condition, int a, int b, size_t place) {
     const int n = joint(a, b, place);
-    if (components(condition) != 1 && components(condition) != n) fail("chooses by a condition of another size", {}, place);
+    if (components(condition) != 1 && components(condition) != n) fail("has a condition of a different size", {}, place);
     return emit({Op::choose, n, condition, a, b}, unit(a) == unit(b) ? unit(a) : Unit());
   }
   int logical_or() {
@@ -282,7 +284,7 @@ class Parser {
         size_t end = at_;
         while (end < text_.size() && text_[end] >= '0' && text_[end] <= '9') ++end;
         const auto v = parse_int(text_.substr(at_, end - at_));
-        if (!v || *v > 1000) fail("is no number of a component", "components count from 0");
+        if (!v || *v > 1000) fail("is not a component number", "components count from 0");
         c = int(*v);
         at_ = end;
         expect("]");
@@ -306,7 +308,7 @@ class Parser {
     if ((c >= '0' && c <= '9') || c == '.') return number();
     if (c == '"' || c == '`') {
       const size_t end = text_.find(c, at_ + 1);
-      if (end == text_.npos) fail("opens a quote that does not close");
+      if (end == text_.npos) fail("opens a quote that is not closed");
       const std::string_view name = text_.substr(at_ + 1, end - at_ - 1);
       at_ = end + 1;
       return field(name, place);
@@ -333,7 +335,7 @@ class Parser {
       digits();
     }
     const auto v = parse_double(text_.substr(at_, end - at_));
-    if (!v) fail("is no number");
+    if (!v) fail("is not a number");
     at_ = end;
     return constant(*v);
   }
@@ -357,7 +359,7 @@ class Parser {
       return name == "position" ? r : emit({Op::component, 1, r, -1, -1, double(name[0] - 'x')}, {});
     }
     std::string hint = unknown_name_hint(std::string(name), names_);
-    fail("is no field", hint + (hint.empty() ? "" : "; ") + "also x, y, z, position, time, pi, e", place);
+    fail("is not a field", hint + (hint.empty() ? "" : "; ") + "also available: x, y, z, position, time, pi, e", place);
   }
   int call(std::string_view name, size_t place) {
     std::vector<int> a;
@@ -388,7 +390,7 @@ class Parser {
     std::vector<std::string> known;
     for (const Function1& f : functions1) known.emplace_back(f.name);
     for (const FunctionN& f : functions_n) known.emplace_back(f.name);
-    fail("is no function", unknown_name_hint(std::string(name), known), place);
+    fail("is not a function", unknown_name_hint(std::string(name), known), place);
   }
   void need_size(int r, int n, size_t place) {
     if (components(r) != n) fail(fmt::format("needs {} numbers, not {}", n, components(r)), {}, place);
@@ -411,7 +413,7 @@ class Parser {
       case Op::trace:
       case Op::det: need_size(a[0], 9, place); return emit({f.op, 1, a[0]}, f.op == Op::trace ? unit(a[0]) : unit(a[0]).to_power(3));
       case Op::dot:
-        if (components(a[0]) != components(a[1])) fail("needs two vectors of one size", {}, place);
+        if (components(a[0]) != components(a[1])) fail("needs two vectors of the same size", {}, place);
         return emit({f.op, 1, a[0], a[1]}, unit(a[0]).times(unit(a[1])));
       case Op::cross:
         need_size(a[0], 3, place), need_size(a[1], 3, place);
@@ -421,7 +423,7 @@ class Parser {
         return emit({f.op, 3, a[0], a[1], a[2]}, common_unit(a));
       case Op::clamp: {
         const int n = joint(a[0], a[1], place);
-        if (components(a[2]) != 1 && components(a[2]) != n) fail("has limits of another size", {}, place);
+        if (components(a[2]) != 1 && components(a[2]) != n) fail("has limits of a different size", {}, place);
         return emit({f.op, n, a[0], a[1], a[2]}, unit(a[0]));
       }
       case Op::choose: return choose(a[0], a[1], a[2], place);

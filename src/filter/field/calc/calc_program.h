@@ -74,7 +74,7 @@ struct Symbol {
   Unit unit;
 };
 
-/// Throws Error(usage) with the place. `lookup` tells of fields, `names` are for "did you mean".
+/// Throws Error(usage) with the place. `lookup` finds fields, `names` are for "did you mean".
 Program parse(std::string_view text, const std::function<Symbol(std::string_view)>& lookup, const std::vector<std::string>& names,
               double time);
 

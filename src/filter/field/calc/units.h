@@ -13,7 +13,7 @@ namespace sg {
 class Unit {
  public:
   Unit() = default;
-  /// Reads "m/s", "m s-1", "m s^-1", "kg/m^3", "m2", "1/s". Nothing for a text that is none of these ("degrees north").
+  /// Reads "m/s", "m s-1", "m s^-1", "kg/m^3", "m2", "1/s". Nothing for any other text ("degrees north").
   static std::optional<Unit> parse(std::string_view text);
   /// A text that could not be read stays one opaque symbol.
   static Unit of(std::string_view text);

@@ -7,7 +7,7 @@
 namespace sg {
 
 /// Symmetric tensors of second derivatives (9 components) of `values` (one) at the points or cells of a lattice with straight axes at right
-/// angles, or of each AMR patch, with the second derivatives along each axis of four places and more taken anew in the two outer layers:
+/// angles, or of each AMR patch, with the second derivatives along each axis of four or more samples recomputed in the two outer layers:
 /// those of the cubic through the four outer places, of second order. Other lattices, and where one of these values is not finite: as
 /// they were.
 Array with_border_derivatives(const Dataset& grid, bool of_cells, const Array& values, const Array& tensors, Context& context);

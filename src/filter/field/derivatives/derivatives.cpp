@@ -130,7 +130,7 @@ DatasetPtr hessian(const DatasetPtr& in, const HessianParams& p, Context& ctx) {
     parts.fields.add(std::move(h));
     return make_dataset(std::move(parts));
   }
-  if (in->as<PointCloud>()) fail_usage("nothing connects the points of a cloud", "hessian");
+  if (in->as<PointCloud>()) fail_usage("the points of a cloud are not connected by cells", "hessian");
   const Array values = f.array.converted(ElementType::f64).made_packed();
   std::vector<double> g(values.count() * 3), h(values.count() * 6), full(values.count() * 9);
   warn_of_gaps(fitted_derivatives(in, f.association, values, g.data(), h.data(), ctx), f.association, "hessian", ctx);

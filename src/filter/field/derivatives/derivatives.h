@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// divergence, curl, hessian: what is made of the derivatives of a field.
+// divergence, curl, hessian: operators on the derivatives of a field.
 #pragma once
 #include "filter/field/derivatives/gradient.h"
 
@@ -10,7 +10,7 @@ struct DivergenceParams {
   std::string as;
 };
 inline void describe(Schema& s, DivergenceParams& p) {
-  s("field", p.field, "Vector field; default: the active vector.").takes(fields::vectors);
+  s("field", p.field, "Vector field; default: the active vectors.").takes(fields::vectors);
   s("as", p.as, "Name of the result; default: divergence(FIELD).");
 }
 /// The sum of d u_a / d x_a of a vector field, where the field lies. Second order on grids and smooth meshes, exact for linear fields.
@@ -21,7 +21,7 @@ struct CurlParams {
   std::string as;
 };
 inline void describe(Schema& s, CurlParams& p) {
-  s("field", p.field, "Vector field; default: the active vector.").takes(fields::vectors);
+  s("field", p.field, "Vector field; default: the active vectors.").takes(fields::vectors);
   s("as", p.as, "Name of the result; default: curl(FIELD).");
 }
 /// Curl (vorticity) of a vector field: (dw/dy - dv/dz, du/dz - dw/dx, dv/dx - du/dy).
@@ -39,7 +39,7 @@ inline void describe(Schema& s, HessianParams& p) {
 /// bend of a cubic (with_border_derivatives), of second order; curvilinear ones of first order in the two outer layers. Other meshes: of
 /// the fitted parabola, exact for quadratic fields, of second order where neighbours lie on both sides alike (inside smooth meshes of
 /// hexahedra, wedges, tetrahedra), of first elsewhere, up to the border. Along lines and surfaces: the covariant one. What too few
-/// neighbours do not determine is 0, and a warning says at how many places.
+/// neighbours leave undetermined is 0, and a warning says at how many points.
 DatasetPtr hessian(const DatasetPtr& in, const HessianParams& p, Context& ctx);
 
 }  // namespace sg

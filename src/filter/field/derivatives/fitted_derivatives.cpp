@@ -18,7 +18,7 @@ namespace sg {
 
 namespace {
 
-// Ids without repetition, in the order in which they came: that order depends on the mesh alone.
+// Ids without repetition, in the order in which they came: that order depends only on the mesh.
 class IdList {
  public:
   void clear() {
@@ -86,7 +86,7 @@ class CellDimensions {
 };
 
 // What surrounds a place, ring by ring: other places, the dimension of the cells there, and across surfaces their normal.
-// Cells of less dimension than the place's own do not count: the points of a line that ends on a surface are none of the surface.
+// Cells of less dimension than the place's own do not count: the points of a line that ends on a surface do not belong to the surface.
 class Surroundings {
  public:
   Surroundings(const CellReader& reader, Association on, const PointCells& cells, const CellDimensions* dimensions, const Array& at)
@@ -351,9 +351,10 @@ void warn_of_gaps(const FittedGaps& gaps, Association on, const char* who, const
   const auto say = [&](size_t count, const char* what) {
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : "; ", count, what);
   };
-  say(gaps.alone, "have nothing around them and get NaN");
-  say(gaps.slopes, "have neighbours in one line or plane only: derivatives across it are taken as 0");
-  say(gaps.bends, "have neighbours that do not tell slope from curvature: derivatives are of first order, undetermined second ones 0");
+  say(gaps.alone, "have no neighbours and get NaN");
+  say(gaps.slopes, "have neighbours along one line or plane only: derivatives across it are set to 0");
+  say(gaps.bends,
+      "have too few neighbours to separate slope from curvature: derivatives are first-order, undetermined second derivatives 0");
   if (!text.empty()) context.warn(fmt::format("{}: of {} {}s {}", who, gaps.places, association_name(on), text));
 }
 

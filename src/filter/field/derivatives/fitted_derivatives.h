@@ -31,7 +31,7 @@ FittedGaps fitted_derivatives(const DatasetPtr& dataset, Association on, const A
 FittedGaps fitted_derivatives_at(const DatasetPtr& dataset, Association on, std::span<const uint32_t> places, const Array& values,
                                  double* gradient, double* hessian, Context& context);
 
-/// Says once, as a warning, how many of the places have gaps; nothing when there are none.
+/// Reports once, as a warning, how many points have gaps; nothing when there are none.
 void warn_of_gaps(const FittedGaps& gaps, Association on, const char* who, const Context& context);
 
 }  // namespace sg

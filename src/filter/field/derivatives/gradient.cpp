@@ -25,7 +25,8 @@ namespace {
 const Field& choose_field(const Dataset& input, const FieldName& name) {
   if (!name.empty()) {
     const Field& f = input.fields().require(name.name);
-    if (f.association == Association::whole) fail_usage(fmt::format("field '{}' lies on no points or cells", name.name), "gradient");
+    if (f.association == Association::whole)
+      fail_usage(fmt::format("field '{}' is defined on neither points nor cells", name.name), "gradient");
     return f;
   }
   const Field* f = input.fields().active(1);
@@ -34,7 +35,7 @@ const Field& choose_field(const Dataset& input, const FieldName& name) {
   return *f;
 }
 
-// One row of a lattice, with one-sided differences beside missing values. T is the number type of both.
+// One row of a lattice, with one-sided differences next to missing values. T is the number type of both.
 template <class T>
 void row_gradient(const LatticeFrame& frame, const View<T>& f, T* out, size_t r) {
   const size_t nx = frame.dims[0], ny = frame.dims[1], n = size_t(f.components);
@@ -114,7 +115,7 @@ Array fitted_gradient(const DatasetPtr& input, Association on, const Array& valu
 
 DatasetPtr gradient(const DatasetPtr& input, const GradientParams& params, Context& context) {
   if (input->as<PointCloud>())
-    fail_usage("a mesh of kind 'points' has no gradient: nothing connects its points", "gradient", "points alone have no gradient");
+    fail_usage("a mesh of kind 'points' has no gradient: its points are not connected", "gradient", "points alone have no gradient");
   const Field& field = choose_field(*input, params.field);
   const ElementType t = field.array.type();
   const ElementType type = t == ElementType::f32 || element_size(t) < 4 ? ElementType::f32 : ElementType::f64;

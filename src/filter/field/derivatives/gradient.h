@@ -22,10 +22,9 @@ void describe(Schema& s, GradientParams& p);
 /// Uniform, rectilinear and curvilinear grids: second order, one-sided at the borders; curvilinear ones through the derivatives of
 /// the positions. Axes with one point give 0 (curved sheets and lines: the gradient along them). AMR grids: patch by patch.
 /// Unstructured and surface meshes: a parabola fitted to the places around (see fitted_derivatives.h), of second order on smooth meshes
-/// up to their borders, exact for quadratic functions; where there are too few places for that, exact for linear ones, and a warning
-/// says how many. On lines and surfaces the gradient along them.
-/// Beside NaN values differences are one-sided; a NaN has a NaN gradient.
-/// Throws Error(usage) for an unknown field and for point clouds.
+/// up to their borders, exact for quadratic functions; where there are too few neighbours for that, exact for linear ones, and a warning
+/// says at how many points. On lines and surfaces the gradient along them. Next to NaN values differences are one-sided; a NaN has a NaN
+/// gradient. Throws Error(usage) for an unknown field and for point clouds.
 DatasetPtr gradient(const DatasetPtr& input, const GradientParams& params, Context& context);
 
 }  // namespace sg

@@ -107,7 +107,7 @@ Mat3 LatticeFrame::metric(size_t p, const size_t at[3]) const {
 
 bool LatticeFrame::right_handed() const {
   if (axes < 3) return true;
-  // A lattice that is not folded has one sign everywhere; flat cells (poles, seams) have none, so many places vote.
+  // A lattice that is not folded has one sign everywhere; flat cells (poles, seams) have none, so many points vote.
   long votes = 0;
   const size_t tries = 9;
   for (size_t a = 0; a < tries; ++a)

@@ -55,7 +55,7 @@ struct LatticeFrame {
   bool right_handed() const;
 };
 
-/// Derivative along one axis beside values that are missing (NaN): the neighbours that are there give a one-sided difference of
+/// Derivative along one axis next to missing values (NaN): the neighbours that are there give a one-sided difference of
 /// first order; 0 when there are none.
 template <class Value>
 double careful_derivative(const AxisStencil& s, size_t p, Value&& f) {

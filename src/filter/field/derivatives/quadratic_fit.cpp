@@ -139,7 +139,7 @@ void QuadraticFit::fill_columns(std::span<const Vec3> offsets) {
     if (!(norm_[c] > flat * longest)) left_[c] = 0;
 }
 
-// QR with column pivoting among coordinates, then among products: what cannot be told apart is left to the coordinates.
+// QR with column pivoting among coordinates, then among products: what cannot be distinguished is left to the coordinates.
 void QuadraticFit::factorise(std::span<const Vec3> offsets) {
   fill_columns(offsets);
   determined_ = 1, rank_ = 0;
@@ -179,7 +179,7 @@ void QuadraticFit::take_columns(size_t begin, size_t end, double smallest) {
   }
 }
 
-// The rows of R that belong to the products alone, as orthogonal columns: short ones are combinations that nothing determines.
+// The rows of R that belong only to the products, as orthogonal columns: short ones are combinations that nothing determines.
 void QuadraticFit::split_products() {
   const auto n = size_t(dimension_), products = columns_ - n, rows = rank_ - slopes_;
   split_ = true;

@@ -21,7 +21,7 @@ class QuadraticFit {
 
   /// The smallest sine of the angle between a column of the fit (a coordinate or a product of two) and those before it, 0 to 1, in the
   /// better of the given axes and the neighbours' principal ones, so that thin and slanting cells count like cubes. Errors grow with its
-  /// inverse: two layers of neighbours do not tell slope from curvature (0 for boxes, small for bent ones), a third does.
+  /// inverse: two layers of neighbours cannot separate slope from curvature (0 for boxes, small for bent ones), a third can.
   double determined() const { return determined_; }
   static constexpr double well_determined = 0.15;
 

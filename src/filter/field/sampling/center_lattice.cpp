@@ -28,7 +28,7 @@ Mesh center_lattice(const Mesh& mesh) {
     return g;
   }
   if (auto* r = std::get_if<RectilinearGrid>(&mesh)) return RectilinearGrid{middles(r->x), middles(r->y), middles(r->z), r->extent_start};
-  if (!is_lattice(mesh)) fail_internal("the centres of a mesh that is no lattice");
+  if (!is_lattice(mesh)) fail_internal("centres were requested of a mesh that is not a lattice");
   const Lattice lattice(mesh);
   const LatticeView& v = lattice.view();
   CurvilinearGrid g;

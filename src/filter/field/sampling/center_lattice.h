@@ -6,7 +6,7 @@
 namespace sg {
 
 /// Its points are the middles of the cells, in their order: uniform and rectilinear grids keep their kind, curvilinear ones take the mean
-/// of the corners. An axis with one point keeps it. Throws an internal Error for a mesh that is no lattice.
+/// of the corners. An axis with one point keeps it. Throws an internal Error for a mesh that is not a lattice.
 Mesh center_lattice(const Mesh& mesh);
 
 }  // namespace sg

@@ -27,7 +27,7 @@ std::vector<AxisSum> gaussian_sums(const std::vector<double>& at, double sigma) 
     return sums;
   }
   const auto width = [&](size_t i) { return 0.5 * std::abs(at[std::min(i + 1, n - 1)] - at[i > 0 ? i - 1 : 0]); };
-  // The outermost stand for a full width: the other half lies beyond the border.
+  // The outermost represent a full width: the other half lies beyond the border.
   const auto share = [&](size_t i) { return i == 0 || i + 1 == n ? 2 * width(i) : width(i); };
   size_t first = 0;
   for (size_t i = 0; i < n; ++i) {
@@ -46,21 +46,21 @@ std::vector<AxisSum> gaussian_sums(const std::vector<double>& at, double sigma) 
 
 void describe(Schema& s, GaussianSmoothParams& p) {
   s("field", p.field, "Scalar point or cell field; default: the active scalar.").takes(fields::scalars);
-  s("sigma", p.sigma, "Standard deviation: one number or one per axis of the grid; default: the mean distance of neighbours.")
+  s("sigma", p.sigma, "Standard deviation: one number or one per axis of the grid; default: the mean distance between neighbours.")
       .unit("length")
       .at_least(0);
-  s("name", p.name, "Name of the new field; default: it takes the place of the old one.");
+  s("name", p.name, "Name of the new field; default: it replaces the old one.");
 }
 
 DatasetPtr gaussian_smooth(const DatasetPtr& in, const GaussianSmoothParams& p, Context& context) {
   if (p.sigma.size() > 1 && p.sigma.size() != 3)
-    fail_usage(fmt::format("needs one or three numbers, not {}", p.sigma.size()), "gaussian_smooth sigma", "like 0.5 or 0.5,0.5,2");
+    fail_usage(fmt::format("needs one or three numbers, not {}", p.sigma.size()), "gaussian_smooth sigma", "write e.g. 0.5 or 0.5,0.5,2");
   for (double s : p.sigma)
     if (!(s >= 0) || !std::isfinite(s))
-      fail_usage(fmt::format("{} is no length", s), "gaussian_smooth sigma", "give a length, or 0 for none");
+      fail_usage(fmt::format("{} is not a valid length", s), "gaussian_smooth sigma", "give a length, or 0 for no smoothing");
   const SampleImage image = sample_image(*in, p.field, "gaussian_smooth");
   if (image.field.role == Role::labels)
-    fail_usage(fmt::format("field '{}' holds labels, which have no mean", image.field.name), "gaussian_smooth", "see morphology");
+    fail_usage(fmt::format("field '{}' holds labels, which cannot be averaged", image.field.name), "gaussian_smooth", "use morphology");
   const size_t n = image.count();
   const Range range = in->range(image.field, 0);
   const double base = range.empty() ? 0 : 0.5 * range.lo + 0.5 * range.hi;

@@ -10,12 +10,12 @@ namespace sg {
 struct PointToCellParams {
   std::vector<std::string> fields;
 };
-inline void describe(Schema& s, PointToCellParams& p) { s("fields", p.fields, "Point fields to average; default: all but ids."); }
+inline void describe(Schema& s, PointToCellParams& p) { s("fields", p.fields, "Point fields to average; default: all except ids."); }
 
 struct CellToPointParams {
   std::vector<std::string> fields;
 };
-inline void describe(Schema& s, CellToPointParams& p) { s("fields", p.fields, "Cell fields to average; default: all but ids."); }
+inline void describe(Schema& s, CellToPointParams& p) { s("fields", p.fields, "Cell fields to average; default: all except ids."); }
 
 /// Adds for each point field a cell field of the same name: the mean over the cell's points. Floats keep their type, integers become
 /// f32 (f64 from 32 bits on). NaN is left out of a mean; a mean of nothing is NaN. Constant fields stay constant; linear fields give

@@ -222,7 +222,7 @@ std::vector<uint8_t> fill_holes(float* values, std::array<size_t, 3> dims, int l
   for (size_t i = 0; i < count; ++i) missing[i] = !std::isfinite(values[i]);
   std::vector<uint8_t> state = missing;
   for (int layer = 0; layer < layers; ++layer) {
-    // Those that get a value now do so from the layers before: state 2 until the layer is done.
+    // Those filled now take their values from earlier layers: state 2 until the layer is done.
     parallel_for(
         dims[1] * dims[2], 16,
         [&](size_t begin, size_t end) {

@@ -54,14 +54,14 @@ void kernel_slopes(Kernel k, double f, double* slopes);
 /// Largest sum of |shares| over all places: values lie within `gain`^3 half ranges of the middle of the samples' range.
 double kernel_gain(Kernel k);
 
-/// Beyond the outermost samples the field is reflected at them as a point, s[-i] = 2 s[0] - s[i]: what rises evenly goes on to do so.
+/// Beyond the outermost samples the field is reflected at them as a point, s[-i] = 2 s[0] - s[i]: linear slopes continue.
 /// Turns samples into coefficients whose cubic B-spline passes through them: a recursive filter along each axis (Unser, Aldroubi, Eden
-/// 1993) for that reflection, which makes natural splines. Axes of one sample are left alone. Samples must be finite. Along all axes, or
+/// 1993) for that reflection, which makes natural splines. Axes of one sample are unchanged. Samples must be finite. Along all axes, or
 /// one of them.
 void bspline_coefficients(float* values, std::array<size_t, 3> dims, const Context* context = nullptr);
 void bspline_coefficients_along(size_t axis, float* values, std::array<size_t, 3> dims, const Context* context = nullptr);
 
-/// Gives samples without a finite value one, for the outer shares of cells beside holes: straight on from pairs of samples behind
+/// Fills samples without a finite value, for the outer shares of cells next to holes: straight on from pairs of samples behind
 /// each other in the 26 directions (mean of those that exist), else the mean of neighbours; layer by layer, `layers` of them, the rest
 /// gets the middle of the range. Returns one byte per sample (1 = had no value), empty when all had one.
 std::vector<uint8_t> fill_holes(float* values, std::array<size_t, 3> dims, int layers, const Context* context = nullptr);

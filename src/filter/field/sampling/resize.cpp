@@ -153,29 +153,29 @@ Mesh resized_mesh(const Mesh& mesh, const Dims& to) {
 
 Dims wanted_dims(const Dims& from, const std::vector<int64_t>& wanted) {
   if (wanted.size() != 1 && wanted.size() != 3)
-    fail_usage(fmt::format("needs one or three numbers, not {}", wanted.size()), "resize dims", "like 256 or 256,256,100");
+    fail_usage(fmt::format("needs one or three numbers, not {}", wanted.size()), "resize dims", "write e.g. 256 or 256,256,100");
   Dims to = from;
   const size_t longest = *std::max_element(from.begin(), from.end());
   for (size_t a = 0; a < 3; ++a) {
     const int64_t n = wanted[wanted.size() == 3 ? a : 0];
-    if (n < 1 || n > 1 << 20) fail_usage(fmt::format("{} is no number of points", n), "resize dims", "give 2 to 1048576");
+    if (n < 1 || n > 1 << 20) fail_usage(fmt::format("{} is not a valid number of points", n), "resize dims", "give 2 to 1048576");
     if (from[a] == 1 && wanted.size() == 3 && n != 1)
-      fail_usage(fmt::format("axis {} has one point and cannot get {}", "xyz"[a], n), "resize dims", "give 1 there");
+      fail_usage(fmt::format("axis {} has one point and cannot be given {}", "xyz"[a], n), "resize dims", "give 1 for that axis");
     if (from[a] == 1) continue;
     if (n < 2) fail_usage(fmt::format("axis {} would lose its extent", "xyz"[a]), "resize dims", "give 2 or more, or use slice");
     to[a] = wanted.size() == 3 ? size_t(n)
                                : std::max<size_t>(2, size_t(std::llround(double(n - 1) * double(from[a] - 1) / double(longest - 1))) + 1);
   }
   if (double(to[0]) * double(to[1]) * double(to[2]) > 1e12)
-    fail_usage(fmt::format("{} x {} x {} points are more than any memory holds", to[0], to[1], to[2]), "resize dims", "give fewer");
+    fail_usage(fmt::format("{} x {} x {} points exceed any memory", to[0], to[1], to[2]), "resize dims", "give fewer points");
   return to;
 }
 
 }  // namespace
 
 void describe(Schema& s, ResizeParams& p) {
-  s("dims", p.dims, "Points along x, y and z, or one number along the longest axis.").at_least(1);
-  s("kernel", p.kernel, "What joins the samples.");
+  s("dims", p.dims, "Number of points along x, y and z, or one number for the longest axis.").at_least(1);
+  s("kernel", p.kernel, "Reconstruction kernel between the samples.");
 }
 
 DatasetPtr resize(const DatasetPtr& in, const ResizeParams& p, Context& context) {
@@ -186,7 +186,7 @@ DatasetPtr resize(const DatasetPtr& in, const ResizeParams& p, Context& context)
   double bytes = 40;  // a point: where it comes from
   for (const Field& f : in->fields()) bytes = std::max(bytes, 40 + double(f.components()) * 24);
   need_memory(double(to[0]) * double(to[1]) * double(to[2]) * bytes, fmt::format("{}x{}x{} points", to[0], to[1], to[2]), "resize",
-              "smaller dims");
+              "give smaller dims");
   DatasetParts out = in->parts();
   out.mesh = resized_mesh(in->mesh(), to);
   out.fields = {};

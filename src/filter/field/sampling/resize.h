@@ -20,7 +20,7 @@ void describe(Schema& s, ResizeParams& p);
 /// that nothing is missed (then bspline does without its coefficients). Labels and ids take the nearest sample, and so do ghost marks.
 /// Beyond the border samples are reflected as a point: what rises evenly is kept. A result has no value where the nearest sample has none
 /// (NaN, hidden); others take made-up values for such samples, see fill_holes(). Types are kept; integers are rounded and clamped.
-/// Throws Error(usage) for other meshes, unknown kernels and dims that are none.
+/// Throws Error(usage) for other meshes, unknown kernels and invalid dims.
 DatasetPtr resize(const DatasetPtr& in, const ResizeParams& p, Context& context);
 
 }  // namespace sg

@@ -52,7 +52,7 @@ struct LatticePlace {
 
 class FlowAccess {
  public:
-  /// solids: any cells of volume that walks can cross, see SolidCursor; cells: by the locator alone.
+  /// solids: any cells of volume that walks can cross, see SolidCursor; cells: only by the locator.
   enum class Kind : uint8_t { lattice, tets, solids, cells };
   /// `index`: a locator of the same mesh, of this or another dataset, or null: made when it is first needed.
   FlowAccess(DatasetPtr mesh, std::shared_ptr<const CellLocator> index, const Context& context);

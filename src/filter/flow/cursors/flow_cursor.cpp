@@ -72,9 +72,8 @@ struct FlowCursor::State {
     source = Source::locator;
     return find_by_tree(x);
   }
-  // On surfaces, whose lines leave them by rounding and curvature: the nearest place within a cell, if that is not at their border, where
-  // x lies beside the surface and not above it.
-  // Curves likewise: x may lie beside them, but not beyond their end.
+  // On surfaces, whose lines leave them by rounding and curvature: the nearest point within a cell, unless that is at their border, where x
+  // lies next to the surface rather than above it. Curves likewise: x may lie off them, but not beyond their end.
   bool find_by_tree(Vec3 x) {
     LocatorCursor& l = by_tree();
     if (!beside) {  // else the last place was not on the surface, and this one will hardly be

@@ -39,7 +39,7 @@ inline FaceExit exit_of(CellType base, Vec3 r, double tolerance) {
 
 class LinearCell {
  public:
-  /// Has this class a map for the type?
+  /// Whether this class has a map for the type.
   static bool knows(CellType t) {
     return t == CellType::hexahedron || t == CellType::tetra || t == CellType::wedge || t == CellType::pyramid || t == CellType::voxel;
   }
@@ -65,7 +65,7 @@ class LinearCell {
   Vec3& at() { return r_; }
 
   /// Newton from at(). False where it does not converge near the cell. `quick`: also true when it is clear that x lies well outside; at()
-  /// then tells the direction alone.
+  /// then gives only the direction.
   bool invert(Vec3 x, bool quick) {
     for (int n = 0; n < 20; ++n) {
       Vec3 d[3];

@@ -43,7 +43,7 @@ SolidCursor::Found SolidCursor::find(Vec3 x) {
     before = cell_;
     const Vec3 r = linear_.at();
     open(next);
-    // In a grid the axes go on; elsewhere they may be any.
+    // In a grid the axes go on; elsewhere they are arbitrary.
     if (access_->curvilinear) {
       Vec3 q = r;
       q[exit.face / 2] += exit.face % 2 ? -1 : 1;
@@ -160,7 +160,7 @@ bool SolidCursor::look_curved(Vec3 x, bool quick, FaceExit& exit) {
     if (!(size < 1e15)) return false;
     const Vec3 to = r + step;
     const double far = std::max({std::abs(to.x - 0.5), std::abs(to.y - 0.5), std::abs(to.z - 0.5)});
-    // Beyond the cell the map bends away; the first steps from inside tell the direction.
+    // Beyond the cell the map bends away; the first steps from inside give the direction.
     if (quick && far > 1.5) {
       exit = exit_of(base_, to, tolerance_);
       return true;

@@ -16,9 +16,10 @@ class SolidCursor {
   SolidCursor(const FlowAccess& access, PointVectors vectors);
 
   enum class Found : uint8_t { here, outside, lost };
-  /// Walks to x. Outside: x is outside of the mesh's box. Lost: the walk came to a border, a hidden or a broken cell: a tree has to tell.
+  /// Walks to x. Outside: x is outside of the mesh's box. Lost: the walk came to a border, a hidden or a broken cell: a tree search is
+  /// needed.
   Found find(Vec3 x);
-  /// In a cell that somebody else found; false where its map does not lead to x.
+  /// In a cell found elsewhere; false where its map does not lead to x.
   bool set(int64_t cell, Vec3 x);
 
   Vec3 velocity();
@@ -37,7 +38,7 @@ class SolidCursor {
   void open(int64_t cell);
   void open_linear(size_t cell, CellType type);
   void open_polyhedron();
-  // Where x lies from the open cell: exit.face -1 inside. False when that cannot be told.
+  // Where x lies from the open cell: exit.face -1 inside. False when that cannot be decided.
   bool look(Vec3 x, bool quick, FaceExit& exit);
   bool look_curved(Vec3 x, bool quick, FaceExit& exit);
   bool look_polyhedron(Vec3 x, FaceExit& exit);

@@ -19,7 +19,7 @@ class TetCursor {
       : s_(&access.simplices), start_(access.start.get()), across_(access.tets->data()), v_(vectors) {}
 
   enum class Found : uint8_t { here, outside, lost };
-  /// Walks to x. Outside: x is outside of the mesh's box. Lost: the walk came to the border, or into a flat cell: a tree has to tell.
+  /// Walks to x. Outside: x is outside of the mesh's box. Lost: the walk came to the border, or into a flat cell: a tree search is needed.
   Found find(Vec3 x) {
     if (!start_->may_hold(x)) return Found::outside;
     if (cell_ < 0) open(start_->near(x));
@@ -38,7 +38,7 @@ class TetCursor {
     }
     return Found::lost;
   }
-  /// Where somebody else found x.
+  /// Where x was found elsewhere.
   void set(int64_t cell, Vec3 x) {
     if (cell != cell_) open(int32_t(cell));
     const Vec3 d = x - t_.a;

@@ -12,13 +12,13 @@ namespace sg {
 
 namespace {
 
-// A place where much flows, and how far the flow goes from there.
+// A point with strong flow, and how far the flow travels from there.
 class Middle {
  public:
   Middle(const FlowParts& parts, std::string_view who, Context& context)
       : flow_(parts), box_(parts.bounds()), least_(0.02 * parts.largest_speed()) {
     const double much = parts.mean_speed();
-    if (!(much > 0)) fail_usage(fmt::format("field '{}' is zero or NaN everywhere: nothing flows", parts.name()), std::string(who));
+    if (!(much > 0)) fail_usage(fmt::format("field '{}' is zero or NaN everywhere: there is no flow", parts.name()), std::string(who));
     at = box_.center();
     if (speed(at) < 0.5 * much) {
       std::vector<DatasetPtr> meshes;
@@ -33,7 +33,7 @@ class Middle {
       }
     }
     Vec3 v;
-    if (!flow_(at, v) || !(length(v) > 0)) fail_usage("nothing flows in the middle of the mesh", std::string(who), "a place to begin");
+    if (!flow_(at, v) || !(length(v) > 0)) fail_usage("there is no flow in the middle of the mesh", std::string(who), "say where to begin");
     along = normalize(v);
   }
 
@@ -53,7 +53,7 @@ class Middle {
     Vec3 v;
     return flow_(x, v) ? length(v) : 0.0;
   }
-  // How far the flow goes from there before it all but stands still, up to the diagonal.
+  // How far the flow travels from there before it nearly stops, up to the diagonal.
   double way(Vec3 x) {
     constexpr int steps = 200;
     const double h = box_.diagonal() / steps;
@@ -81,8 +81,8 @@ SeedCurveParams across_the_flow(const FlowParts& parts, std::string_view who, Co
   p.from = m.at - side * m.reach(-side), p.to = m.at + side * m.reach(side);
   if (!(length(*p.to - *p.from) > 0)) p.from = m.at - side * m.step(), p.to = m.at + side * m.step();
   context.info(
-      fmt::format("{}: seeds: a line across the flow, from={:.4g},{:.4g},{:.4g} to={:.4g},{:.4g},{:.4g}; points=, or center= and radius= "
-                  "make others",
+      fmt::format("{}: seeds: a line across the flow, from={:.4g},{:.4g},{:.4g} to={:.4g},{:.4g},{:.4g}; points=, or center= and radius=, "
+                  "choose others",
                   who, p.from->x, p.from->y, p.from->z, p.to->x, p.to->y, p.to->z));
   return p;
 }

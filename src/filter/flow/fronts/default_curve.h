@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where surfaces of a flow begin when nobody says.
+// Default start of a flow surface.
 #pragma once
 #include "data/dataset.h"
 #include "filter/flow/flow_parts.h"
@@ -7,9 +7,9 @@
 
 namespace sg {
 
-/// A straight line across the flow: through the middle of the mesh, or where that stands still the place of some where much flows from
-/// which it goes farthest; along the axis of the mesh that is most across the flow there, up to an eighth of the mesh's diagonal to both
-/// sides, as far as there is flow (above 2 % of the largest speed). Says on the log which it is. Throws Error(usage) naming `who` when
+/// A straight line across the flow: through the middle of the mesh, or if the flow is still there, the candidate point with strong flow
+/// from which it travels farthest; along the axis of the mesh that is most across the flow there, up to an eighth of the mesh's diagonal to
+/// both sides, as far as there is flow (above 2 % of the largest speed). Says on the log which it is. Throws Error(usage) naming `who` when
 /// nothing flows.
 SeedCurveParams across_the_flow(const FlowParts& parts, std::string_view who, Context& context);
 

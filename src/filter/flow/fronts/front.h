@@ -63,7 +63,7 @@ void advance(Flow& flow, Trajectory& path, FrontClock clock, double step, double
     }
     const Vec3 to = flow.snap(s.x1);
     const double moved = length(to - p.x);
-    if (clock == FrontClock::length && !(moved > 0)) {  // less than coordinates of this size can tell
+    if (clock == FrontClock::length && !(moved > 0)) {  // below the resolution of coordinates of this size
       path.ended = true;
       break;
     }

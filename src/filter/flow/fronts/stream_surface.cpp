@@ -15,24 +15,26 @@
 namespace sg {
 
 void describe(Schema& s, StreamSurfaceParams& p) {
-  s("field", p.field, "Velocity: a point or cell field of 2 or 3 components; default: the active vectors.").takes(fields::vectors);
+  s("field", p.field, "Velocity: point or cell field of 2 or 3 components; default: the active vectors.").takes(fields::vectors);
   describe(s, p.curve);
-  s("direction", p.direction, "Along the flow, against it, or both.");
-  s("front", p.front, "What the places of a front have in common: the length they have gone, or the time.");
+  s("direction", p.direction, "Trace along the flow, against it, or both ways.");
+  s("front", p.front, "What the points of a front have in common: length travelled, or time.");
   s("spacing", p.spacing,
-    "Largest distance between neighbours in a front, and between fronts (by length); default: a 100th of the diagonal.")
+    "Largest distance between neighbours in a front and between fronts (front=length); default: a 100th of the diagonal.")
       .unit("length")
       .positive();
-  s("max_length", p.max_length, "How far the surface goes; default: the mesh's diagonal.").unit("length").positive();
-  s("max_time", p.max_time, "front=time: how long; default: the time in which the mean speed goes max_length.").unit("time").positive();
-  s("max_angle", p.max_angle, "Largest turn of a front at a place before more are put in.").unit("deg").range(1, 180);
-  s("tear", p.tear, "A gap wider than this many spacings that cannot be filled is left open.").range(1, 1e6);
+  s("max_length", p.max_length, "How far the surface extends; default: the mesh's diagonal.").unit("length").positive();
+  s("max_time", p.max_time, "front=time: how long to trace; default: the time in which the mean speed covers max_length.")
+      .unit("time")
+      .positive();
+  s("max_angle", p.max_angle, "Largest turn of a front at a point before more points are put in.").unit("deg").range(1, 180);
+  s("tear", p.tear, "Gaps wider than this many spacings that cannot be filled are left open.").range(1, 1e6);
   s("min_speed", p.min_speed,
-    "Where the flow is slower than this part of its largest speed, the surface ends. The default, 1e-4, is 0.02 where most of a grid is "
-    "noise, as around the vessels of a scan.")
+    "The surface ends where the speed is below this fraction of its largest value. The default of 1e-4 becomes 0.02 where most of a grid "
+    "is noise, as around the vessels of a scan.")
       .range(0, 1);
-  s("tolerance", p.tolerance, "Error of one step of integration, in sizes of the local cell.").positive();
-  s("max_points", p.max_points, "Most points of the surface.").range(4, 1e9);
+  s("tolerance", p.tolerance, "Error per integration step, in local cell sizes.").positive();
+  s("max_points", p.max_points, "Maximum number of points of the surface.").range(4, 1e9);
 }
 
 namespace {
@@ -49,7 +51,7 @@ double noise_of(const FlowParts& parts) {
 }
 
 constexpr int deepest = 20;                  // halvings of a gap
-constexpr uint8_t open_end = 1, parted = 2;  // why a front is torn behind a member: there is no more of it, or neighbours went apart
+constexpr uint8_t open_end = 1, parted = 2;  // why a front is torn behind a member: it has ended, or neighbours separated
 constexpr double narrowest = 3;              // spacings: between two tears narrower strips are rags
 
 class Growth {
@@ -76,7 +78,7 @@ class Growth {
     const double pieces = std::ceil(curve_.whole() / spacing_ - 1e-9);
     if (!(pieces < double(p_.max_points)))
       fail_usage(fmt::format("{:.3g} lines begin on the seed curve, more than max_points = {}", pieces, p_.max_points), "stream_surface",
-                 "a larger spacing");
+                 "use a larger spacing");
     const auto n = size_t(pieces) + size_t(!curve_.closed);
     std::vector<double> at;
     for (size_t i = 0; i < std::max<size_t>(n, curve_.closed ? 3 : 2); ++i)
@@ -106,7 +108,7 @@ class Growth {
       context_.progress(double(k) / double(levels_), "stream_surface");
       if (int64_t(points.size()) > p_.max_points)
         fail_usage(fmt::format("the surface has more than {} points", p_.max_points), "stream_surface",
-                   "a larger spacing, or a larger max_points");
+                   "use a larger spacing or a larger max_points");
       front = next(front, k);
     }
   }
@@ -211,7 +213,7 @@ class Growth {
         if (k >= behind.size() || behind[k] != i) continue;
         Trajectory& path = paths_[added[k]];
         path.depth = std::max(paths_[f.members[i]].depth, paths_[f.members[(i + 1) % n]].depth) + 1;
-        // One that ends on its way shows where the flow parts.
+        // One that ends early shows where the flow separates.
         if (path.at.size() > level) more.members.push_back(added[k]), more.torn.push_back(0);
         else more.torn.back() = open_end;
         ++k;
@@ -295,7 +297,7 @@ class Growth {
     return kept;
   }
 
-  /// Takes out what is narrow and next to a gap where the flow parted: a surface that has torn twice in a short front is no surface.
+  /// Takes out what is narrow and next to a gap where the flow parted: a surface that has torn twice in a short front is not a surface.
   void drop_rags(Front& f, size_t level) const {
     const size_t n = f.members.size();
     const auto tear = std::find_if(f.torn.begin(), f.torn.end(), [](uint8_t t) { return t != 0; });
@@ -341,14 +343,15 @@ class Growth {
 
 Data stream_surface(const std::vector<Data>& inputs, const StreamSurfaceParams& p, Context& context) {
   const FlowParts parts(inputs[0], p.field.name, "stream_surface", context);
-  if (parts.dimension() != 3) fail_usage("on a surface streamlines make no surface", "stream_surface", "streamlines or even_streamlines");
+  if (parts.dimension() != 3)
+    fail_usage("streamlines within a surface do not make a stream surface", "stream_surface", "use streamlines or even_streamlines");
   const DatasetPtr second = seed_mesh_of(inputs, "stream_surface");
   const bool chosen = p.curve.nothing() && !second;
   const SeedCurve curve = seed_curve(chosen ? across_the_flow(parts, "stream_surface", context) : p.curve, second, "stream_surface");
   const double diagonal = parts.bounds().diagonal();
   const double spacing = p.spacing.value_or(std::min(diagonal / 100, chosen ? curve.whole() / 12 : HUGE_VAL));
   const double far = p.max_length.value_or(diagonal);
-  // The mean speed on the curve tells how long `far` takes.
+  // The mean speed on the curve gives the time to travel `far`.
   PartsCursor flow(parts);
   double sum = 0;
   int inside = 0;
@@ -357,13 +360,14 @@ Data stream_surface(const std::vector<Data>& inputs, const StreamSurfaceParams& 
     if (flow(curve((k + 0.5) / 64), v)) sum += length(v), ++inside;
   }
   if (inside == 0)
-    fail_usage("the seed curve does not lie in the flow", "stream_surface", fmt::format("the mesh lies in {}", box_text(parts.bounds())));
+    fail_usage("the seed curve lies outside the flow", "stream_surface", fmt::format("the mesh extends over {}", box_text(parts.bounds())));
   const FrontClock clock = p.front;
   const double mean = sum / inside, all = clock == FrontClock::length ? far : p.max_time.value_or(mean > 0 ? far / mean : 0);
   const double step = clock == FrontClock::length ? spacing : mean > 0 ? spacing / mean : 0;
-  if (!(step > 0) || !(mean > 0)) fail_usage("nothing flows at the seed curve", "stream_surface");
+  if (!(step > 0) || !(mean > 0)) fail_usage("there is no flow at the seed curve", "stream_surface");
   const double count = std::ceil(all / step - 1e-9);
-  if (count > 1e6) fail_usage(fmt::format("{:.3g} fronts are too many", count), "stream_surface", "a larger spacing or a shorter surface");
+  if (count > 1e6)
+    fail_usage(fmt::format("{:.3g} fronts are too many", count), "stream_surface", "use a larger spacing or a shorter surface");
   const size_t levels = size_t(count) + 1;
   Growth g(parts, curve, p, spacing, clock, all / count, levels, context);
   g.begin();

@@ -17,7 +17,7 @@ namespace {
 // Seeds evenly along a curve, and their parameters.
 std::vector<double> even_parameters(const SeedCurve& curve, double spacing) {
   const double wanted = std::max(std::ceil(curve.whole() / spacing - 1e-9), curve.closed ? 3.0 : 1.0);
-  if (!(wanted <= 1e6)) fail_usage(fmt::format("{:.3g} seeds are too many", wanted), "surfaces", "a larger spacing or a shorter curve");
+  if (!(wanted <= 1e6)) fail_usage(fmt::format("{:.3g} seeds are too many", wanted), "surfaces", "use a larger spacing or a shorter curve");
   const auto n = size_t(wanted);
   std::vector<double> out;
   for (size_t i = 0; i < n + size_t(!curve.closed); ++i) out.push_back(double(i) / double(n));

@@ -28,7 +28,7 @@ struct Collected {
 /// With the fields of unsteady_surfaces.h, as data of the time `end`; `releases`: with "release time".
 DatasetPtr surface_dataset(Collected c, const Field& velocity, double start, double end, bool releases);
 
-/// A run over a curve, whose seeds are even and at most `spacing` apart.
+/// A run over a curve, with evenly spaced seeds at most `spacing` apart.
 struct CurveRun {
   SeedCurve curve;
   double spacing;
@@ -52,7 +52,7 @@ void each_part(UnsteadyRun& run, double spacing, int64_t most, const char* who, 
     const auto n = size_t(std::clamp(std::ceil(far / spacing), 1.0, 10000.0));
     for (size_t k = 1; k <= n; ++k) {
       if (int64_t(points()) > most)
-        fail_usage(fmt::format("the surface has more than {} points", most), who, "a larger spacing or max_points");
+        fail_usage(fmt::format("the surface has more than {} points", most), who, "use a larger spacing or max_points");
       f(k == n ? until : now + (until - now) * double(k) / double(n));
     }
     now = until;

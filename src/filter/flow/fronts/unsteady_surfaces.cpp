@@ -15,16 +15,16 @@ namespace sg {
 namespace {
 
 void describe_shared(Schema& s, UnsteadySurfaceParams& p) {
-  s("field", p.field, "Velocity: a point or cell field of 2 or 3 components; default: the active vectors.").takes(fields::vectors);
+  s("field", p.field, "Velocity: point or cell field of 2 or 3 components; default: the active vectors.").takes(fields::vectors);
   s("times", p.times, "Time steps, FIRST:LAST:COUNT or a list; default: those of the file.").unit("time");
-  s("start", p.start, "When it begins; default: the first time of the series.").unit("time");
-  s("time", p.time, "When it ends; default: the last time of the series.").unit("time");
-  s("interpolation", p.interpolation, "Between time steps.");
+  s("start", p.start, "Time at which the surface begins; default: the first time of the series.").unit("time");
+  s("time", p.time, "Time at which it ends; default: the last time of the series.").unit("time");
+  s("interpolation", p.interpolation, "Interpolation between time steps.");
   describe(s, p.integration);
-  s("geographic", p.geographic, "x and y are degrees and the velocity is in m/s: it is converted.");
-  s("spacing", p.spacing, "Longest edge of the surface; default: a 100th of the mesh's diagonal.").unit("length").positive();
-  s("tear", p.tear, "A gap wider than this many spacings that cannot be filled is left open.").range(1, 1e6);
-  s("max_points", p.max_points, "Most points of the surface.").range(4, 1e9);
+  s("geographic", p.geographic, "x and y are in degrees and the velocity is in m/s: convert it.");
+  s("spacing", p.spacing, "Maximum edge length of the surface; default: a 100th of the mesh's diagonal.").unit("length").positive();
+  s("tear", p.tear, "Gaps wider than this many spacings that cannot be filled are left open.").range(1, 1e6);
+  s("max_points", p.max_points, "Maximum number of points of the surface.").range(4, 1e9);
 }
 
 Collected collect(const Sheet& sheet) {
@@ -57,11 +57,12 @@ void rectangle(TimeSurfaceParams p, const Series& series, double spacing, std::v
     p.center = r.center, p.normal = r.normal, p.size = {r.size[0], r.size[1]};
   }
   if (!p.center || p.size.size() != 2)
-    fail_usage("needs a surface to begin with", "time_surface", "a second input, or center=x,y,z normal=x,y,z size=a,b");
+    fail_usage("needs a surface to begin with", "time_surface", "give one as a second input, or center=x,y,z normal=x,y,z size=a,b");
   const auto [u, w] = rectangle_sides(normalize(p.normal.value_or(Vec3(0, 0, 1))));
   const double along = std::max(1.0, std::ceil(p.size[0] / spacing)), across = std::max(1.0, std::ceil(p.size[1] / spacing));
   if (!((along + 1) * (across + 1) <= 1e7))
-    fail_usage(fmt::format("{:.3g} seeds are too many", (along + 1) * (across + 1)), "time_surface", "a larger spacing or a smaller size");
+    fail_usage(fmt::format("{:.3g} seeds are too many", (along + 1) * (across + 1)), "time_surface",
+               "use a larger spacing or a smaller size");
   const auto nu = size_t(along), nw = size_t(across);
   for (size_t j = 0; j <= nw; ++j)
     for (size_t i = 0; i <= nu; ++i)
@@ -85,9 +86,9 @@ void describe(Schema& s, StreakSurfaceParams& p) {
 }
 void describe(Schema& s, TimeSurfaceParams& p) {
   describe_shared(s, p);
-  s("center", p.center, "Centre of a rectangle that begins; default: in the middle, across the flow.").unit("length");
+  s("center", p.center, "Centre of a rectangle to start from; default: in the middle of the mesh, across the flow.").unit("length");
   s("normal", p.normal, "Its normal; default: z.");
-  s("size", p.size, "Its two edges.").unit("length").at_least(0);
+  s("size", p.size, "Lengths of its two edges.").unit("length").at_least(0);
 }
 
 DatasetPtr streak_surface(const Series& series, const std::vector<Data>& others, const StreakSurfaceParams& p, Context& context) {

@@ -14,23 +14,23 @@
 namespace sg {
 
 void describe(Schema& s, EvenStreamlinesParams& p) {
-  s("field", p.field, "Velocity: a point or cell field of 2 or 3 components; default: the active vectors.").takes(fields::vectors);
-  s("spacing", p.spacing, "Distance between lines; default: a 50th of the mesh's diagonal (in space a 20th).").unit("length").positive();
-  s("test", p.test, "How near a line may come to others before it ends, in spacings.").range(0.05, 1);
-  s("min_length", p.min_length, "Shortest line that is kept, in spacings.").at_least(0);
-  s("min_speed", p.min_speed, "Where the flow is slower than this part of its largest speed, it is still.").range(0, 1);
+  s("field", p.field, "Velocity: point or cell field of 2 or 3 components; default: the active vectors.").takes(fields::vectors);
+  s("spacing", p.spacing, "Distance between lines; default: a 50th of the mesh's diagonal (in 3D a 20th).").unit("length").positive();
+  s("test", p.test, "How close a line may come to others before it ends, in spacings.").range(0.05, 1);
+  s("min_length", p.min_length, "Minimum length of a line, in spacings.").at_least(0);
+  s("min_speed", p.min_speed, "The flow counts as still where its speed is below this fraction of the largest.").range(0, 1);
   describe(s, p.integration);
-  s("max_lines", p.max_lines, "Most lines.").range(1, 1e7);
+  s("max_lines", p.max_lines, "Maximum number of lines.").range(1, 1e7);
 }
 
 namespace {
 
-// Places of the lines, found by cubes as large as the largest distance that is asked for.
+// Points of the lines, found by cubes as large as the largest distance queried.
 class Places {
  public:
   explicit Places(double edge) : edge_(edge) {}
   void add(Vec3 x) { cubes_[key(x, 0, 0, 0)].push_back(x); }
-  /// Is any place nearer than `distance` <= edge?
+  /// Whether any point is nearer than `distance` <= edge.
   bool near(Vec3 x, double distance) const {
     for (int k = -1; k <= 1; ++k)
       for (int j = -1; j <= 1; ++j)
@@ -92,7 +92,7 @@ class Filler {
     return true;
   }
 
-  /// Seeds beside the line, at every spacing along it.
+  /// Seeds on both sides of the line, at every spacing along it.
   void seeds_beside(size_t line, std::deque<Vec3>& queue) {
     double next = -HUGE_VAL;
     for (size_t i = lines.begin[line]; i < lines.begin[line + 1]; ++i) {
@@ -180,7 +180,7 @@ Data even_streamlines(const Data& in, const EvenStreamlinesParams& p, Context& c
   const double spacing = p.spacing.value_or(box.diagonal() / (parts.dimension() == 2 ? 50 : 20));
   const double expected = parts.dimension() == 2 ? std::pow(box.diagonal() / spacing, 1.0) : std::pow(box.diagonal() / spacing, 2.0);
   if (!(expected <= 10 * double(p.max_lines)))
-    fail_usage(fmt::format("a spacing of {:.4g} asks for far more than {} lines", spacing, p.max_lines), "even_streamlines",
+    fail_usage(fmt::format("a spacing of {:.4g} would need far more than {} lines", spacing, p.max_lines), "even_streamlines",
                fmt::format("the mesh's diagonal is {:.6g}", box.diagonal()));
   StopParams stop;
   stop.min_speed = p.min_speed;
@@ -218,7 +218,7 @@ Data even_streamlines(const Data& in, const EvenStreamlinesParams& p, Context& c
         if (filler.try_line(box.lo + f * size)) spread_out();
       }
   if (filler.lines.lines() == 0)
-    fail_usage("no line of this flow is long enough", "even_streamlines", "a smaller spacing, or min_length=0");
+    fail_usage("no line of this flow is long enough", "even_streamlines", "use a smaller spacing, or min_length=0");
   const DatasetPtr plain = lines_dataset(filler.lines, parts.name(), parts.fields().front().field().unit);
   DatasetParts out = plain->parts();
   out.time = parts.fields().front().dataset()->time();

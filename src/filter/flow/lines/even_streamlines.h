@@ -18,11 +18,11 @@ struct EvenStreamlinesParams {
 };
 void describe(Schema& s, EvenStreamlinesParams& p);
 
-/// Streamlines none of which comes nearer to another, or to a far part of itself, than test * spacing; new ones begin `spacing` beside the
-/// lines that are there, oldest first: in the plane and on surfaces on both sides, in space in six directions around. Then the gaps are
-/// filled from a grid of places, so that parts that no line leads to are reached. Lines shorter than min_length * spacing are not drawn.
-/// The result has the fields of streamlines' lines; cell field "seed" counts the lines. Sequential by nature; the same for any number of
-/// threads. Throws Error(usage) for no flow and for spacings that ask for more than max_lines.
+/// Streamlines none of which comes nearer to another, or to a far part of itself, than test * spacing; new ones begin at a distance of
+/// `spacing` from existing lines, oldest first: in the plane and on surfaces on both sides, in space in six directions around. Then the
+/// gaps are filled from a grid of places, so that parts that no line leads to are reached. Lines shorter than min_length * spacing are not
+/// drawn. The result has the fields of streamlines' lines; cell field "seed" counts the lines. Sequential by nature; the same for any
+/// number of threads. Throws Error(usage) when there is no flow and for spacings that need more than max_lines.
 Data even_streamlines(const Data& in, const EvenStreamlinesParams& p, Context& context);
 
 }  // namespace sg

@@ -13,21 +13,21 @@
 namespace sg {
 
 void describe(Schema& s, TubesParams& p) {
-  s("radius", p.radius, "Radius of the tubes; default: a 300th of the lines' diagonal, less where they crowd.").unit("length").positive();
-  s("radius_field", p.radius_field, "Point field that widens the tubes, from the radius to ratio times it.").takes(fields::on_points);
-  s("ratio", p.ratio, "Largest radius over smallest, with a radius_field.").range(1, 1e6);
-  s("sides", p.sides, "Points around.").range(3, 1000);
-  s("caps", p.caps, "Closes the ends.");
+  s("radius", p.radius, "Radius of the tubes; default: a 300th of the lines' diagonal, less for crowded lines.").unit("length").positive();
+  s("radius_field", p.radius_field, "Point field that scales the radius, from 1 to 'ratio' times.").takes(fields::on_points);
+  s("ratio", p.ratio, "Largest over smallest radius, with radius_field.").range(1, 1e6);
+  s("sides", p.sides, "Number of points around the tube.").range(3, 1000);
+  s("caps", p.caps, "Close the ends.");
 }
 
 void describe(Schema& s, RibbonsParams& p) {
-  s("width", p.width, "Width of the ribbons; default: a 75th of the lines' diagonal, less where they crowd.").unit("length").positive();
-  s("width_field", p.width_field, "Point field that widens the ribbons, from the width to ratio times it.").takes(fields::on_points);
-  s("ratio", p.ratio, "Largest width over smallest, with a width_field.").range(1, 1e6);
-  s("rotation", p.rotation, "Point field of angles by which they turn about their line; default: 'rotation', where there is one.")
+  s("width", p.width, "Width of the ribbons; default: a 75th of the lines' diagonal, less for crowded lines.").unit("length").positive();
+  s("width_field", p.width_field, "Point field that scales the width, from 1 to 'ratio' times.").takes(fields::on_points);
+  s("ratio", p.ratio, "Largest over smallest width, with width_field.").range(1, 1e6);
+  s("rotation", p.rotation, "Point field of angles by which ribbons turn about their line; default: 'rotation', if there is one.")
       .takes(fields::point_scalars)
       .unit("rad");
-  s("normal", p.normal, "Direction that the ribbons face where they begin; default: any.");
+  s("normal", p.normal, "Direction that the ribbons face at their start; default: any.");
 }
 
 namespace {
@@ -81,7 +81,7 @@ DatasetPtr assemble(const DatasetPtr& lines, std::vector<Body>& parts) {
 DatasetPtr lines_of(const DatasetPtr& in, const char* who, Context& context) {
   const DatasetPtr surface = surface_of(in, context);
   if (surface->as<SurfaceMesh>()->lines.size() == 0)
-    fail_usage(fmt::format("the mesh ({}) has no lines", in->kind()), who, "streamlines, isolines or feature_edges make lines");
+    fail_usage(fmt::format("the mesh ({}) has no lines", in->kind()), who, "make lines with streamlines, isolines or feature_edges");
   return surface;
 }
 
@@ -99,7 +99,7 @@ struct Sizes {
 };
 
 // The share of the diagonal, but no more than lets bodies `across` times as wide as the result cover the shadow of the lines' box once:
-// single ones can still be told apart. Not less than a fifth of the share.
+// single ones can still be distinguished. Not less than a fifth of the share.
 double width_for(const Dataset& d, double share, double across) {
   const Vec3 e = d.bounds().size();
   const double shadow = (e.x * e.y + e.y * e.z + e.z * e.x) * (std::min({e.x, e.y, e.z}) > 1e-6 * d.bounds().diagonal() ? 0.5 : 1.0);
@@ -115,7 +115,7 @@ Sizes sizes_of(const Dataset& d, const std::optional<double>& asked, double shar
   Sizes s{asked ? *asked : width_for(d, share, across), ratio, {}, {}};
   if (name.empty()) return s;
   const Field& f = d.fields().require(name.name);
-  if (f.association != Association::point) fail_usage(fmt::format("field '{}' is not on points", f.name), "lines", "cell_to_point");
+  if (f.association != Association::point) fail_usage(fmt::format("field '{}' is not a point field", f.name), "lines", "cell_to_point");
   s.values = scalar_of(f, f.components() > 1 ? -1 : 0, ElementType::f64);
   s.range = d.range(f);
   return s;
@@ -199,7 +199,7 @@ DatasetPtr ribbons(const DatasetPtr& in, const RibbonsParams& p, Context& contex
       p.rotation.empty() ? lines->fields().find("rotation", Association::point) : &lines->fields().require(p.rotation.name);
   if (turning) {
     if (turning->association != Association::point || turning->components() != 1)
-      fail_usage(fmt::format("field '{}' is no angle on points", turning->name), "ribbons");
+      fail_usage(fmt::format("field '{}' is not a point field of angles", turning->name), "ribbons");
     angles = scalar_of(*turning, 0, ElementType::f64);
   }
   return bodies(lines, context, [&](const LinePath& path, std::vector<Vec3>& at, std::vector<LineFrame>& frames, Body& body) {

@@ -55,7 +55,7 @@ void trace_chunks(const std::vector<Item>& items, const std::vector<uint32_t>& s
       &context);
 }
 
-// All directions that are asked for.
+// All requested directions.
 template <class Item, class F>
 void trace_directions(std::vector<Item> items, std::vector<uint32_t> seed, size_t seeds, TraceDirection direction, SeedLines& out, F&& f,
                       Context& context) {

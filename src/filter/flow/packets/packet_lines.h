@@ -7,7 +7,7 @@
 
 namespace sg::packets {
 
-/// One direction from one seed; count 0: no velocity at the seed, or not asked for.
+/// One direction from one seed; count 0: no velocity at the seed, or not requested.
 struct Piece {
   const Record* first = nullptr;
   size_t count = 0;

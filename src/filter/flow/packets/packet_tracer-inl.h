@@ -125,7 +125,7 @@ class Tracer {
   }
   T time_of(double size, T speed, T cell) const { return T(detail::time_of(o_, size, double(speed), double(cell))); }
 
-  // The size of the next step as in trace_line(); false when the line has come to its end.
+  // The size of the next step as in trace_line(); false when the line has ended.
   HWY_INLINE bool prepare(size_t l, StopReason& why) {
     if (retry_[l]) return true;
     if (steps_[l] >= o_.max_steps) return why = StopReason::steps, false;
@@ -310,7 +310,7 @@ class Tracer {
   int halvings_[N] = {};
   bool retry_[N] = {}, away_[N] = {}, border_[N] = {};
   int8_t end_[N] = {};
-  // Of the lines that are on their way.
+  // Of the lines in progress.
   std::vector<Record> records_[N];
   size_t count_[N] = {};
   uint32_t item_[N] = {};

@@ -4,7 +4,7 @@
 // packet_tracer-inl.h: it is the same for any packet, number of threads and vector length. Internal to filter/flow.
 //
 // Places are kept as a cell and a place in it (grids) or as a pair of numbers (tetrahedra). Fixed steps are worked out in f32: lines agree
-// with trace_line() to 1e-6 of the mesh's size, as far as the flow does not pull neighbours apart. Adaptive steps are worked out in f64:
+// with trace_line() to 1e-6 of the mesh's size, as far as the flow does not separate neighbours. Adaptive steps are worked out in f64:
 // the rounding of f32 is a good part of the errors that they watch, and other steps make other lines at the kinks between cells.
 #pragma once
 #include <algorithm>

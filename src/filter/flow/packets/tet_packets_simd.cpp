@@ -107,7 +107,7 @@ class TetMesh {
   T cell(size_t l) const { return std::cbrt(box_[l]); }
 
  private:
-  // One face further, all lanes' memory asked for before the first waits for it.
+  // One face further, with all lanes' memory prefetched before the first waits for it.
   HWY_INLINE void walk(const size_t* list, size_t n, Int* ok) {
     int32_t next[N];
     for (size_t i = 0; i < n; ++i) {
@@ -135,7 +135,7 @@ class TetMesh {
         open(l, next[i]);
         continue;
       }
-      // At a border, or in a flat cell: is there a cell elsewhere?
+      // At a border, or in a flat cell: whether there is a cell elsewhere
       const auto sum = [&](int a) { return double(to_x_[a][l]) + double(to_rest_[a][l]); };
       const int64_t c = t_.locate({sum(0), sum(1), sum(2)});
       ok[l] = c >= 0 && c != cell_[l] ? -1 : 0;

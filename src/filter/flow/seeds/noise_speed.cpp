@@ -21,7 +21,7 @@ double noise_speed(const Dataset& data, const Field& velocity) {
   if (!(largest > 0)) return 0;
   return dispatch(velocity.array, [&](auto view) {
     const auto at = [&](size_t i) { return Vec3(double(view(i, 0)), double(view(i, 1)), view.components > 2 ? double(view(i, 2)) : 0.0); };
-    // Every so many rows: of each place and one a few places before it along x, since what scanners write is often smoothed.
+    // Sampled every few rows: of each point and one a few points before it along x, since scanner output is often smoothed.
     const size_t rows = view.count / n[0], step = std::max<size_t>(1, rows / 2000);
     size_t places = 0, still = 0, pairs = 0;
     double cosines = 0;

@@ -6,7 +6,7 @@
 namespace sg {
 
 /// 2 % of the largest speed where at least three quarters of a solid grid are slower than that and their directions are random (the
-/// background of scans: places four cells apart agree no better than to a mean cosine of 0.4); 0 for all other fields and meshes.
+/// background of scans: directions four cells apart agree only to a mean cosine of 0.4); 0 for all other fields and meshes.
 /// `velocity`: of 2 or 3 components, on the points or cells of `data`.
 double noise_speed(const Dataset& data, const Field& velocity);
 

@@ -105,7 +105,7 @@ std::vector<Vec3> random_places(const std::vector<DatasetPtr>& meshes, size_t co
   std::vector<Vec3> out;
   if (used.empty() || box.empty() || count == 0) return out;
 
-  // Without somebody who knows what is inside: locators.
+  // Without an inside test: locators.
   std::vector<std::unique_ptr<const CellLocator>> locators;
   std::vector<LocatorCursor> cursors;
   std::function<bool(Vec3)> held = inside;
@@ -136,7 +136,7 @@ std::vector<Vec3> random_places(const std::vector<DatasetPtr>& meshes, size_t co
   if (!(total > 0)) return out;
   std::vector<CellMap> maps;
   for (const DatasetPtr& d : used) maps.emplace_back(d);
-  // Cells that are inside out may hold no place at all, and those of many nodes take long to say so.
+  // Cells that are inside out may contain no point at all, and those of many nodes take long to show it.
   size_t missed = 0, placed = 0;
   for (size_t i = 0; i < tries && out.size() < count && (placed > 0 || missed < 256); ++i) {
     context.check();

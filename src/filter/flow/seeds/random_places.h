@@ -9,9 +9,9 @@
 
 namespace sg {
 
-/// Up to `count` places in the cells of the meshes' highest dimension, at which `inside` says yes; fewer when after 100 tries a place there
-/// are not enough. `inside` empty: in any cell that is not hidden. Solids are first tried by throwing into the box, which asks `inside`
-/// alone: it has to be false outside the mesh. Place i of a try depends on (seed, i) only.
+/// Up to `count` places in the cells of the meshes' highest dimension, for which `inside` returns true; fewer when after 100 tries a place
+/// there are not enough. `inside` empty: in any cell that is not hidden. Solids are first sampled by rejection in the box, which uses only
+/// `inside`: it has to be false outside the mesh. Place i of a try depends on (seed, i) only.
 std::vector<Vec3> random_places(const std::vector<DatasetPtr>& meshes, size_t count, uint64_t seed, const std::function<bool(Vec3)>& inside,
                                 Context& context);
 

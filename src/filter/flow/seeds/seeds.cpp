@@ -17,22 +17,22 @@ namespace sg {
 
 void describe(Schema& s, SeedParams& p) {
   s("seeds", p.seeds,
-    "Where lines begin: random places in the mesh, a list of points, a line, a plane, a sphere's surface, a ball, a box' grid, the points "
-    "of the second input (mesh), or the pixels of a picture as second input, laid over the plane, bright ones more often; default: by what "
-    "else is given.");
+    "Where lines begin: random points in the mesh, a list of points, a line, a plane, a sphere (its surface), a ball, a grid in a box, the "
+    "points of the second input (mesh), or the pixels of a picture as second input laid over the plane, bright ones more often; default: "
+    "whatever the other parameters imply.");
   s("points", p.points, "Points as x,y,z,x,y,z,...").unit("length");
   s("from", p.from, "First point of the line.").unit("length");
   s("to", p.to, "Last point of the line.").unit("length");
-  s("center", p.center, "Centre of plane, sphere, ball or box; default: that of the mesh.").unit("length");
-  s("normal", p.normal, "Normal of the plane; default: its shortest axis.");
-  s("radius", p.radius, "Radius of sphere or ball; default: a tenth of the mesh's diagonal.").unit("length").positive();
-  s("size", p.size, "Edges of the plane (two) or box (three); default: those of the mesh.").unit("length").at_least(0);
-  s("counts", p.counts, "Seeds along the edges of plane (two) or box (three); default: as many as count, evenly.").range(1, 1e6);
+  s("center", p.center, "Centre of the plane, sphere, ball or box; default: that of the mesh.").unit("length");
+  s("normal", p.normal, "Normal of the plane; default: the mesh's shortest axis.");
+  s("radius", p.radius, "Radius of the sphere or ball; default: a tenth of the mesh's diagonal.").unit("length").positive();
+  s("size", p.size, "Edge lengths of the plane (two) or box (three); default: those of the mesh.").unit("length").at_least(0);
+  s("counts", p.counts, "Seeds along the edges of the plane (two) or box (three); default: spread evenly from count.").range(1, 1e6);
   s("count", p.count,
-    "How many seeds (a mesh gives all its points); 0: 200, on a line 40, at random on surfaces 60 (random streamlines: fewer where they "
+    "Number of seeds (a mesh gives all its points); 0: 200, on a line 40, at random on surfaces 60 (random streamlines: fewer where they "
     "would crowd).")
       .range(0, 1e9);
-  s("random_seed", p.random_seed, "Other numbers, other random places.");
+  s("random_seed", p.random_seed, "Random seed: another number gives other points.");
 }
 
 SeedKind seed_kind(const SeedParams& p, bool mesh) {
@@ -62,7 +62,7 @@ std::vector<Vec3> points_of(const Dataset& mesh) {
 DatasetPtr seed_mesh_of(const std::vector<Data>& inputs, std::string_view who) {
   if (inputs.size() < 2) return nullptr;
   if (std::holds_alternative<TablePtr>(inputs[1]))
-    fail_usage("the second input holds seeds and is a table", std::string(who), "make points of its rows first: table_to_points");
+    fail_usage("the second input, which holds the seeds, is a table", std::string(who), "turn its rows into points first: table_to_points");
   return single_dataset(inputs[1], who);
 }
 
@@ -88,14 +88,14 @@ double along(size_t i, size_t n) { return n < 2 ? 0.0 : double(i) / double(n - 1
 
 std::vector<Vec3> listed(const SeedParams& p) {
   if (p.points.empty() || p.points.size() % 3 != 0)
-    fail_usage(fmt::format("{} numbers make no points", p.points.size()), "seeds", "three numbers a point: points=x,y,z,x,y,z");
+    fail_usage(fmt::format("{} numbers do not make points", p.points.size()), "seeds", "give three numbers per point: points=x,y,z,x,y,z");
   std::vector<Vec3> out;
   for (size_t i = 0; i < p.points.size(); i += 3) out.emplace_back(p.points[i], p.points[i + 1], p.points[i + 2]);
   return out;
 }
 
 std::vector<Vec3> on_line(const SeedParams& p) {
-  if (!p.from || !p.to) fail_usage("a line of seeds has two ends", "seeds", p.from ? "add to=x,y,z" : "add from=x,y,z");
+  if (!p.from || !p.to) fail_usage("a line of seeds needs two ends", "seeds", p.from ? "add to=x,y,z" : "add from=x,y,z");
   std::vector<Vec3> out;
   for (int64_t i = 0; i < p.count; ++i)
     out.push_back(p.count < 2 ? lerp(*p.from, *p.to, 0.5) : lerp(*p.from, *p.to, double(i) / double(p.count - 1)));
@@ -113,12 +113,12 @@ Rectangle rectangle(const SeedParams& p, const Box3& box) {
   Vec3 normal = p.normal.value_or(Vec3(0, 0, 0));
   if (!p.normal) normal[extent.x <= extent.y && extent.x <= extent.z ? 0 : extent.y <= extent.z ? 1 : 2] = 1;
   const double l = length(normal);
-  if (!(l > 0) || !std::isfinite(l)) fail_usage("a plane has no direction", "seeds normal", "normal=x,y,z that is not 0");
+  if (!(l > 0) || !std::isfinite(l)) fail_usage("the plane has no direction", "seeds normal", "give normal=x,y,z other than 0,0,0");
   normal = normal / l;
   if (!p.size.empty() && p.size.size() != 2)
-    fail_usage(fmt::format("a plane has 2 edges, got {}", p.size.size()), "seeds size", "size=a,b");
+    fail_usage(fmt::format("a plane has 2 edges, but got {}", p.size.size()), "seeds size", "size=a,b");
   if (!p.counts.empty() && p.counts.size() != 2)
-    fail_usage(fmt::format("a plane has 2 edges, got {} counts", p.counts.size()), "seeds counts", "counts=m,n");
+    fail_usage(fmt::format("a plane has 2 edges, but got {} counts", p.counts.size()), "seeds counts", "counts=m,n");
   // The axes of the plane follow those of space: u has no part along the axis that is nearest to the normal's next.
   const Vec3 pick = std::abs(normal.x) >= std::abs(normal.y) && std::abs(normal.x) >= std::abs(normal.z) ? Vec3(0, 1, 0)
                     : std::abs(normal.y) >= std::abs(normal.z)                                           ? Vec3(0, 0, 1)
@@ -138,10 +138,11 @@ std::vector<Vec3> on_plane(const SeedParams& p, const Box3& box) {
   return out;
 }
 
-// Pixels of a picture that is laid over the plane, bright ones more often: about as many as are asked for.
+// Pixels of a picture that is laid over the plane, bright ones more often: about as many as requested.
 std::vector<Vec3> of_pixels(const SeedParams& p, const Box3& box, const DatasetPtr& picture) {
   if (!picture || !is_lattice(picture->mesh()) || lattice_dims(picture->mesh())[2] != 1)
-    fail_usage("seeds of pixels need a picture as second input", "seeds", "read a PNG file, or any grid of one layer, as second input");
+    fail_usage("seeding from pixels needs a picture as second input", "seeds",
+               "give a PNG file, or any grid of one layer, as second input");
   const Field* f = picture->fields().with_role(Role::scalars);
   for (const Field& g : picture->fields())
     if (!f && g.association == Association::point) f = &g;
@@ -182,9 +183,9 @@ std::vector<Vec3> in_sphere(const SeedParams& p, const Box3& box, bool ball) {
 
 std::vector<Vec3> in_grid(const SeedParams& p, const Box3& box) {
   if (!p.size.empty() && p.size.size() != 3)
-    fail_usage(fmt::format("a box has 3 edges, got {}", p.size.size()), "seeds size", "size=a,b,c");
+    fail_usage(fmt::format("a box has 3 edges, but got {}", p.size.size()), "seeds size", "size=a,b,c");
   if (!p.counts.empty() && p.counts.size() != 3)
-    fail_usage(fmt::format("a box has 3 edges, got {} counts", p.counts.size()), "seeds counts", "counts=l,m,n");
+    fail_usage(fmt::format("a box has 3 edges, but got {} counts", p.counts.size()), "seeds counts", "counts=l,m,n");
   const Vec3 size = p.size.empty() ? box.size() : Vec3(p.size[0], p.size[1], p.size[2]);
   std::array<size_t, 3> n = even_counts(size, double(p.count));
   if (!p.counts.empty()) n = {size_t(p.counts[0]), size_t(p.counts[1]), size_t(p.counts[2])};
@@ -199,7 +200,7 @@ std::vector<Vec3> in_grid(const SeedParams& p, const Box3& box) {
 }
 
 std::vector<Vec3> of_mesh(const DatasetPtr& mesh) {
-  if (!mesh) fail_usage("there is no second input whose points could be seeds", "seeds", "give a mesh as second input, or seeds=random");
+  if (!mesh) fail_usage("there is no second input to take seeds from", "seeds", "give a mesh as second input, or use seeds=random");
   std::vector<Vec3> all = points_of(*mesh);
   if (all.empty()) fail_usage("the second input has no points", "seeds");
   return all;
@@ -222,7 +223,7 @@ std::vector<Vec3> make_seeds(const SeedParams& given, const std::vector<DatasetP
   if (!p.counts.empty() && (kind == SeedKind::plane || kind == SeedKind::grid))
     count = std::accumulate(p.counts.begin(), p.counts.end(), 1.0, [](double a, int64_t b) { return a * double(b); });
   constexpr double bytes_a_seed = 100;  // its place, where that lies in the mesh, the point that is made of it
-  need_memory(count * bytes_a_seed, fmt::format("{:.0f} seeds", count), "seeds", "take fewer: count, counts");
+  need_memory(count * bytes_a_seed, fmt::format("{:.0f} seeds", count), "seeds", "use fewer: count, counts");
   if (kind == SeedKind::line) return on_line(p);
   if (kind == SeedKind::plane) return on_plane(p, box);
   if (kind == SeedKind::pixels) return of_pixels(p, box, mesh);
@@ -231,14 +232,14 @@ std::vector<Vec3> make_seeds(const SeedParams& given, const std::vector<DatasetP
   std::vector<Vec3> out = random_places(parts, size_t(p.count), uint64_t(p.random_seed), accept, context);
   if (!p.seeds)
     context.info(
-        fmt::format("seeds: {} random places in the mesh; seeds=, points=, from= and to=, radius=, normal= choose others", out.size()));
+        fmt::format("seeds: {} random points in the mesh; seeds=, points=, from= and to=, radius=, normal= choose others", out.size()));
   return out;
 }
 
 Data seeds(const std::vector<Data>& inputs, const SeedsParams& p, Context& context) {
   std::vector<DatasetPtr> parts;
   for_each_dataset(inputs[0], [&](const std::string&, const DatasetPtr& d) { parts.push_back(d); });
-  if (parts.empty()) fail_usage("needs a mesh but got a table", "seeds", "make points of its rows first: table_to_points");
+  if (parts.empty()) fail_usage("needs a mesh but got a table", "seeds", "turn its rows into points first: table_to_points");
   const std::vector<Vec3> at = make_seeds(p.seeds, parts, seed_mesh_of(inputs, "seeds"), {}, context);
   double* xyz = nullptr;
   int64_t* number = nullptr;

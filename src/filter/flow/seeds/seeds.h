@@ -38,15 +38,15 @@ void describe(Schema& s, SeedParams& p);
 /// random.
 SeedKind seed_kind(const SeedParams& p, bool mesh);
 
-/// count, or what stands for it: 200, on a line 40, at random in meshes of surfaces 60 (their lines lie side by side).
+/// count, or its default: 200, on a line 40, at random in meshes of surfaces 60 (their lines lie side by side).
 int64_t seed_count(const SeedParams& p, SeedKind kind, int dimension);
 
-/// Is there a place for a seed? Asked from one thread.
+/// Whether a seed may be placed there. Called from one thread.
 using SeedPlace = std::function<bool(Vec3)>;
 
 /// The seeds about the meshes `parts` (those of one dimension; their box places what has no place of its own). `mesh`: the points of a
 /// second input, or null. `accept` (may be empty) chooses among random ones only; random seeds lie in cells of the mesh, evenly by volume,
-/// area or length, the same for any number of threads. Tells by context.info what was chosen when nothing was said. Throws Error(usage)
+/// area or length, the same for any number of threads. Reports by context.info what was chosen by default. Throws Error(usage)
 /// for numbers that make no seeds.
 std::vector<Vec3> make_seeds(const SeedParams& p, const std::vector<DatasetPtr>& parts, const DatasetPtr& mesh, const SeedPlace& accept,
                              Context& context);

@@ -14,14 +14,16 @@ namespace sg {
 using namespace texture;
 
 void describe(Schema& s, AdvectParams& p) {
-  s("field", p.field, "Vector field that carries; default: the active vectors.").takes(fields::vectors);
-  s("carry", p.carry, "Point fields that are carried, of the second input where there is one; default: all scalars and colours.");
-  s("time", p.time, "How long; negative: backwards. Default: until the fastest place has gone a tenth of the longest side.").unit("time");
-  s("steps", p.steps, "Steps of the paths; 0: as many as keep a step below a cell of the data.").range(0, 1e6);
-  s("border", p.border, "What comes in from outside: clamp (the value at the border) or nan (nothing).");
-  s("dye", p.dye, "Places x,y,z,x,y,z,... where dye comes out all the time.").unit("length");
-  s("dye_radius", p.dye_radius, "Radius of these places; 0: a fiftieth of the longest side.").unit("length").at_least(0);
-  s("resolution", p.resolution, "Pixels along the longest side; 0: those of the grid, coarse ones refined to 1024 (flat) or 128 (solid).")
+  s("field", p.field, "Velocity field; default: the active vectors.").takes(fields::vectors);
+  s("carry", p.carry, "Point fields to advect, from the second input if there is one; default: all scalars and colours.");
+  s("time", p.time,
+    "How long to advect; negative: backwards. Default: the time in which the largest speed covers a tenth of the longest side.")
+      .unit("time");
+  s("steps", p.steps, "Number of steps of the paths; 0: enough to keep each step below a cell of the data.").range(0, 1e6);
+  s("border", p.border, "What flows in from outside: clamp (the value at the border) or nan (no value).");
+  s("dye", p.dye, "Points x,y,z,x,y,z,... that release dye continuously.").unit("length");
+  s("dye_radius", p.dye_radius, "Radius of the dye sources; 0: a fiftieth of the longest side.").unit("length").at_least(0);
+  s("resolution", p.resolution, "Pixels along the longest side; 0: those of the grid, refined to 1024 (flat) or 128 (solid) where coarser.")
       .range(0, 100000);
 }
 
@@ -43,7 +45,7 @@ std::vector<Carried> fields_to_carry(const Frame& f, const DatasetPtr& image, co
     for (const Field& field : of)
       if (field.association == Association::point && (field.components() == 1 || field.role == Role::colors)) chosen.push_back(field);
   if (chosen.empty() && p.dye.empty())
-    fail_usage("there is no scalar or colour to be carried", "advect", "carry=NAME names a point field; dye=x,y,z makes one");
+    fail_usage("there is no scalar or colour to advect", "advect", "name a point field with carry=NAME, or make one with dye=x,y,z");
   std::vector<Carried> r;
   for (Field& field : chosen) {
     Carried c;
@@ -79,13 +81,14 @@ void take_value(const Carried& c, const Frame& f, const BackPath& p, size_t pixe
 
 DatasetPtr advect(const DatasetPtr& input, const DatasetPtr& image, const AdvectParams& p, Context& context) {
   const Frame f = make_frame(input, p.field.name, p.resolution, "advect", context);
-  if (p.dye.size() % 3 != 0) fail_usage(fmt::format("dye has {} numbers", p.dye.size()), "advect", "three a place: x,y,z");
+  if (p.dye.size() % 3 != 0) fail_usage(fmt::format("dye has {} numbers", p.dye.size()), "advect", "give three per point: x,y,z");
   const PixelFlow flow(f, context);
   const double longest = std::max({f.n[0], f.n[1], f.n[2]}), speed = flow.largest_speed();
   const double time = p.time.value_or(speed > 0 ? 0.1 * longest / speed : 0.0);
   const double wanted = p.steps > 0 ? double(p.steps) : std::ceil(std::abs(time) * speed / std::min(8.0, f.pixels_per_cell));
   if (!(wanted <= 1e6))
-    fail_usage(fmt::format("the flow goes {:.3g} pixels in this time", wanted), "advect", "a shorter time, or steps of at most 1000000");
+    fail_usage(fmt::format("the flow travels {:.3g} pixels in this time", wanted), "advect",
+               "use a shorter time, or at most 1000000 steps");
   if (!p.time) context.info(fmt::format("advect: time {}", short_number(time)));
 
   std::vector<Carried> carried = fields_to_carry(f, image, p);

@@ -87,8 +87,8 @@ class SharedLines {
     const Tile t = tiles_.at(index);
     for (int a = 0; a < 3; ++a) batch_.box_lo[a] = t.lo[a], batch_.box_hi[a] = t.hi[a];
     sum_.assign(t.size(), 0.0f), weight_.assign(t.size(), 0.0f);
-    // One pixel of each block of 8 x 8 after the other, blocks in an order in which followers lie far apart and on no common line, so that
-    // the lines of a batch meet different pixels.
+    // One pixel of each block of 8 x 8 after the other, blocks in an order in which consecutive ones lie far apart and not on a common
+    // line, so that the lines of a batch meet different pixels.
     const int32_t edge = 8, deep = t.n[2] > 1 ? edge : 1;
     const int32_t blocks[3] = {(t.n[0] + edge - 1) / edge, (t.n[1] + edge - 1) / edge, (t.n[2] + deep - 1) / deep};
     const int32_t all = blocks[0] * blocks[1] * blocks[2];

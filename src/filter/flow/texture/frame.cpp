@@ -55,7 +55,7 @@ Target target_grid(const Dataset& d, int64_t resolution, std::string_view who) {
   const auto* u = d.as<UniformGrid>();
   const Box3 box = d.bounds();
   if (box.empty() || !std::isfinite(box.diagonal()) || d.cell_count() == 0)
-    fail_usage(fmt::format("a mesh of {} with {} cells has no room for a texture", d.kind(), d.cell_count()), std::string(who));
+    fail_usage(fmt::format("a mesh of kind {} with {} cells cannot carry a texture", d.kind(), d.cell_count()), std::string(who));
   for (int a = 0; a < 3; ++a) extent[a] = u ? std::abs(u->spacing[a]) * double(own[a] - 1) : box.size()[a];
   const double longest = std::max({extent[0], extent[1], extent[2]});
   int axes = 0;
@@ -63,9 +63,9 @@ Target target_grid(const Dataset& d, int64_t resolution, std::string_view who) {
     if (!(extent[a] > flat_enough * longest)) extent[a] = 0, own[a] = std::min<size_t>(own[a], u || d.as<RectilinearGrid>() ? 1 : own[a]);
     axes += extent[a] > 0;
   }
-  if (axes < 2) fail_usage("the data have an extent along one axis only", std::string(who), "a flat or a solid mesh");
+  if (axes < 2) fail_usage("the data extends along one axis only", std::string(who), "use a flat or a solid mesh");
   if (!u && !d.as<RectilinearGrid>()) {
-    // Numbers of points along the axes of a bent grid or of cells say little about pixels: their density decides.
+    // The numbers of points along the axes of a curved grid, or of cells, say little about pixels: their density decides.
     const double per_axis = std::pow(double(d.point_count()), 1.0 / axes);
     for (int a = 0; a < 3; ++a) own[a] = extent[a] > 0 ? std::max<size_t>(2, size_t(per_axis * extent[a] / longest)) : 1;
   }
@@ -73,7 +73,8 @@ Target target_grid(const Dataset& d, int64_t resolution, std::string_view who) {
   double points = 1;
   for (const size_t n : dims) points *= double(n);
   if (points >= 2147483648.0)
-    fail_usage(fmt::format("the texture would have {:.3g} pixels", points), std::string(who), "less than 2^31: a smaller resolution");
+    fail_usage(fmt::format("the texture would have {:.3g} pixels", points), std::string(who),
+               "at most 2^31 are allowed: use a smaller resolution");
   t.same = u && dims == u->dims;
   if (t.same) {
     double least = HUGE_VAL, most = 0;
@@ -194,7 +195,7 @@ Frame make_frame(const DatasetPtr& input, const std::string& field, int64_t reso
     for (size_t i = 0; i < v.count; ++i) held += v[i] != 0;
     if (held == 0)
       fail_usage(fmt::format("no point of the grid lies in the mesh of {}", data->kind()), std::string(who),
-                 "flat data lie in a plane across an axis, solid ones have cells of volume; textures on bent surfaces: surface_lic");
+                 "flat data must lie in a plane across an axis, solid data must have volume cells; for curved surfaces use surface_lic");
   }
   return f;
 }
@@ -254,14 +255,14 @@ Array field_on_frame(const Frame& f, const DatasetPtr& from, const Field& field,
   Field taken = field;
   if (!(from->as<UniformGrid>() && field.association == Association::point && field.array.count() == f.size())) {
     const auto* u = from->as<UniformGrid>();
-    if (!u) fail_usage(fmt::format("an image is a uniform grid, not {}", from->kind()), std::string(who), "resample makes one");
+    if (!u) fail_usage(fmt::format("an image must be a uniform grid, not {}", from->kind()), std::string(who), "use resample to make one");
     // The picture is stretched over the frame, first axis to first axis.
     UniformGrid plain;
     std::vector<size_t> sides;
     for (const size_t n : u->dims)
       if (n > 1) sides.push_back(n);
     if (sides.size() != size_t(f.dimension))
-      fail_usage(fmt::format("an image of {} axes for a flow of {}", sides.size(), f.dimension), std::string(who));
+      fail_usage(fmt::format("the image has {} axes, the flow {}", sides.size(), f.dimension), std::string(who));
     UniformGrid to;
     for (size_t a = 0; a < sides.size(); ++a) {
       plain.dims[a] = sides[a], to.dims[a] = size_t(f.n[a]);

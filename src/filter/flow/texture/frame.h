@@ -31,7 +31,7 @@ struct Frame {
   Vec3 to_pixels(Vec3 world) const;
 };
 
-/// Is there room for a texture: an extent along two axes at least, and cells? Operations leave such parts of collections as they are.
+/// Whether it can carry a texture: an extent along at least two axes, and cells. Operations leave other parts of collections unchanged.
 bool has_room(const Dataset& data);
 /// f for each dataset; parts of collections that have no room, or fewer dimensions than the others (the skins of a solid), stay as they
 /// are, with a note.
@@ -44,7 +44,7 @@ Data over_parts(const Data& data, std::string_view who, Context& context, F&& f)
   });
   return map_datasets(data, [&](const DatasetPtr& d) -> DatasetPtr {
     if (alone || (has_room(*d) && mesh_dimension(*d) == dimension)) return f(d);
-    context.info(std::string(who) + ": a part without area (like points or lines), or of fewer dimensions than others, stays as it is");
+    context.info(std::string(who) + ": a part without area (like points or lines), or of fewer dimensions than others, is left unchanged");
     return d;
   });
 }
@@ -55,16 +55,16 @@ void velocity_of(const Frame& frame, size_t begin, size_t end, float* out);
 Plane<float> velocity_of(const Frame& frame, const Context& context);
 
 /// `field`: of velocities; empty: the active vectors. `resolution`: pixels along the longest side; 0: the grid's own, or whole multiples up
-/// to 1024 where it is coarser and flat (128 in 3D). Uniform grids of square pixels of that number are taken as they are; all else is
-/// resampled (with a note in the log). Vectors are projected on the plane of flat data. Throws Error(usage) naming `who`, for fields that
-/// are no vectors, for curved surfaces and points, and for sizes beyond 2^31 pixels.
+/// to 1024 where it is coarser and flat (128 in 3D). Uniform grids of square pixels of that number are taken as they are; everything else
+/// is resampled (with a note in the log). Vectors are projected on the plane of flat data. Throws Error(usage) naming `who`, for fields
+/// that are not vectors, for curved surfaces and points, and for sizes beyond 2^31 pixels.
 Frame make_frame(const DatasetPtr& input, const std::string& field, int64_t resolution, std::string_view who, Context& context);
 
 /// The dataset of the frame with one more point field (or several).
 DatasetPtr frame_dataset(const Frame& frame, std::vector<Field> more);
 
 /// A point field of `from` on the frame's pixels, f32 and packed: as it is when there are as many points, else resampled, the image's box
-/// stretched over the frame's. Throws Error(usage) when `from` is no uniform grid of the frame's dimension.
+/// stretched over the frame's. Throws Error(usage) when `from` is not a uniform grid of the frame's dimension.
 Array field_on_frame(const Frame& frame, const DatasetPtr& from, const Field& field, std::string_view who);
 
 }  // namespace sg::texture

@@ -20,33 +20,34 @@ namespace sg {
 using namespace texture;
 
 void describe(Schema& s, LicParams& p) {
-  s("field", p.field, "Vector field along which is averaged; default: the active vectors.").takes(fields::vectors);
-  s("length", p.length, "How far the average reaches along the flow, each way; default: 20, sparse dots in solid data 30.")
+  s("field", p.field, "Vector field to average along; default: the active vectors.").takes(fields::vectors);
+  s("length", p.length, "How far the average extends along the flow in each direction; default: 20, for sparse dots in solid data 30.")
       .unit("pixels")
       .range(0, 4096);
-  s("step", p.step, "Distance of the places that are averaged.").unit("pixels").range(0.05, 4);
-  s("kernel", p.kernel, "Weights along the line: box, hanning (fading), ripple (waves that phase moves).");
-  s("phase", p.phase, "Where the waves of kernel=ripple stand, in periods: frames of 0, 1/n, 2/n, ... move along the flow.");
-  s("ripples", p.ripples, "Waves in the length of the kernel.").range(1, 100);
-  s("method", p.method, "plain: a line for each pixel. fast: long lines that share their sums.");
+  s("step", p.step, "Distance between the samples that are averaged.").unit("pixels").range(0.05, 4);
+  s("kernel", p.kernel, "Weights along the line: box (uniform), hanning (fading out), ripple (waves moved by phase).");
+  s("phase", p.phase, "Phase of the waves of kernel=ripple, in periods: frames with 0, 1/n, 2/n, ... move along the flow.");
+  s("ripples", p.ripples, "Number of waves in the length of the kernel.").range(1, 100);
+  s("method", p.method, "plain: one line per pixel. fast: long lines whose sums are shared.");
   s("noise", p.noise,
-    "What is averaged: white noise, or sparse dots, which become strands that a volume can be looked into by; auto: white in flat data, "
-    "sparse in solid ones.");
+    "What is averaged: white noise, or sparse dots, which become separate strands so that one can see into a volume; auto: white in flat "
+    "data, sparse in solid data.");
   s("density", p.density,
-    "Part of the noise's points that are dots when it is sparse; 0: 0.02 in flat data, in solid ones 0.0015, more where little flows.")
+    "Fraction of the noise's points that are dots when it is sparse; 0: 0.02 in flat data, 0.0015 in solid data, more where little of it "
+    "flows.")
       .range(0, 1);
-  s("grain", p.grain, "Size of the grains of the noise; 0: 1, sparse dots in solid data 2.").unit("pixels").range(0, 256);
-  s("seed", p.seed, "Another number, another noise.");
-  s("image", p.image, "Field of the second input that is smeared along the flow in place of noise; default: its active scalar or colours.")
+  s("grain", p.grain, "Grain size of the noise; 0: 1, for sparse dots in solid data 2.").unit("pixels").range(0, 256);
+  s("seed", p.seed, "Random seed of the noise.");
+  s("image", p.image, "Field of the second input to smear along the flow instead of noise; default: its active scalar or colours.")
       .takes(fields::on_points);
   s("contrast", p.contrast,
-    "none: plain averages. stretch: a hundredth of the pixels black, a hundredth white. equalise: all greys alike.");
-  s("passes", p.passes, "2: the texture is sharpened and averaged once more, for finer and clearer lines.").range(1, 4);
+    "none: plain averages. stretch: a hundredth of the pixels black, a hundredth white. equalise: all greys equally frequent.");
+  s("passes", p.passes, "2: sharpen the texture and average it once more, for finer and clearer lines.").range(1, 4);
   s("still", p.still,
-    "Speed up to which there is no texture. Default: 0, where most of a grid is noise (scans of vessels) 2 % of the largest speed.")
+    "Speed up to which there is no texture. Default: 0; where most of a grid is noise (scans of vessels), 2 % of the largest speed.")
       .unit("@field")
       .at_least(0);
-  s("resolution", p.resolution, "Pixels along the longest side; 0: those of the grid, coarse ones refined to 1024 (flat) or 128 (solid).")
+  s("resolution", p.resolution, "Pixels along the longest side; 0: those of the grid, refined to 1024 (flat) or 128 (solid) where coarser.")
       .range(0, 100000);
 }
 
@@ -76,7 +77,7 @@ Plane<uint32_t> directions_of(const Frame& f, double still, const Context& conte
   return codes;
 }
 
-// Part of the pixels that have a direction: strands are to be as many in a vessel alone as in a full box.
+// Part of the pixels that have a direction: a single vessel should have as many strands as a full box.
 double flowing_share(const Plane<uint32_t>& codes) {
   const auto still = size_t(std::count(codes.begin(), codes.end(), 0u));
   return std::max(1e-3, double(codes.size() - still) / double(std::max<size_t>(codes.size(), 1)));
@@ -113,11 +114,11 @@ Array image_of(const Frame& f, const DatasetPtr& image, const LicParams& p) {
   if (!field) field = image->fields().with_role(Role::colors);
   if (!field) field = image->fields().active(0);
   if (!field || field->association != Association::point)
-    fail_usage("the image has no point field", "lic", "image=NAME names one of the second input's");
+    fail_usage("the image has no point field", "lic", "name one of the second input's fields with image=NAME");
   return field_on_frame(f, image, *field, "lic");
 }
 
-// One component: convolved as often as asked for, into `out`.
+// One component: convolved as often as requested, into `out`.
 void average(const DirectionGrid& directions, const float* what, const LicParams& p, double reach, float* out, const Context& context) {
   DirectionGrid grid = directions;
   const Weights weights = kernel_weights(p.kernel, int(std::lround(reach / p.step)), p.phase, p.ripples);
@@ -137,7 +138,7 @@ void average(const DirectionGrid& directions, const float* what, const LicParams
 }  // namespace
 
 DatasetPtr lic(const DatasetPtr& input, const DatasetPtr& image, const LicParams& p, Context& context) {
-  if (!image && !p.image.empty()) fail_usage("image names a field of a second input, and there is none", "lic image");
+  if (!image && !p.image.empty()) fail_usage("image names a field of a second input, but there is no second input", "lic image");
   const Frame f = make_frame(input, p.field.name, p.resolution, "lic", context);
   const double still = p.still.value_or(noise_speed(*input, flow_field_of(*input, p.field.name, "lic")));
   if (!p.still && still > 0) context.info(fmt::format("lic: most of '{}' is noise: still={:.3g}", f.velocity_name, still));
@@ -196,7 +197,7 @@ DatasetPtr lic(const DatasetPtr& input, const DatasetPtr& image, const LicParams
     if (components > 1)
       for (size_t i = 0; i < n; ++i) out[i * size_t(components) + size_t(k)] = averaged[i];
   }
-  if (without == n) context.warn(fmt::format("lic: '{}' does not flow anywhere, there is no texture", f.velocity_name));
+  if (without == n) context.warn(fmt::format("lic: '{}' does not flow anywhere, so there is no texture", f.velocity_name));
   std::vector<Field> made{{"lic", Association::point, std::move(result), "", Role::none, known_look("lic")}};
   if (solid && !f.fields.find("speed")) made.push_back(speed_of(f));
   return frame_dataset(f, std::move(made));

@@ -16,8 +16,8 @@ struct DirectionGrid {
   size_t size() const { return size_t(n[0]) * size_t(n[1]) * size_t(n[2]); }
 };
 
-/// A vector as its direction alone: two 16-bit numbers, or three of 10 bits (0.1 degrees); 0 where it is zero or NaN. One load brings a
-/// whole direction.
+/// A vector's direction only: two 16-bit numbers, or three of 10 bits (0.1 degrees); 0 where it is zero or NaN. One load fetches a whole
+/// direction.
 uint32_t encode_direction(int dimension, const float* v);
 /// The same for n vectors.
 void encode_directions(int dimension, const float* v, size_t n, uint32_t* codes);
@@ -43,7 +43,7 @@ struct LineBatch {
   // Results. Row steps + k is the place after k steps, row steps - k that after k steps back.
   std::vector<float> noise;  ///< [2 steps + 1][16], of the nearest pixel; 0 beyond the line's ends
   /// With a box, numbered in the box (x fastest), -1 outside of it.
-  std::vector<int32_t> pixels;                  ///< the nearest pixel, likewise; -1 beyond the ends. Empty: not asked for
+  std::vector<int32_t> pixels;                  ///< the nearest pixel, likewise; -1 beyond the ends. Empty: not requested
   int32_t forth[lanes] = {}, back[lanes] = {};  ///< steps made
 };
 

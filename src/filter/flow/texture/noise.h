@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Noise on a grid of pixels or voxels; the value of a pixel depends on the seed and its number alone.
+// Noise on a grid of pixels or voxels; the value of a pixel depends only on the seed and its number.
 #pragma once
 #include <cstdint>
 

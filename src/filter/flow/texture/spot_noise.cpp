@@ -16,13 +16,13 @@ using namespace texture;
 
 void describe(Schema& s, SpotNoiseParams& p) {
   s("field", p.field, "Vector field that shapes the spots; default: the active vectors.").takes(fields::vectors);
-  s("radius", p.radius, "Radius of a spot where nothing flows.").unit("pixels").range(1, 200);
-  s("stretch", p.stretch, "How many radii longer a spot is where the flow is fastest; it gets as much thinner.").range(0, 20);
-  s("density", p.density, "How many spots lie over a pixel, in the mean.").range(0.1, 50);
-  s("bent", p.bent, "Spots follow the streamlines; false: straight ellipses.");
+  s("radius", p.radius, "Radius of a spot where there is no flow.").unit("pixels").range(1, 200);
+  s("stretch", p.stretch, "Elongation of a spot where the flow is fastest, in radii; it gets correspondingly thinner.").range(0, 20);
+  s("density", p.density, "Mean number of spots that cover a pixel.").range(0.1, 50);
+  s("bent", p.bent, "Bend spots along the streamlines; false: straight ellipses.");
   s("contrast", p.contrast, "Standard deviation of the texture.").positive();
-  s("seed", p.seed, "Another number, other spots.");
-  s("resolution", p.resolution, "Pixels along the longest side; 0: those of the grid, coarse ones refined to 1024.").range(0, 100000);
+  s("seed", p.seed, "Random seed of the spots.");
+  s("resolution", p.resolution, "Pixels along the longest side; 0: those of the grid, refined to 1024 where coarser.").range(0, 100000);
 }
 
 namespace {
@@ -133,7 +133,7 @@ struct Sums {
   double n = 0, sum = 0, squares = 0;
 };
 
-// Mean 0 and the standard deviation asked for; NaN where the flow has no value.
+// Mean 0 and the requested standard deviation; NaN where the flow has no value.
 void standardise(const PixelFlow& flow, double deviation, float* v, size_t n, const Context& context) {
   parallel_for(n, 1 << 14, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
@@ -163,12 +163,14 @@ void standardise(const PixelFlow& flow, double deviation, float* v, size_t n, co
 DatasetPtr spot_noise(const DatasetPtr& input, const SpotNoiseParams& p, Context& context) {
   const Frame f = make_frame(input, p.field.name, p.resolution, "spot_noise", context);
   if (f.dimension == 3)
-    fail_usage("spots are flat, and the data are solid", "spot_noise", "take a slice first: -f 'slice axis=z'; or lic noise=sparse");
+    fail_usage("spot noise is flat, but the data is solid", "spot_noise",
+               "take a slice first (-f 'slice axis=z'), or use lic noise=sparse");
   const PixelFlow flow(f, context);
   const double area = 3.14159265358979 * p.radius * p.radius;
   const double count = std::ceil((f.n[0] + 2 * p.radius) * (f.n[1] + 2 * p.radius) * p.density / area);
   if (count > 4e6)
-    fail_usage(fmt::format("{:.3g} spots are too many", count), "spot_noise", "a larger radius, less density or a smaller resolution");
+    fail_usage(fmt::format("{:.3g} spots are too many", count), "spot_noise",
+               "use a larger radius, a lower density or a smaller resolution");
   std::vector<Spot> spots(static_cast<size_t>(count));
   const Spots maker(flow, p, flow.largest_speed());
   parallel_for(

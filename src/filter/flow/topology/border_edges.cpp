@@ -13,7 +13,7 @@ namespace sg {
 
 namespace {
 
-// Edges that one cell alone has, in order of the cells.
+// Edges of only one cell, in order of the cells.
 std::vector<BorderEdge> single_edges(const DatasetPtr& d, int32_t part, const PlaneFrame& frame, Context& context) {
   CellReader reader(d);
   std::vector<BorderEdge> all;

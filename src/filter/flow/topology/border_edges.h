@@ -15,9 +15,8 @@ struct BorderEdge {
   int32_t part;
 };
 
-/// Edges that one cell of its part alone has and behind which no other part or patch has a flow, in order of parts and cells. Seams, where
-/// a grid meets itself, are none. Curved edges
-/// by the chords between their nodes.
+/// Edges of only one cell of their part, behind which no other part or patch has a flow, in order of parts and cells. Seams, where a grid
+/// meets itself, do not count. Curved edges by the chords between their nodes.
 std::vector<BorderEdge> border_edges(const FlowParts& flow, const PlaneFrame& frame, Context& context);
 
 /// They as lines with the point field "speed".

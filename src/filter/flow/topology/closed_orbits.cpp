@@ -56,7 +56,7 @@ class Finder {
     }
   }
 
-  // Some at a time, so that many that come to one orbit cost little more than one; the first finds it. Which are on their way no longer.
+  // A few at a time, so that many that approach one orbit cost little more than one; the first finds it. Those that have ended.
   std::vector<uint8_t> test(const std::vector<Candidate>& candidates) {
     std::vector<uint8_t> done(candidates.size(), 0);
     constexpr size_t batch = 8;
@@ -106,7 +106,7 @@ class Finder {
       if (centre || is_repelling(c.flow.type)) seeds.push_back({at, 1, {}});
       if (centre || is_attracting(c.flow.type)) seeds.push_back({at, -1, {}});
     }
-    // The saddles' lines part the plane into regions whose lines all begin at one and end at one limit: a line in each region beside a
+    // The saddles' lines part the plane into regions whose lines all begin at one and end at one limit: a line in each region next to a
     // saddle, and one on each stretch of the border, so that no hole and no group of points inside an orbit hides it.
     for (const CriticalPoint& c : critical_.points) {
       if (!is_saddle(c.flow.type)) continue;
@@ -215,11 +215,11 @@ DatasetPtr orbits_dataset(const std::vector<Orbit>& orbits) {
 }
 
 void describe(Schema& s, ClosedOrbitsParams& p) {
-  s("field", p.field, "Velocity; default: the active vectors.").takes(fields::vectors);
-  s("max_steps", p.max_steps, "Most steps of the lines that look for orbits.").range(1, 1e9);
-  s("tolerance", p.tolerance, "Error of one step of these lines, in sizes of the local cell.").positive();
+  s("field", p.field, "Velocity field; default: the active vectors.").takes(fields::vectors);
+  s("max_steps", p.max_steps, "Maximum number of steps of the lines that search for orbits.").range(1, 1e9);
+  s("tolerance", p.tolerance, "Error per step of these lines, in local cell sizes.").positive();
   s("isolated", p.isolated,
-    "Orbits that their neighbours approach or leave by less than this part in a turn belong to a centre and are left out.")
+    "Orbits whose neighbours approach or leave them by less than this fraction per turn belong to a centre and are left out.")
       .range(0, 1);
 }
 
@@ -227,7 +227,7 @@ DatasetPtr closed_orbits(const Data& in, const ClosedOrbitsParams& p, Context& c
   const FlowParts flow(in, p.field.name, "closed_orbits", context);
   const CriticalPoints critical = find_critical_points(flow, {}, context);
   if (!critical.plane)
-    fail_usage("periodic orbits are found in flat meshes of 2D cells", "closed_orbits", "slice a solid, or flatten the surface");
+    fail_usage("periodic orbits can be found only in flat meshes of 2D cells", "closed_orbits", "slice the solid, or flatten the surface");
   SeparatrixOptions options;
   options.trace.max_steps = p.max_steps, options.trace.tolerance = p.tolerance, options.trace.min_speed = 1e-9 * flow.largest_speed();
   const auto lines = find_separatrices(flow, critical, {}, options, context);
@@ -235,7 +235,7 @@ DatasetPtr closed_orbits(const Data& in, const ClosedOrbitsParams& p, Context& c
   const auto orbits = find_closed_orbits(flow, critical, lines, {p.max_steps, p.tolerance, p.isolated}, context, &families);
   const auto repelling = std::count_if(orbits.begin(), orbits.end(), [](const Orbit& o) { return o.multiplier > 1; });
   context.info(fmt::format("closed_orbits: {} attracting, {} repelling{}", orbits.size() - size_t(repelling), repelling,
-                           families > 0 ? "; others are families about centres, whose neighbours are closed too" : ""));
+                           families > 0 ? "; the others belong to families around centres, whose neighbours are closed too" : ""));
   return orbits_dataset(orbits);
 }
 

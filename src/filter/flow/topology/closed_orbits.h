@@ -15,7 +15,7 @@ struct OrbitOptions {
   double isolated = 0.02;    ///< see periodic_orbit()
 };
 
-/// Lines that neither leave the mesh nor end at a critical point spiral towards an orbit (Poincare, Bendixson). They start beside sources
+/// Lines that neither leave the mesh nor end at a critical point spiral towards an orbit (Poincare, Bendixson). They start next to sources
 /// (with the flow), sinks (against it) and centres (both), in the four sectors of each saddle and on each stretch of the border where the
 /// flow enters, leaves or runs along (both ways), go along `separatrices`, and start at both sides of each orbit that was found: a line in
 /// every region between the separatrices, also about holes. Orbits that only errors of interpolation part from their neighbours
@@ -24,7 +24,7 @@ struct OrbitOptions {
 std::vector<Orbit> find_closed_orbits(const FlowParts& flow, const CriticalPoints& critical, const std::vector<Separatrix>& separatrices,
                                       const OrbitOptions& options, Context& context, size_t* in_families = nullptr);
 
-/// Ends lines that come to within 1/50 of a cell of an orbit and stay there, on it.
+/// Lines that come within 1/50 of a cell of an orbit and stay there end on it.
 void end_at_orbits(std::vector<Separatrix>& lines, const std::vector<Orbit>& orbits, Context& context);
 
 /// Closed poly-lines with the point field "speed" and cell fields "repelling" (0, 1), "period", "multiplier" and "length".

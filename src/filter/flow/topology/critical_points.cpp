@@ -79,7 +79,7 @@ bool are_one(const Found& f, const Found& g, bool several, bool flat) {
   if (d <= 1e-5 * small) return apart || (a.border && b.border);
   auto negative = [&](const Mat3& m) {
     if (!flat) return determinant(m) < 0;
-    double product = 0;  // of the two eigenvalues beside the zero across the plane
+    double product = 0;  // of the two eigenvalues other than the zero across the plane
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < i; ++j) product += m.m[i][i] * m.m[j][j] - m.m[i][j] * m.m[j][i];
     return product < 0;
@@ -131,7 +131,7 @@ std::vector<Found> merged(std::vector<Found> zeros, bool several, bool flat) {
   return out;
 }
 
-// Where the gradient does not tell the index: by a walk around the point.
+// Where the gradient does not decide the index: by a walk around the point.
 int index_about(PartsCursor& cursor, const PlaneFrame& frame, Vec3 at, double radius) {
   constexpr size_t n = 720;
   std::vector<Vec2> v;
@@ -144,7 +144,7 @@ int index_about(PartsCursor& cursor, const PlaneFrame& frame, Vec3 at, double ra
   return winding_index(v).value_or(0);
 }
 
-// Of slow points those that are crowded are noise: a flow that is sampled well enough has its few cells apart.
+// Of slow points those that are crowded are noise: in a sufficiently sampled flow its few cells are far apart.
 void drop_noise(CriticalPoints& r, double slow) {
   const auto& points = r.points;
   std::vector<size_t> order(points.size());
@@ -221,8 +221,7 @@ CriticalPoints find_critical_points(const FlowParts& flow, const CriticalOptions
   CriticalPoints r;
   r.dimension = flow.dimension();
   if (r.dimension < 2)
-    fail_usage("the mesh has no cells of area or volume", "critical_points",
-               "a grid or mesh of 2D or solid cells; tri- or tetrahedra between points");
+    fail_usage("the mesh has no cells with area or volume", "critical_points", "use a grid or a mesh of 2D or solid cells");
   if (r.dimension == 2) {
     std::vector<const Dataset*> parts;
     for (const FlowField& f : flow.fields()) parts.push_back(f.dataset().get());
@@ -235,24 +234,22 @@ CriticalPoints find_critical_points(const FlowParts& flow, const CriticalOptions
 }
 
 void describe(Schema& s, CriticalPointsParams& p) {
-  s("field", p.field, "Velocity; default: the active vectors.").takes(fields::vectors);
+  s("field", p.field, "Velocity field; default: the active vectors.").takes(fields::vectors);
   describe(s, p.options);
 }
 
 void describe(Schema& s, CriticalOptions& p) {
   s("centre", p.centre,
-    "A spiral whose growth rate (real part) is at most this part of its turning rate (imaginary part) counts as a centre: sampled flows "
-    "without divergence have centres only to rounding. In flat meshes so does a slow spiral whose growth is not borne out by the flux "
-    "about "
-    "it; 0: neither.")
+    "A spiral whose growth rate (real part) is at most this fraction of its rotation rate (imaginary part) counts as a centre, since "
+    "sampled divergence-free flows have exact centres only up to rounding. In flat meshes so does a slow spiral whose growth is not "
+    "confirmed by the flux around it; 0: neither.")
       .at_least(0);
   s("min_speed", p.min_speed,
-    "Cells that are slower than this part of the largest speed at all of their points are left out: noise has many zeros.")
+    "Cells slower than this fraction of the largest speed at all their points are left out: noise has many zeros.")
       .range(0, 1);
   s("noise", p.noise,
-    "Of the critical points in cells that are slower than this part of the largest speed at all of their points, those are left out as "
-    "noise that have "
-    "another critical point within three cells; single ones stay, however slow. In scans that are mostly noise 0 stands for 0.02.")
+    "In cells slower than this fraction of the largest speed at all their points, critical points with another one within three cells are "
+    "left out as noise; isolated ones stay, however slow. In scans that are mostly noise, 0 means 0.02.")
       .range(0, 1);
 }
 
@@ -319,13 +316,13 @@ DatasetPtr critical_points_dataset(const CriticalPoints& found) {
 DatasetPtr critical_points(const Data& in, const CriticalPointsParams& p, Context& context) {
   const FlowParts flow(in, p.field.name, "critical_points", context);
   CriticalOptions options = p.options;
-  if (options.noise == 0)  // nobody said
+  if (options.noise == 0)  // not given
     for (const FlowField& f : flow.fields())
       if (noise_speed(*f.dataset(), f.field()) > 0) {
         options.noise = 0.02;
         context.info(
-            fmt::format("most of '{}' is noise: of the critical points in cells slower than 2 % of its largest speed only single ones "
-                        "are kept; noise=1e-9 keeps all",
+            fmt::format("most of '{}' is noise: in cells slower than 2 % of its largest speed only isolated critical points are kept; "
+                        "noise=1e-9 keeps all",
                         flow.name()));
         break;
       }

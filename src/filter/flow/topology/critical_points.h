@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a flow stands still, and how it moves about there.
+// Stagnation points of a flow, and its motion around them.
 #pragma once
 #include <optional>
 #include <vector>

@@ -93,7 +93,7 @@ template <class Flow>
 double mean_growth(Flow& flow, const Orbit& orbit, Vec3 normal, double cells) {
   double sum = 0, before = 0;
   for (size_t i = 0; i < orbit.points.size(); ++i) {
-    double here = 0, cell = orbit.cell;  // beside walls, where discs do not fit, nothing is known
+    double here = 0, cell = orbit.cell;  // next to walls, where discs do not fit, nothing is known
     if constexpr (requires { flow.cell_length(); }) {
       Vec3 v;
       if (flow(orbit.points[i], 0, v)) cell = std::max(cell, flow.cell_length());
@@ -114,8 +114,8 @@ double mean_growth(Flow& flow, const Orbit& orbit, Vec3 normal, double cells) {
 
 /// The periodic orbit near `start`, which a line followed with `sign` approaches: the secant method on the return map of the line across
 /// the flow there, then bisection where it leaves. Orbits whose neighbours come nearer (or go) by less than `isolated` a turn are those of
-/// a family about a centre: nothing, and `family` becomes true. Where the mean growth says nothing of the kind (half as much, or the
-/// other way), the orbit is one by the error of interpolation only: not resolved. `normal` is that of the plane.
+/// a family about a centre: nothing, and `family` becomes true. Where the mean growth does not confirm it (half as much, or the opposite),
+/// the orbit exists only because of the interpolation error: not resolved. `normal` is that of the plane.
 template <class Flow>
 std::optional<Orbit> periodic_orbit(Flow& flow, Vec3 start, Vec3 normal, double sign, const ReturnOptions& o, double isolated = 0.02,
                                     bool* family = nullptr) {

@@ -14,7 +14,8 @@ namespace sg {
 
 namespace {
 
-constexpr double near_limit = 0.1, near_saddle = 0.05;  // diagonals of the cell of a critical point within which a line has come to it
+constexpr double near_limit = 0.1,
+                 near_saddle = 0.05;  // distance from a critical point, in diagonals of its cell, within which a line has reached it
 
 double distance_to_segment(Vec3 x, Vec3 a, Vec3 b) {
   const Vec3 d = b - a;
@@ -45,7 +46,7 @@ class Limits {
       const bool ends = sign > 0 ? is_attracting(c.flow.type) : is_repelling(c.flow.type);
       const double within = ends ? near_limit : is_saddle(c.flow.type) ? near_saddle : 0;
       const double d = distance_to_segment(c.at, a, b);
-      // Where the interpolant's zero is beside its triangle, lines come to an edge nearby.
+      // Where the interpolant's zero is outside its triangle, lines reach an edge nearby.
       if (d < within * c.size + (within > 0 ? 2 * c.moved : 0) && d < nearest) nearest = d, best = int64_t(*i);
     }
     return best;
@@ -60,7 +61,7 @@ class Limits {
 /// So many slow points on end of a line are noise; a step is about a cell.
 constexpr size_t most_slow = 20;
 
-// Appends a traced line, `at(i, x, v)` its n points from the seed on, to its separatrix, up to a critical point that it comes to.
+// Appends a traced line, `at(i, x, v)` its n points from the seed on, to its separatrix, up to a critical point that it reaches.
 template <class At>
 void follow(size_t n, At&& at, StopReason stop, const CriticalPoints& critical, const Limits& limits, double sign, Separatrix& s) {
   const int64_t from = s.origin == Separatrix::Origin::saddle ? s.from : -1;
@@ -243,12 +244,12 @@ DatasetPtr separatrices_dataset(const std::vector<Separatrix>& lines) {
 }
 
 void describe(Schema& s, SeparatricesParams& p) {
-  s("field", p.field, "Velocity; default: the active vectors.").takes(fields::vectors);
+  s("field", p.field, "Velocity field; default: the active vectors.").takes(fields::vectors);
   describe(s, p.critical);
-  s("offset", p.offset, "How far from the saddle tracing begins, in diagonals of its cell.").positive();
-  s("border", p.border, "Also from places where the flow touches the border from inside, leaves a wall or comes to one (flat meshes).");
-  s("max_steps", p.max_steps, "Most steps of a line.").range(1, 1e9);
-  s("tolerance", p.tolerance, "Error of one step, in sizes of the local cell.").positive();
+  s("offset", p.offset, "Distance from the saddle at which tracing begins, in diagonals of its cell.").positive();
+  s("border", p.border, "Also start where the flow touches the border from inside, or separates from or attaches to a wall (flat meshes).");
+  s("max_steps", p.max_steps, "Maximum number of steps of a line.").range(1, 1e9);
+  s("tolerance", p.tolerance, "Error per step, in local cell sizes.").positive();
 }
 
 DatasetPtr separatrices(const Data& in, const SeparatricesParams& p, Context& context) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the border of a flat mesh changes between inflow and outflow, and where flow leaves walls or comes to them.
+// Where the border of a flat mesh changes between inflow and outflow, and where flow separates from walls or attaches to them.
 #pragma once
 #include <string_view>
 #include <vector>
@@ -28,8 +28,8 @@ struct SwitchPoint {
 
 /// Places of the border's edges (curved ones by the chords between their nodes) where the velocity, linear along each, is along the
 /// border; corners where it goes in by one edge and out by the other. Edges along which the flow runs everywhere have none. On walls:
-/// where the shear (derivative of the velocity along the wall, away from it) changes sign. In the order of the edges' cells. Edges that
-/// one cell has are no border where another part or patch lies behind them.
+/// where the shear (derivative of the velocity along the wall, away from it) changes sign. In the order of the edges' cells. Edges of a
+/// single cell are not a border where another part or patch lies behind them.
 std::vector<SwitchPoint> find_switch_points(const FlowParts& flow, const PlaneFrame& frame, Context& context);
 
 /// Places just inside the border, some on each stretch along which the flow enters (1), leaves (-1) or runs along it (both, as two).

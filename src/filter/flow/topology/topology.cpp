@@ -8,15 +8,15 @@
 namespace sg {
 
 void describe(Schema& s, TopologyParams& p) {
-  s("field", p.field, "Velocity; default: the active vectors.").takes(fields::vectors);
+  s("field", p.field, "Velocity field; default: the active vectors.").takes(fields::vectors);
   describe(s, p.critical);
-  s("separatrices", p.separatrices, "Trace the lines that part regions of different flow.");
-  s("orbits", p.orbits, "Look for periodic orbits (flat meshes).");
-  s("border", p.border, "Look for places where the flow touches the border, leaves walls or comes to them (flat meshes).");
-  s("offset", p.offset, "How far from a saddle tracing begins, in diagonals of its cell.").positive();
-  s("max_steps", p.max_steps, "Most steps of a line.").range(1, 1e9);
-  s("tolerance", p.tolerance, "Error of one step, in sizes of the local cell.").positive();
-  s("circle", p.circle, "Solids: radius of the seed circles of separating surfaces, in diagonals of the saddle's cell.").positive();
+  s("separatrices", p.separatrices, "Trace the lines that separate regions of different flow.");
+  s("orbits", p.orbits, "Find periodic orbits (flat meshes).");
+  s("border", p.border, "Find points where the flow touches the border, or separates from or attaches to walls (flat meshes).");
+  s("offset", p.offset, "Distance from a saddle at which tracing begins, in diagonals of its cell.").positive();
+  s("max_steps", p.max_steps, "Maximum number of steps of a line.").range(1, 1e9);
+  s("tolerance", p.tolerance, "Error per step, in local cell sizes.").positive();
+  s("circle", p.circle, "In 3D: radius of the seed circles of separation surfaces, in diagonals of the saddle's cell.").positive();
 }
 
 CollectionPtr topology(const Data& in, const TopologyParams& p, Context& context) {
@@ -48,7 +48,7 @@ CollectionPtr topology(const Data& in, const TopologyParams& p, Context& context
     out->parts.push_back({"closed orbits", orbits_dataset(orbits)});
     text += fmt::format("; {} periodic orbit{}", orbits.size(), orbits.size() == 1 ? "" : "s");
   }
-  if (families > 0) text += "; families of closed lines about centres";
+  if (families > 0) text += "; families of closed lines around centres";
   if (!border.empty()) {
     out->parts.push_back({"switch points", switch_points_dataset(border)});
     text += fmt::format("; {} switch point{} of the border", border.size(), border.size() == 1 ? "" : "s");

@@ -18,7 +18,7 @@ void describe(Schema& s, TopologyParams& p);
 
 /// Parts, left out where empty: "critical points" (always there), "separatrices", "closed orbits", "switch points" and "border" (flat
 /// meshes), "separation circles" (solids: seed curves of the separating surfaces). Lines from a surface or plane, points with their fields
-/// as in critical_points, separatrices and closed_orbits. Throws Error(usage) for meshes of lines and fields that are no velocity.
+/// as in critical_points, separatrices and closed_orbits. Throws Error(usage) for meshes of lines and fields that are not velocities.
 CollectionPtr topology(const Data& in, const TopologyParams& p, Context& context);
 
 struct TopologySeedsParams {

@@ -80,10 +80,10 @@ void solid_pattern(const CriticalPoint& c, double r, int64_t n, std::vector<Vec3
 }  // namespace
 
 void describe(Schema& s, TopologySeedsParams& p) {
-  s("field", p.field, "Velocity; default: the active vectors.").takes(fields::vectors);
+  s("field", p.field, "Velocity field; default: the active vectors.").takes(fields::vectors);
   describe(s, p.critical);
-  s("count", p.count, "Seeds around each critical point.").range(1, 1e6);
-  s("radius", p.radius, "How far the patterns reach, as a part of the way to the nearest other critical point.").positive();
+  s("count", p.count, "Number of seeds around each critical point.").range(1, 1e6);
+  s("radius", p.radius, "Extent of the patterns, as a fraction of the distance to the nearest other critical point.").positive();
 }
 
 DatasetPtr topology_seeds(const Data& in, const TopologySeedsParams& p, Context& context) {
@@ -92,7 +92,7 @@ DatasetPtr topology_seeds(const Data& in, const TopologySeedsParams& p, Context&
   constexpr double bytes_a_seed = 100;  // its place, its numbers, and lists that grow
   need_memory(double(p.count) * double(critical.points.size() + 1) * bytes_a_seed,
               fmt::format("{} seeds around each of {} critical points", p.count, critical.points.size()), "topology_seeds",
-              "take fewer: count");
+              "use fewer: count");
   const std::vector<double> reach = reaches(critical.points, p.radius, 0.1 * flow.bounds().diagonal());
   std::vector<double> xyz;
   std::vector<int32_t> number, type;
@@ -111,7 +111,8 @@ DatasetPtr topology_seeds(const Data& in, const TopologySeedsParams& p, Context&
       number.push_back(int32_t(i)), type.push_back(int32_t(c.flow.type));
     }
   }
-  if (critical.points.empty()) context.warn("topology_seeds: the flow has no critical point, so there are no seeds; take seeds on a grid");
+  if (critical.points.empty())
+    context.warn("topology_seeds: the flow has no critical point, so there are no seeds; use seeds on a grid instead");
   else context.info(fmt::format("topology_seeds: {} seeds; {}", number.size(), summary(critical)));
   DatasetParts parts;
   PointCloud cloud;

@@ -65,7 +65,7 @@ void advance_one(Flow& flow, Particle& p, double until, const TraceOptions& o, R
     p.x = flow.snap(x), p.v = v;
     p.t = h >= left ? until : p.t + sign * h;
     ++p.steps;
-    // A step that the end of the interval cut short says little about the next.
+    // A step cut short by the end of the interval says little about the next.
     if (adapts) p.next = h < wished && error <= 1 ? std::max(wished, next_step(h, error)) : next_step(h, error);
     record(p);
     if (at_border && h < least) p.ended = true, p.why = StopReason::outside;

@@ -6,7 +6,7 @@
 
 namespace sg::flat_advance {
 
-/// Is it a plane whose two components are neighbours in memory (all but the xz plane)?
+/// Whether it is a plane whose two components are adjacent in memory (all except the xz plane).
 bool takes(const lattice_advance::Job& job);
 
 /// As lattice_advance::run(). The same bits for any width of vectors (x86: from SSSE3 on;

@@ -91,7 +91,7 @@ HWY_INLINE Mask velocity(const Flat& g, VD x, VD y, VD t, VD& u, VD& v) {
   const VD cx = cell(qx, g.last[0]), cy = cell(qy, g.last[1]), fx = qx - cx, fy = qy - cy;
   const auto near = [](VD f) { return abs(f - 0.5) <= 0.5 + 1e-9; };
   const Mask ok = near(fx) & near(fy);
-  // A whole number below 2^52 stands in the low bits of its sum with 2^52.
+  // A whole number below 2^52 is in the low bits of its sum with 2^52.
   constexpr double two52 = 4503599627370496.0;
   const VD place = cx * g.bytes[0] + cy * g.bytes[1] + two52;
   const auto at = bit_cast(L(), place) & ((int64_t(1) << 52) - 1);
@@ -161,7 +161,7 @@ class Runner {
       size(n);
       try_steps(n);
       uint32_t ends = finish(n);
-      for (size_t l = n; ends != 0 && l-- > 0;) {  // downwards, so that the last lane is one that goes on
+      for (size_t l = n; ends != 0 && l-- > 0;) {  // downwards, so that the last lane is one that continues
         if (!(ends >> l & 1)) continue;
         write(l);
         if (!fill(l)) move(l, --n);
@@ -328,7 +328,7 @@ class Runner {
       VD now = select(h >= left, until_, t + sign_ * h);
       now = select(accept, now, t);
       const VD rest = abs(until_ - now), steps = hn::Load(d, s_.steps + l) + only(accept, one);
-      // A step that the end of the interval cut short says little about the next.
+      // A step cut short by the end of the interval says little about the next.
       const Mask cut = (h < wished) & (error <= one);
       const VD kept = select(cut, max(wished, next), next);
       hn::Store(select(accept, kept, hn::Load(d, s_.next + l)), d, s_.next + l);

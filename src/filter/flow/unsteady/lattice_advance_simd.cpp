@@ -64,7 +64,7 @@ HWY_INLINE D4 smaller(D4 a, D4 b) {
   return a < b ? a : b;
 #endif
 }
-/// Are the first three at most `most`, and no NaN?
+/// Whether the first three are at most `most`, and not NaN.
 HWY_INLINE bool at_most(D4 v, D4 most) {
 #if SG_LATTICE_AVX2
   return (_mm256_movemask_pd(_mm256_cmp_pd(reinterpret_cast<__m256d>(v), reinterpret_cast<__m256d>(most), _CMP_LE_OQ)) & 7) == 7;

@@ -8,8 +8,8 @@
 namespace sg {
 
 void describe(Schema& s, PathlinesParams& p) {
-  describe(s, p, "When particles start; default: the first time of the series.",
-           "When they end, before the start to go backwards; default: the last time of the series.");
+  describe(s, p, "Time at which particles start; default: the first time of the series.",
+           "Time at which they end, before the start to go backwards; default: the last time of the series.");
 }
 
 DatasetPtr pathlines(const Series& series, const std::vector<Data>& others, const PathlinesParams& p, Context& context) {

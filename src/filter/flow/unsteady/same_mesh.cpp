@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Do two time steps have one mesh?
+// Whether two time steps have the same mesh.
 #include <cstring>
 
 #include "base/parallel.h"

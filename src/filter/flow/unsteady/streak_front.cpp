@@ -82,7 +82,7 @@ std::vector<StreakFront::Insertion> StreakFront::wanted(size_t slot, double begi
     } else {
       n.born = (a + b) / 2, n.particle.t = begin;
       const Vec3 middle = n.particle.x = (before_[i].x + before_[i + 1].x) / 2;
-      // Older ones of one moment, as far as numbers tell, are two places all the same: the middle of the chord lies between them.
+      // Older ones released at numerically the same time are two points all the same: the middle of the chord lies between them.
       if (apart) {
         std::vector<Node> nodes;
         if (joined(i - 1)) nodes.push_back({born_[i - 1], before_[i - 1].x});

@@ -12,15 +12,15 @@ class StreakFront {
   StreakFront(const std::vector<Vec3>& seeds, const std::vector<double>& times);
 
   struct Refinement {
-    double spacing = HUGE_VAL;  ///< neighbours that part by more get another between them
+    double spacing = HUGE_VAL;  ///< neighbours farther apart than this get another between them
     double angle = M_PI;        ///< and those where the line turns by more
     double shortest = 0;        ///< but none where they are nearer than this
     size_t most = SIZE_MAX;     ///< particles in all
   };
   /// Through the open interval (or to `until` in it). With `refinement`, particles come between neighbours that have parted: one released
-  /// in this interval starts at the seed; an older one is put between its neighbours where these were at the beginning of the interval, by
-  /// the cubic in release time through four of them (in the middle of two that numbers cannot tell apart by their time), and goes through
-  /// the interval itself.
+  /// in this interval starts at the seed; an older one is put between its neighbours where these were at the start of the interval, by the
+  /// cubic in release time through four of them (in the middle of two whose times are numerically equal), and is advanced through the
+  /// interval itself.
   void advance(const UnsteadyFlow& flow, double until, const TraceOptions& options, const Refinement* refinement, Context& context);
   /// Those released before `t` are gone.
   void bury(double t);

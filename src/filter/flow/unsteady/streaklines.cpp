@@ -26,7 +26,7 @@ std::vector<double> release_times(const UnsteadyRun& run, std::optional<double> 
   if (!(*every > 0)) return out;
   const double count = (run.time - run.start) / *every * (1 + 1e-12);
   if (!(count < double(most_releases)))
-    fail_usage(fmt::format("every={} means {:.3g} releases", *every, count), who, fmt::format("at most {}", most_releases));
+    fail_usage(fmt::format("every={} means {:.3g} releases", *every, count), who, fmt::format("at most {} are allowed", most_releases));
   for (int64_t i = 1; double(i) <= count; ++i) out.push_back(std::min(run.start + double(i) * *every, run.time));
   return out;
 }
@@ -36,12 +36,12 @@ StreakFront release(const UnsteadyRun& run, std::optional<double> every, const c
   const size_t seeds = run.seeds.size(), releases = times.size();
   if (double(releases) * double(seeds) > double(size_t(1) << 31))
     fail_usage(fmt::format("{} seeds and {} releases make {} particles", seeds, releases, releases * seeds), who,
-               "fewer seeds, or a larger every");
+               "use fewer seeds or a larger every");
   return {run.seeds, times};
 }
 
 // Lines of one seed after the other, the newest particle first. Gaps that refinement could not fill (wider than `torn`: what stretches by
-// thousands in one interval) are no lines, and what it left alone is left out.
+// thousands in one interval) are not lines, and isolated particles are left out.
 LinePoints streaks(const StreakFront& r, std::vector<double>& age, double time, double torn) {
   constexpr size_t grain = 64;
   const size_t seeds = r.seeds();
@@ -106,14 +106,16 @@ Streaks streaks_with_fields(UnsteadyRun& run, const StreakFront& r, double torn,
 }  // namespace
 
 void describe(Schema& s, StreaklinesParams& p) {
-  describe(s, p, "First release; default: the first time of the series.", "Moment of the lines; default: the last time of the series.");
+  describe(s, p, "Time of the first release; default: the first time of the series.",
+           "Time at which lines are shown; default: the last time of the series.");
   s("every", p.every, "Time between releases; default: at each time step.").unit("time").positive();
-  s("refine", p.refine, "Releases more where a line stretches or bends.");
-  s("spacing", p.spacing, "Refined: neighbours that part by more get another between them; default: a hundredth of the mesh's diagonal.")
+  s("refine", p.refine, "Release more particles where a line stretches or bends.");
+  s("spacing", p.spacing,
+    "When refining: largest distance between neighbours before another is put between them; default: a hundredth of the mesh's diagonal.")
       .unit("length")
       .positive();
-  s("angle", p.angle, "Refined: where a line turns by more, neighbours get others between them.").unit("deg").range(1, 180);
-  s("most_points", p.most_points, "Most particles; with so many lines are refined no more.").range(2, 1e9);
+  s("angle", p.angle, "When refining: largest turn of a line before more particles are put in.").unit("deg").range(1, 180);
+  s("most_points", p.most_points, "Maximum number of particles; beyond it, lines are no longer refined.").range(2, 1e9);
 }
 
 DatasetPtr streaklines(const Series& series, const std::vector<Data>& others, const StreaklinesParams& p, Context& context) {
@@ -123,23 +125,24 @@ DatasetPtr streaklines(const Series& series, const std::vector<Data>& others, co
   const double diagonal = length(run.flow.steps()[0].dataset()->bounds().size());
   finer.spacing = p.spacing.value_or(0.01 * diagonal);
   if (p.refine && diagonal > finer.spacing * most_on_a_line)
-    fail_usage(fmt::format("with spacing={:.4g} a line through the mesh, {:.4g} long, would have more than {:g} particles", finer.spacing,
+    fail_usage(fmt::format("with spacing={:.4g}, a line through the mesh, {:.4g} long, would have more than {:g} particles", finer.spacing,
                            diagonal, most_on_a_line),
-               "streaklines", "a larger spacing");
+               "streaklines", "use a larger spacing");
   finer.angle = p.angle * M_PI / 180, finer.shortest = finer.spacing / 16;  // a fold is not followed below this
   finer.most = std::max(size_t(p.most_points), front.size());
   run.each_interval([&](double until) { front.advance(run.flow, until, run.options, p.refine ? &finer : nullptr, context); });
   run.require_some(front.started());
-  if (front.full()) context.warn(fmt::format("streaklines: {} particles, and lines are refined no more (most_points)", front.size()));
+  if (front.full()) context.warn(fmt::format("streaklines: {} particles; lines are not refined further (most_points)", front.size()));
   Streaks s = streaks_with_fields(run, front, p.refine && !front.full() ? 2 * finer.spacing : HUGE_VAL, context);
   return run.finished(
       lines_of(s.lines, {"age", Association::point, s.age, "", Role::scalars}, run.velocity(), run.time, std::move(s.more), {}));
 }
 
 void describe(Schema& s, ParticlesParams& p) {
-  describe(s, p, "First release; default: the first time of the series.", "Moment of the picture; default: the last time of the series.");
-  s("every", p.every, "Time between releases; 0: all at the start; default: at each time step.").unit("time").at_least(0);
-  s("lifetime", p.lifetime, "Older particles are gone; default: none.").unit("time").positive();
+  describe(s, p, "Time of the first release; default: the first time of the series.",
+           "Time at which particles are shown; default: the last time of the series.");
+  s("every", p.every, "Time between releases; 0: one release, at the start; default: at each time step.").unit("time").at_least(0);
+  s("lifetime", p.lifetime, "Maximum age of particles; default: no limit.").unit("time").positive();
 }
 
 DatasetPtr particles(const Series& series, const std::vector<Data>& others, const ParticlesParams& p, Context& context) {

@@ -14,10 +14,10 @@ struct StreaklinesParams : UnsteadyParams {
 void describe(Schema& s, StreaklinesParams& p);
 
 /// At each seed a particle is released every `every` (default: at the times of the series, and at the start) up to `time`; those of one
-/// seed, the newest first, make its line at `time`. Where neighbours part by more than `spacing`, or the line turns by more than `angle`
-/// between neighbours that are not very near, others come between them (see StreakFront). A line breaks where a particle has left the mesh;
-/// a piece of one particle is a vertex, or with `refine` left out beside others of the seed. Point fields: "age" (active, f64), "speed",
-/// the velocity, the mesh's other fields at `time`. Cell field: "seed".
+/// seed, the newest first, make its line at `time`. Where neighbours are more than `spacing` apart, or the line turns by more than `angle`
+/// between neighbours that are not very close, others are put between them (see StreakFront). A line breaks where a particle has left the
+/// mesh; a piece of one particle is a vertex, or with `refine` left out beside others of the seed. Point fields: "age" (active, f64),
+/// "speed", the velocity, the mesh's other fields at `time`. Cell field: "seed".
 DatasetPtr streaklines(const Series& series, const std::vector<Data>& others, const StreaklinesParams& p, Context& context);
 
 struct ParticlesParams : UnsteadyParams {

@@ -9,14 +9,15 @@
 namespace sg {
 
 void describe(Schema& s, TimelinesParams& p) {
-  describe(s, p, "When the line starts; default: the first time of the series.",
+  describe(s, p, "Time at which the line starts; default: the first time of the series.",
            "Time of the last line; default: the last time of the series.");
   s("every", p.every, "Time between lines; default: at each time step.").unit("time").positive();
-  s("spacing", p.spacing, "Neighbours that part by more get another between them; default: 1.5 times the largest gap at the start.")
+  s("spacing", p.spacing,
+    "Largest distance between neighbours before another is put between them; default: 1.5 times the largest gap at the start.")
       .unit("length")
       .positive();
-  s("angle", p.angle, "Where the line turns by more, neighbours get others between them.").unit("deg").range(1, 180);
-  s("most_points", p.most_points, "Most points of the line; with so many it gets no more.").range(2, 1e9);
+  s("angle", p.angle, "Largest turn of the line before more points are put in.").unit("deg").range(1, 180);
+  s("most_points", p.most_points, "Maximum number of points of the line; beyond it, no more are added.").range(2, 1e9);
 }
 
 namespace {
@@ -40,7 +41,7 @@ class Front {
   std::vector<double> position;
   bool full = false;
 
-  /// New particles between those that are too far apart, as often as it takes.
+  /// New particles between those that are too far apart, as often as necessary.
   void refine(const UnsteadyFlow& flow) {
     UnsteadyCursor cursor(flow);
     for (int pass = 0; pass < 12 && insert_between(cursor); ++pass) {
@@ -141,7 +142,7 @@ std::vector<double> line_times(const UnsteadyRun& run, std::optional<double> eve
     return out;
   }
   const double count = (run.time - run.start) / *every * (1 + 1e-12);
-  if (!(count < 1e6)) fail_usage(fmt::format("every={} means {:.3g} lines", *every, count), "timelines", "at most 1000000");
+  if (!(count < 1e6)) fail_usage(fmt::format("every={} means {:.3g} lines", *every, count), "timelines", "at most 1000000 are allowed");
   for (int64_t i = 1; double(i) <= count; ++i) out.push_back(std::min(run.start + double(i) * *every, run.time));
   return out;
 }
@@ -150,8 +151,9 @@ std::vector<double> line_times(const UnsteadyRun& run, std::optional<double> eve
 
 DatasetPtr timelines(const Series& series, const std::vector<Data>& others, const TimelinesParams& p, Context& context) {
   UnsteadyRun run(series, others, p, "timelines", false, context);
-  if (run.seeds.size() < 2) fail_usage(fmt::format("{} seed makes no line", run.seeds.size()), "timelines", "from=x,y,z to=x,y,z");
-  if (seed_kind(p.seeds, !others.empty()) == SeedKind::random) fail_usage("random seeds make no line", "timelines", "from=x,y,z to=x,y,z");
+  if (run.seeds.size() < 2) fail_usage(fmt::format("{} seed does not make a line", run.seeds.size()), "timelines", "from=x,y,z to=x,y,z");
+  if (seed_kind(p.seeds, !others.empty()) == SeedKind::random)
+    fail_usage("random seeds do not make a line", "timelines", "from=x,y,z to=x,y,z");
   const std::vector<double> shown = line_times(run, p.every);
   Front front(run, p);
   Snapshots out;
@@ -169,7 +171,7 @@ DatasetPtr timelines(const Series& series, const std::vector<Data>& others, cons
     advance(run.flow, front.all, until, 1, run.options, context);
     front.refine(run.flow);
   });
-  if (front.full) context.warn(fmt::format("timelines: the line has {} points and gets no more (most_points)", front.all.size()));
+  if (front.full) context.warn(fmt::format("timelines: the line has {} points; no more are added (most_points)", front.all.size()));
 
   FieldSet more;
   std::vector<size_t> order(out.lines.x.size());

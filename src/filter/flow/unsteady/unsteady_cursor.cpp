@@ -68,7 +68,7 @@ struct UnsteadyCursor::State {
   std::optional<MeshPlace> moving;
   double w[4] = {0, 0, 0, 0};  // of the steps at the last time
   double weighed = NAN;        // that time
-  size_t main = 0;             // the cursor that says what a cell is
+  size_t main = 0;             // the cursor that determines the cell
   Vec3 shift{0, 0, 0};         // moving meshes: from the place in the base mesh to that at the last time
 
   explicit State(const UnsteadyFlow& f) : flow(f) {

@@ -20,12 +20,13 @@ UnsteadyFlow::UnsteadyFlow(Series series, std::string field, TimeInterpolation i
   const auto& t = series_.times;
   if (t.size() < 2)
     fail_usage(fmt::format("the series has {} time step{}", t.size(), t.size() == 1 ? "" : "s"), "unsteady flow",
-               "two at least; streamlines follow a flow that stands still");
+               "at least two are needed; streamlines trace a steady flow");
   for (size_t i = 0; i < t.size(); ++i) {
-    if (!std::isfinite(t[i])) fail_data(fmt::format("step {} has the time {}", i, t[i]), "unsteady flow", "a finite number");
+    if (!std::isfinite(t[i])) fail_data(fmt::format("step {} has the time {}", i, t[i]), "unsteady flow", "times must be finite");
     if (i > 0 && !(t[i] > t[i - 1]))
-      fail_data(fmt::format("the times do not grow: step {} has {}, step {} has {}", i - 1, exact_number(t[i - 1]), i, exact_number(t[i])),
-                "unsteady flow", "ascending times; times= chooses steps");
+      fail_data(
+          fmt::format("the times do not increase: step {} has {}, step {} has {}", i - 1, exact_number(t[i - 1]), i, exact_number(t[i])),
+          "unsteady flow", "times must increase; times= selects steps");
   }
 }
 
@@ -59,13 +60,13 @@ DatasetPtr one_mesh(const Data& data, std::string& field, Context& context) {
     return append(std::vector<Data>(parts.begin(), parts.end()), p, quiet);
   };
   const std::string file = source_of(data);
-  return file.empty() ? take() : with_context(fmt::format("looking at '{}'", file), take);
+  return file.empty() ? take() : with_context(fmt::format("inspecting '{}'", file), take);
 }
 
 }  // namespace
 
 FlowField UnsteadyFlow::load(size_t step, Context& context) {
-  return with_context(fmt::format("taking time step {} (time {})", step, exact_number(times()[step])), [&] {
+  return with_context(fmt::format("loading time step {} (time {})", step, exact_number(times()[step])), [&] {
     std::string name = field_;
     DatasetPtr d = one_mesh(series_.load(step), name, context);
     if (geographic_) {

@@ -74,12 +74,12 @@ class UnsteadyFlow {
 
 /// Equal geometry, cells and ghosts: identical arrays, or arrays of equal bytes.
 bool same_mesh(const Dataset& a, const Dataset& b);
-/// Equal cells and ghosts over points that may lie elsewhere.
+/// Equal cells and ghosts; points may be at different positions.
 bool same_cells(const Dataset& a, const Dataset& b);
 
 class UnsteadyCursor {
  public:
-  /// For the interval that is open now.
+  /// For the interval currently open.
   explicit UnsteadyCursor(const UnsteadyFlow& flow);
   UnsteadyCursor(UnsteadyCursor&&) noexcept;
   ~UnsteadyCursor();

@@ -15,19 +15,20 @@
 namespace sg {
 
 void describe(Schema& s, UnsteadyParams& p, const std::string& start, const std::string& time) {
-  s("field", p.field, "Velocity: a point or cell field of 2 or 3 components; default: the active vectors.").takes(fields::vectors);
+  s("field", p.field, "Velocity: point or cell field of 2 or 3 components; default: the active vectors.").takes(fields::vectors);
   s("times", p.times,
-    "Time steps, FIRST:LAST:COUNT or a list; default: those of the file. Sources that can be computed for any time need it.")
+    "Time steps, FIRST:LAST:COUNT or a list; default: those of the file. Required for sources that can be computed for any time.")
       .unit("time");
   s("start", p.start, start).unit("time");
   s("time", p.time, time).unit("time");
-  s("interpolation", p.interpolation, "Between time steps: linear through two, or cubic through four (smooth, where steps are far apart).");
+  s("interpolation", p.interpolation,
+    "Interpolation between time steps: linear through two, or cubic through four (smooth, for steps far apart).");
   describe(s, p.integration);
-  s("max_steps", p.max_steps, "Most steps of one particle.").range(1, 1e9);
+  s("max_steps", p.max_steps, "Maximum number of steps of a particle.").range(1, 1e9);
   describe(s, p.seeds);
   s("geographic", p.geographic,
-    "x and y are degrees and the velocity is in m/s: it is converted, to the file's unit of time (lengths stay degrees).");
-  s("attributes", p.attributes, "What is carried beside velocity and time: the mesh's other fields.");
+    "x and y are in degrees and the velocity is in m/s: convert it, in the file's unit of time (lengths stay in degrees).");
+  s("attributes", p.attributes, "Fields carried besides velocity and time: the mesh's other fields.");
 }
 
 namespace {
@@ -38,7 +39,7 @@ double checked_time(const UnsteadyFlow& flow, std::optional<double> t, double ot
   if (!t) return otherwise;
   if (!std::isfinite(*t) || !flow.covers(*t))
     fail_usage(fmt::format("{}={} lies outside the series", name, exact_number(*t)), who,
-               fmt::format("it goes from {} to {}", exact_number(flow.times().front()), exact_number(flow.times().back())));
+               fmt::format("the series runs from {} to {}", exact_number(flow.times().front()), exact_number(flow.times().back())));
   return *t;
 }
 
@@ -50,13 +51,13 @@ UnsteadyRun::UnsteadyRun(const Series& series, const std::vector<Data>& others, 
       who_(std::move(who)),
       geographic_(p.geographic),
       context_(context) {
-  if (others.size() > 1) fail_usage(fmt::format("takes a series and one mesh of seeds, got {} more", others.size()), who_);
+  if (others.size() > 1) fail_usage(fmt::format("takes a series and one mesh of seeds, but got {} more", others.size()), who_);
   start = checked_time(flow, p.start, flow.times().front(), "start", who_);
   time = checked_time(flow, p.time, flow.times().back(), "time", who_);
   sign = time >= start ? 1 : -1;
   if (sign < 0 && !backward)
     fail_usage(fmt::format("the time shown, {}, lies before the start, {}", exact_number(time), exact_number(start)), who_,
-               "pathlines go backwards");
+               "use pathlines to go backwards");
   StopParams stop;
   stop.max_steps = p.max_steps;
   IntegrationParams integration = p.integration;
@@ -87,7 +88,8 @@ void UnsteadyRun::require_some(size_t started) const {
   if (started > 0) return;
   const Box3& b = flow.steps()[flow.base()].dataset()->bounds();
   fail_usage(fmt::format("none of {} seeds lies in the flow", seeds.size()), who_,
-             fmt::format("the mesh lies in x {:.6g} to {:.6g}, y {:.6g} to {:.6g}, z {:.6g} to {:.6g}; hidden cells and NaN have no flow",
+             fmt::format("the mesh extends over x {:.6g} to {:.6g}, y {:.6g} to {:.6g}, z {:.6g} to {:.6g}; there is no flow in hidden "
+                         "cells and where values are NaN",
                          b.lo.x, b.hi.x, b.lo.y, b.hi.y, b.lo.z, b.hi.z));
 }
 
@@ -152,7 +154,7 @@ DatasetPtr lines_of(const LinePoints& lines, Field first, const Field& velocity,
   FieldSet fields = point_fields(lines, std::move(first), velocity, std::move(more));
   per_line.push_back({id, Association::cell, Array::from_vector(lines.seed), "", Role::none});
   for (Field& f : per_line) {
-    if (f.array.count() != lines.lines()) fail_internal("a value a line", f.name);
+    if (f.array.count() != lines.lines()) fail_internal("one value per line", f.name);
     const size_t size = element_size(f.array.type());
     const Array from = f.array.made_packed();
     std::byte* to = nullptr;

@@ -80,11 +80,12 @@ struct LinePoints {
   size_t lines() const { return begin.size() - 1; }
 };
 
-/// SurfaceMesh of poly-lines (vertices first) with the point fields `first` (one value a point, the active one), "speed" and the velocity,
-/// and `per_line` as cell fields beside `id`, the lines' seeds (f32 positions about the origin, or about the box' centre when that is far).
+/// SurfaceMesh of poly-lines (vertices first) with the point fields `first` (one value per point, the active one), "speed" and the
+/// velocity, and `per_line` as cell fields beside `id`, the lines' seeds (f32 positions about the origin, or about the box' centre when
+/// that is far).
 DatasetPtr lines_of(const LinePoints& lines, Field first, const Field& velocity, double time, FieldSet more, std::vector<Field> per_line,
                     const char* id = "seed");
-/// The points alone.
+/// Only the points.
 DatasetPtr points_of(const LinePoints& lines, Field first, const Field& velocity, double time, FieldSet more);
 
 }  // namespace sg

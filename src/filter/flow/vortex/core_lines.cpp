@@ -17,11 +17,11 @@
 namespace sg {
 
 void describe(Schema& s, VortexCoresParams& p) {
-  s("field", p.field, "Velocity; default: the active vector.").takes(fields::vectors);
+  s("field", p.field, "Velocity field; default: the active vectors.").takes(fields::vectors);
   s("method", p.method, "sujudi_haimes: velocity along the real eigenvector of its gradient. levy: velocity along the vorticity.");
-  s("min_swirl", p.min_swirl, "Weakest turning that counts, as a part of the strongest swirling strength on any core.").range(0, 1);
+  s("min_swirl", p.min_swirl, "Minimum swirling strength, as a fraction of the largest on any core.").range(0, 1);
   s("max_angle", p.max_angle, "Largest angle between a core and the flow on it; 90 keeps all.").unit("deg").range(0, 90);
-  s("min_length", p.min_length, "Shortest core, as a part of the mesh's diagonal.").range(0, 1);
+  s("min_length", p.min_length, "Minimum length of a core, as a fraction of the mesh's diagonal.").range(0, 1);
 }
 
 namespace {
@@ -101,7 +101,7 @@ DatasetPtr of_mesh(const DatasetPtr& given, const VortexCoresParams& p, Context&
     const uint32_t a = lines.segments[2 * s], b = lines.segments[2 * s + 1];
     const Vec3 along = lines.points[b].at - lines.points[a].at;
     reader.open(size_t(lines.cells[s]));
-    // Between points that rounding alone parts, as beside a corner amid an edge, there is no direction.
+    // Between points separated only by rounding, as next to a corner within an edge, there is no direction.
     const bool apart = length(along) > 1e3 * nothing * reader.box().diagonal();
     const double turn = apart ? angle_between(along, at[a].u + at[b].u) : 0;
     if (swirl[a] < least || swirl[b] < least || turn > p.max_angle) continue;

@@ -17,23 +17,26 @@
 namespace sg {
 
 void describe(Schema& s, FtleParams& p) {
-  s("field", p.field, "Velocity; default: the active vector.").takes(fields::vectors);
+  s("field", p.field, "Velocity field; default: the active vectors.").takes(fields::vectors);
   s("duration", p.duration,
-    "How long places are carried; negative: back in time. Default: as long as the series lasts, or in a steady flow until "
-    "the mean speed has gone a tenth of the mesh's diagonal.")
+    "How long seeds are advected; negative: backwards in time. Default: the length of the series, or in a steady flow the time in which "
+    "the mean speed covers a tenth of the mesh's diagonal.")
       .unit("time");
-  s("start", p.start, "Time at which they start; default: the first of the series (backwards the last).").unit("time");
-  s("times", p.times, "Times of a series that a source computes: FIRST:LAST:COUNT or a list; default: those of the file.");
-  s("interpolation", p.interpolation, "Between the time steps.");
-  s("dims", p.dims, "Seeds along x, y and z; default: from size.").at_least(1);
+  s("start", p.start, "Time at which they start; default: the first of the series (backwards: the last).").unit("time");
+  s("times", p.times, "Times of a series computed by a source: FIRST:LAST:COUNT or a list; default: those of the file.");
+  s("interpolation", p.interpolation, "Interpolation between time steps.");
+  s("dims", p.dims, "Number of seeds along x, y and z; default: from size.").at_least(1);
   s("size", p.size,
-    "Seeds along the longest axis, the others in proportion; 0: 256, in space 64, in the space around a bent surface or curves 32.")
+    "Number of seeds along the longest axis, the others in proportion; 0: 256, in 3D 64, in the space around a curved surface or curves "
+    "32.")
       .range(0, 1e6);
   s("bounds", p.bounds, "Box of the seeds as xmin,xmax,ymin,ymax,zmin,zmax; default: that of the mesh.").unit("length");
-  s("offset", p.offset, "Derivatives from four (3D: six) places this far beside each seed; default: from the neighbouring seeds.")
+  s("offset", p.offset,
+    "Compute derivatives from four (3D: six) points at this distance from each seed; default: from the neighbouring seeds.")
       .unit("length");
   s("geographic", p.geographic,
-    "x and y are degrees and the velocity is in m/s: it is converted, to the file's unit of time, and neighbours part by metres.");
+    "x and y are in degrees and the velocity is in m/s: convert it, in the file's unit of time, and measure distances between neighbours "
+    "in metres.");
   describe(s, p.integration);
 }
 
@@ -75,7 +78,7 @@ Stretch stretch_of(const Vec3 f[3], const bool counts[3], int dimension, double 
 }
 
 void check_duration(double duration) {
-  if (!(std::abs(duration) > 0) || !std::isfinite(duration)) fail_usage("carries nothing", "duration", "a time, positive or negative");
+  if (!(std::abs(duration) > 0) || !std::isfinite(duration)) fail_usage("advects nothing", "duration", "give a time other than 0");
 }
 
 // Over a globe: what a step of one in longitude (degrees), latitude and height is in degrees of latitude.
@@ -98,7 +101,7 @@ double steady_duration(const Data& data, const FtleParams& p, Context& context) 
 
 DatasetPtr ftle_of(const UniformGrid& grid, double duration, std::optional<double> offset, const FlowMap& map, bool geographic) {
   check_duration(duration);
-  if (offset && !(*offset > 0)) fail_usage("is no distance", "offset", "a small positive length");
+  if (offset && !(*offset > 0)) fail_usage("is not a valid distance", "offset", "give a small positive length");
   const std::array<size_t, 3> n = grid.dims;
   const size_t count = n[0] * n[1] * n[2];
   bool counts[3];
@@ -106,12 +109,12 @@ DatasetPtr ftle_of(const UniformGrid& grid, double duration, std::optional<doubl
   for (int a = 0; a < 3; ++a)
     if ((counts[a] = n[size_t(a)] > 1)) axes.push_back(a);
   const int dimension = int(axes.size());
-  if (dimension == 0) fail_usage("one seed has no neighbours", "dims", "two or more along some axis");
-  // The seeds, and behind each the places beside it.
+  if (dimension == 0) fail_usage("one seed has no neighbours", "dims", "give two or more along some axis");
+  // The seeds, each followed by its offset points.
   const size_t each = offset ? 1 + 2 * axes.size() : 1;
-  const double bytes_a_seed = 200 * double(each) + 60;  // with its neighbours: where they begin and end, particles; what is told of it
+  const double bytes_a_seed = 200 * double(each) + 60;  // with its neighbours: where they begin and end, particles; what is reported of it
   need_memory(double(n[0]) * double(n[1]) * double(n[2]) * bytes_a_seed, fmt::format("{}x{}x{} seeds", n[0], n[1], n[2]), "ftle",
-              "a smaller size");
+              "give a smaller size");
   std::vector<Vec3> from(count * each), to;
   std::vector<uint8_t> known;
   parallel_for(count, 1 << 12, [&](size_t begin, size_t end) {
@@ -165,7 +168,7 @@ DatasetPtr ftle_of(const UniformGrid& grid, double duration, std::optional<doubl
 }
 
 DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
-  if (given.times.empty()) fail_usage("a series of no steps", "ftle");
+  if (given.times.empty()) fail_usage("the series has no steps", "ftle");
   if (p.duration) check_duration(*p.duration);
   const bool steady = given.times.size() == 1;
   const Data only = steady ? given.load(0) : Data();
@@ -181,9 +184,9 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
     series.times = {std::min(start, until), std::max(start, until)};
     series.load = [only](size_t) -> Data { return only; };
   } else if (std::min(start, until) < given.times.front() || std::max(start, until) > given.times.back()) {
-    fail_usage(fmt::format("from {:.6g} to {:.6g} is not in the series, which lasts from {:.6g} to {:.6g}", start, until,
+    fail_usage(fmt::format("from {:.6g} to {:.6g} is outside the series, which lasts from {:.6g} to {:.6g}", start, until,
                            given.times.front(), given.times.back()),
-               "ftle", "another start or duration");
+               "ftle", "choose another start or duration");
   }
   UnsteadyFlow flow(series, p.field.name, p.interpolation, context, p.geographic);
   size_t k = flow.interval_of(start, sign);
@@ -192,7 +195,7 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
   if (const FlowField& first = flow.steps()[flow.base()]; !p.geographic) warn_of_degrees(*first.dataset(), first.field(), "ftle", context);
   StopParams stop;
   stop.max_steps = most_steps, stop.closed = false;
-  // Nobody sees the ways themselves: the tolerance alone says how long steps may be.
+  // Nobody sees the ways themselves: only the tolerance limits the steps.
   IntegrationParams integration = p.integration;
   if (!integration.max_step) integration.max_step = 8 * integration.step;
   const TraceOptions options = trace_options(integration, stop, flow.largest_speed());
@@ -227,7 +230,7 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
       },
       p.geographic);
   if (gone > 0)
-    context.info(fmt::format("ftle: {:.3g} % of the particles start outside the flow or leave it within {:.4g}: there are holes",
+    context.info(fmt::format("ftle: {:.3g} % of the particles start outside the flow or leave it within {:.4g}: the result has holes there",
                              100 * double(gone) / double(all), std::abs(duration)));
   return out;
 }

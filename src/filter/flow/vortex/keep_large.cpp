@@ -14,7 +14,7 @@ namespace {
 
 DatasetPtr keep(const DatasetPtr& in, const std::vector<int64_t>& cells, std::string_view who, const Context& context) {
   if (cells.size() == in->cell_count()) return in;
-  if (cells.empty()) context.info(fmt::format("{}: nothing is large enough; min_length=0 keeps small pieces too", who));
+  if (cells.empty()) context.info(fmt::format("{}: no piece is large enough; min_length=0 keeps small ones too", who));
   return extract_cells(in, cells, who);
 }
 

@@ -47,8 +47,8 @@ constexpr Measure table[] = {
 }  // namespace
 
 void describe(Schema& s, VortexMeasuresParams& p) {
-  s("field", p.field, "Velocity; default: the active vector.").takes(fields::vectors);
-  s("measures", p.measures, "Which fields to make.");
+  s("field", p.field, "Velocity field; default: the active vectors.").takes(fields::vectors);
+  s("measures", p.measures, "Fields to compute.");
 }
 
 VortexMeasures vortex_measures_of(const Mat3& j, Vec3 u) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// vortex_measures: numbers that tell where and how a flow turns, of its velocity gradient J = S + W (strain and spin).
+// vortex_measures: measures of where and how a flow rotates, from its velocity gradient J = S + W (strain and spin).
 #pragma once
 #include <array>
 
@@ -47,7 +47,7 @@ struct VortexMeasuresParams {
 };
 void describe(Schema& s, VortexMeasuresParams& p);
 
-/// All of them at one place; 1/time each unless said otherwise.
+/// All of them at one place; 1/time each unless stated otherwise.
 struct VortexMeasures {
   Vec3 vorticity;              ///< curl u
   double vorticity_magnitude;  ///< |curl u|

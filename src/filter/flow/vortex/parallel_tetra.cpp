@@ -27,8 +27,8 @@ double largest(const Mat3& m) {
 }
 
 // Places t in (0, 1) of an edge where the fields are parallel. Each component of their cross product is a quadratic polynomial, whose
-// roots are tried; one may have a double root where another has a simple one, which is exact. Places beside a corner that is one itself
-// do not count.
+// roots are tried; one may have a double root where another has a simple one, which is exact. Points next to a corner that is one itself do
+// not count.
 int solve_edge(const Corner& p, const Corner& q, double nothing, double out[2]) {
   const Vec3 c00 = cross(p.a, p.b), c0 = cross(p.a, q.b) + cross(q.a, p.b), c11 = cross(q.a, q.b);
   const double most_a = std::max(p.most_a, q.most_a), most_b = std::max(p.most_b, q.most_b), near = 1e3 * nothing;
@@ -79,7 +79,7 @@ int solve_triangle(const Corner* c[3], Found out[3]) {
   return n;
 }
 
-// Is there a place in the tetrahedron where the fields have this angle? The null vector of a 3x4 matrix, by its minors.
+// Whether the fields have this angle somewhere in the tetrahedron: the null vector of a 3x4 matrix, by its minors.
 bool inside_at(const Corner* c[4], double la, double lb, double angle) {
   Vec3 d[4];
   for (int k = 0; k < 4; ++k) d[k] = c[k]->a * (std::cos(angle) / la) - c[k]->b * (std::sin(angle) / lb);
@@ -162,7 +162,7 @@ struct TetraPoints {
       add(1u << i | 1u << j, x, k);
     }
   }
-  // Inside of the face: not beside points on its edges, and not where a line lies in it, of which those are the ends.
+  // Inside of the face: not next to points on its edges, and not where a line lies in it, whose ends those are.
   void solve_on_face(int skip) {
     int t[3];
     for (int k = 0, m = 0; k < 4; ++k)
@@ -191,7 +191,7 @@ struct TetraPoints {
     }
   }
 
-  // Are the fields parallel half way between two points, and no third point there?
+  // Whether the fields are parallel half way between two points, with no third point there.
   bool straight(int i, int j) const {
     Vec3 a, b;
     double most_a = 0, most_b = 0, along = 0;

@@ -25,7 +25,7 @@ namespace {
 
 using namespace parallel;
 
-// Can the cross product of the two fields vanish between these corners? Its components are quadratic forms in the barycentric
+// Whether the cross product of the two fields can vanish between these corners. Its components are quadratic forms in the barycentric
 // coordinates: no, when all coefficients of one have the same sign. `at(i)`: the fields of corner i; `least`: what counts as nothing.
 template <class At>
 bool may_vanish(size_t n, double least, At&& at) {
@@ -57,7 +57,7 @@ size_t corner_count(const CellReader& reader) {
 }
 
 // The solid cells in which the fields may be parallel. Of their points: the largest lengths of both fields in those cells around, and
-// where the fields are parallel. Points of faces on which they are parallel everywhere (walls, where nothing moves) are none.
+// where the fields are parallel. Faces on which they are parallel everywhere (walls, where nothing moves) have no points.
 struct Around {
   std::vector<size_t> cells;
   bool solid = false;
@@ -237,8 +237,8 @@ ParallelLines parallel_lines(const DatasetPtr& data, std::span<const Vec3> a, st
   const CellReader proto(data);
   const Around around(proto, a, b, nothing, context);
   if (!around.solid)
-    fail_usage("lines where two vector fields are parallel need cells with a volume", "parallel_vectors",
-               "in a plane the counterpart is a point: critical_points");
+    fail_usage("lines along which two vector fields are parallel need cells with volume", "parallel_vectors",
+               "in a plane the counterpart is points: use critical_points");
   constexpr size_t grain = 1 << 10;
   std::vector<Work> parts((around.cells.size() + grain - 1) / grain);
   const auto points = int64_t(data->point_count());
@@ -342,7 +342,8 @@ namespace {
 
 DatasetPtr of_mesh(const DatasetPtr& given, const ParallelVectorsParams& p, Context& context) {
   if (p.b.empty())
-    fail_usage("there is no second vector field", "parallel_vectors", "b=FIELD names it; a=FIELD the first (default: the active vectors)");
+    fail_usage("there is no second vector field", "parallel_vectors",
+               "name it with b=FIELD, and the first with a=FIELD (default: the active vectors)");
   Field first = flow_field_of(*given, p.a.name, "parallel_vectors"), second = flow_field_of(*given, p.b.name, "parallel_vectors");
   const double nothing = std::max(parallel_within(first.array.type()), parallel_within(second.array.type()));
   const DatasetPtr in = with_whole_faces(given, {first, second}, context);

@@ -12,7 +12,7 @@
 
 namespace sg {
 
-/// Tetrahedra stand for all other solid cells: their faces in triangles (diagonals from the smallest id, so that neighbours agree) joined
+/// Tetrahedra represent all other solid cells: their faces in triangles (diagonals from the smallest id, so that neighbours agree) joined
 /// to the cell's middle, where fields are the mean of its corners. Curved cells count by their corners.
 struct ParallelPoint {
   Vec3 at;
@@ -37,7 +37,7 @@ struct ParallelLines {
 ParallelLines parallel_lines(const DatasetPtr& data, std::span<const Vec3> a, std::span<const Vec3> b, Context& context,
                              double nothing = 1e-9);
 
-/// For numbers of this type: rounding puts a line this far beside an edge that it runs along.
+/// For numbers of this type: rounding puts a line this far off an edge that it runs along.
 inline double parallel_within(ElementType t) { return t == ElementType::f64 ? 1e-9 : 1e-5; }
 
 /// As a SurfaceMesh of poly-lines; the fields of `data` at the points, cell fields as point fields, and `more`: one number a point.
@@ -51,7 +51,7 @@ struct ParallelVectorsParams {
   FieldName a, b;
 };
 inline void describe(Schema& s, ParallelVectorsParams& p) {
-  s("a", p.a, "First vector field; default: the active vector.").takes(fields::vectors);
+  s("a", p.a, "First vector field; default: the active vectors.").takes(fields::vectors);
   s("b", p.b, "Second vector field, parallel or opposite to the first on the lines.").takes(fields::vectors);
 }
 /// Poly-lines with the fields of the input and "parallel ratio" (a over b).

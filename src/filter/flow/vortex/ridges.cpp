@@ -21,13 +21,13 @@
 namespace sg {
 
 void describe(Schema& s, RidgesParams& p) {
-  s("field", p.field, "Scalar field of points; default: the active scalar.").takes(fields::point_scalars);
-  s("kind", p.kind, "Crests or troughs.");
-  s("limit", p.limit, "Ridges: only where the field is at least this; valleys: at most. Default: no limit.").unit("@field");
-  s("smooth", p.smooth, "Standard deviation, in cells, of the Gaussian that uniform and rectilinear grids are averaged with before.")
+  s("field", p.field, "Scalar point field; default: the active scalar.").takes(fields::point_scalars);
+  s("kind", p.kind, "Find crests (ridges) or troughs (valleys).");
+  s("limit", p.limit, "Ridges: smallest value of the field; valleys: largest. Default: no limit.").unit("@field");
+  s("smooth", p.smooth, "Standard deviation, in cells, of the Gaussian with which uniform and rectilinear grids are smoothed first.")
       .range(0, 100);
-  s("strength", p.strength, "Weakest curvature across that counts, as a part of the strongest.").range(0, 1);
-  s("min_length", p.min_length, "Smallest extent of a connected piece, as a part of the mesh's diagonal.").range(0, 1);
+  s("strength", p.strength, "Minimum curvature across the ridge, as a fraction of the largest.").range(0, 1);
+  s("min_length", p.min_length, "Minimum extent of a connected piece, as a fraction of the mesh's diagonal.").range(0, 1);
 }
 
 namespace {
@@ -48,8 +48,8 @@ int flat_axis(const DatasetPtr& in) {
   const Vec3 size = in->bounds().size();
   for (int a = 0; a < 3; ++a)
     if (size[a] <= 1e-9 * in->bounds().diagonal()) return a;
-  fail_usage("this mesh is a bent or tilted surface; ridges are found in flat meshes along two axes and in volumes", "ridges",
-             "resample it on a grid");
+  fail_usage("this mesh is a curved or tilted surface; ridges can be found only in flat meshes along two axes and in volumes", "ridges",
+             "resample it to a grid");
 }
 
 double mean_cell(const Dataset& d, int dimension, int flat) {
@@ -64,14 +64,14 @@ double mean_cell(const Dataset& d, int dimension, int flat) {
 double strength_at(const Height& x, int flat, double off) {
   const Eigen3 e = eigen_of(x.h);
   int least = 2;
-  if (flat >= 0) {  // the normal is no direction of the mesh
+  if (flat >= 0) {  // the normal is not a direction of the mesh
     double lowest = HUGE_VAL;
     for (int k = 0; k < 3; ++k)
       if (std::abs(e.vector[k][flat]) < 0.5 && e.value[k] < lowest) lowest = e.value[k], least = k;
   }
   if (!(e.value[least] < 0)) return 0;
-  // The gradient must be free of this eigenvector: Newton's step to the crest is short. (Where it is free of another one, the step is
-  // long, except beside a peak, where all of them meet.)
+  // The gradient must be free of this eigenvector: Newton's step to the crest is short. (Where it is separated from another one, the step
+  // is long, except next to a peak, where all meet.)
   if (std::abs(dot(x.g, e.vector[least])) > -off * e.value[least]) return 0;
   return -e.value[least];
 }
@@ -177,7 +177,7 @@ std::vector<int64_t> cells_on_ridges(const DatasetPtr& all, const RidgesParams& 
   const View<double> ha = all->fields().require(bend_name, Association::point).array.view<double>();
   const Array values = scalar_of(all->fields().require(field.name, Association::point), 0, ElementType::f64);
   const View<double> v = values.view<double>();
-  // A third of a cell off is on the crest; up to half of one counts beside such a place, so that a line does not break where it is sharp.
+  // A third of a cell off is on the crest; up to half of one counts next to such a point, so that a line does not break where it is sharp.
   strength.resize(all->point_count());
   std::vector<uint8_t> on(strength.size());
   parallel_for(strength.size(), 1 << 12, [&](size_t begin, size_t end) {
@@ -209,10 +209,11 @@ std::vector<int64_t> cells_on_ridges(const DatasetPtr& all, const RidgesParams& 
 
 DatasetPtr ridges(const DatasetPtr& in, const RidgesParams& p, Context& context) {
   const Field* found = p.field.empty() ? in->fields().active(1) : &in->fields().require(p.field.name);
-  if (!found) fail_usage("the data have no scalar field", "ridges");
+  if (!found) fail_usage("the data has no scalar field", "ridges");
   const Field field = *found;
   if (field.components() != 1 || field.association != Association::point)
-    fail_usage(fmt::format("field '{}' is no scalar on points", field.name), "ridges", "magnitude, component or cell_to_point make one");
+    fail_usage(fmt::format("field '{}' is not a scalar point field", field.name), "ridges",
+               "magnitude, component or cell_to_point can make one");
   const int dimension = mesh_dimension(*in);
   if (dimension < 2) fail_usage("a mesh of lines or points has no ridges", "ridges");
   const int flat = dimension == 2 ? flat_axis(in) : -1;

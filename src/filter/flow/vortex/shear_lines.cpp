@@ -12,9 +12,9 @@
 namespace sg {
 
 void describe(Schema& s, ShearLinesParams& p) {
-  s("family", p.family, "Which of the two directions.");
-  s("count", p.count, "Seeds of each family, about.").range(1, 1e7);
-  s("max_length", p.max_length, "Longest line; default: the diagonal of the data.").unit("length").positive();
+  s("family", p.family, "Which of the two shear directions.");
+  s("count", p.count, "Approximate number of seeds of each family.").range(1, 1e7);
+  s("max_length", p.max_length, "Maximum length of a line; default: the diagonal of the data.").unit("length").positive();
 }
 
 namespace {
@@ -25,7 +25,7 @@ const Field& of_ftle(const Dataset& d, const char* name, int components) {
   const Field* f = d.fields().find(name, Association::point);
   if (!f || f->components() != components)
     fail_usage(fmt::format("there is no point field '{}' of {} components", name, components), "shear_lines",
-               "the result of ftle on a flat grid of seeds");
+               "use the result of ftle on a flat grid of seeds");
   return *f;
 }
 
@@ -39,7 +39,7 @@ DatasetPtr one_family(const DatasetPtr& in, int sign, const ShearLinesParams& p,
     for (size_t i = begin; i < end; ++i) {
       const double l1 = std::sqrt(double(stretch(i, 0))), l2 = std::sqrt(double(stretch(i, 1)));
       Vec3 xi1(small(i, 0), small(i, 1), small(i, 2)), xi2(large(i, 0), large(i, 1), large(i, 2));
-      // An eigenvector has no sign: plus and minus are told apart by the turn from xi1 to xi2.
+      // An eigenvector has no sign: plus and minus are distinguished by the turn from xi1 to xi2.
       if (cross(xi1, xi2).z + cross(xi1, xi2).x + cross(xi1, xi2).y < 0) xi2 = -xi2;
       const Vec3 eta = xi1 * std::sqrt(l2 / (l1 + l2)) + xi2 * (sign * std::sqrt(l1 / (l1 + l2)));
       const SymTensor t = outer(eta);

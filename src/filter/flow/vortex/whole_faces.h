@@ -9,7 +9,7 @@
 namespace sg {
 
 /// An AMR grid of several patches as cells without hanging nodes (contouring::amr_cells_near), any other mesh as it is. Point fields are
-/// those of the finest patch at each corner; of the fields of cells that `vectors` names (three components at the most) there are point
+/// those of the finest patch at each corner; of the fields of cells that `vectors` names (three components at most) there are point
 /// fields besides, which keep linear fields linear; cells in which one of them is not finite are left out.
 DatasetPtr with_whole_faces(const DatasetPtr& in, const std::vector<Field>& vectors, Context& context);
 

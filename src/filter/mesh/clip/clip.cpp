@@ -40,7 +40,7 @@ DatasetPtr prepared(const DatasetPtr& in, double tolerance, std::string_view who
   if (is_lattice(in->mesh()) && d[0] > 1 && d[1] > 1 && d[2] > 1) return in;
   if (auto* m = in->as<UnstructuredMesh>()) {
     if (!has_curved_cells(*m)) return in;
-    ctx.info(fmt::format("{}: curved cells are made linear first", who));
+    ctx.info(fmt::format("{}: curved cells are linearised first", who));
     return tessellate(in, {.tolerance = tolerance, .max_level = 7}, ctx);
   }
   if (in->as<AmrGrid>()) {
@@ -132,9 +132,9 @@ Array numbers_of(const Dataset& in, const FieldName& name, int component, std::s
     });
   }
   if (f->association != Association::point)
-    fail_usage(fmt::format("field '{}' is not on the points", f->name), std::string(who),
-               f->association == Association::cell ? "move it there: cell_to_point; or keep whole cells: threshold"
-                                                   : "take a field of the points");
+    fail_usage(
+        fmt::format("field '{}' is not a point field", f->name), std::string(who),
+        f->association == Association::cell ? "convert it with cell_to_point, or keep whole cells with threshold" : "use a point field");
   *chosen = f;
   const bool wide = f->array.type() == ElementType::f64 || element_size(f->array.type()) > 2;
   return with_context(
@@ -177,7 +177,7 @@ Data clip(const DatasetPtr& in, const DatasetPtr& surface, const ClipParams& p, 
   if (!p.field.empty() || p.value) {
     const bool shape = surface || p.origin || p.position || p.axis != CutAxis::none || !p.sphere.empty() || !p.cylinder.empty() ||
                        !p.box.empty() || !p.quadric.empty() || !p.function.empty();
-    if (shape) fail_usage("a shape and a field are both given", "clip", "one of them at a time");
+    if (shape) fail_usage("both a shape and a field are given", "clip", "give only one of them");
     const Field* field = nullptr;
     Job job{mesh, numbers_of(*mesh, p.field, p.component, "clip", &field), {}, {}, ctx};
     const Range range = mesh->range(*field, p.component);

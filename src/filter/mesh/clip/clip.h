@@ -20,12 +20,13 @@ struct ClipParams : ImplicitParams {
 };
 inline void describe(Schema& s, ClipParams& p) {
   describe_implicit(s, p);
-  s("field", p.field, "Clips by the values of a point field in place of a shape.").takes(fields::on_points);
+  s("field", p.field, "Clip by the values of a point field instead of a shape.").takes(fields::on_points);
   s("component", p.component, "Component of the field; -1: the magnitude of a field of several.").at_least(-1);
-  s("value", p.value,
-    "With field (or alone, by the active scalar): what lies inside has at least this value; default: the middle of the range.")
+  s("value", p.value, "With field (or alone, for the active scalar): the inside has at least this value; default: the middle of the range.")
       .unit("@field");
-  s("keep", p.keep, "inside: behind the plane, in the shape, or at least the value; outside: the rest; both: a collection of the two.");
+  s("keep", p.keep,
+    "Part to keep. inside: behind the plane, within the shape, or at or above the value; outside: the rest; both: a collection of the "
+    "two.");
   describe_curved_tolerance(s, p.tolerance);
 }
 
@@ -53,8 +54,8 @@ struct IsovolumeParams {
 inline void describe(Schema& s, IsovolumeParams& p) {
   s("field", p.field, "Point field; default: the active scalar.").takes(fields::on_points);
   s("component", p.component, "Component of the field; -1: the magnitude of a field of several.").at_least(-1);
-  s("min", p.min, "Smallest value that is kept; default: no limit.").unit("@field");
-  s("max", p.max, "Largest value that is kept; default: no limit.").unit("@field");
+  s("min", p.min, "Smallest value to keep; default: no limit.").unit("@field");
+  s("max", p.max, "Largest value to keep; default: no limit.").unit("@field");
   describe_curved_tolerance(s, p.tolerance);
 }
 

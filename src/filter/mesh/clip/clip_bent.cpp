@@ -13,7 +13,7 @@ namespace sg::clipping {
 
 namespace {
 
-// Are the corners in one plane, but for the rounding of coordinates? The same from both sides.
+// Whether the corners are coplanar, up to rounding of the coordinates. The same from both sides.
 bool is_flat(std::array<std::pair<int64_t, Vec3>, 4> p, double rounding) {
   std::sort(p.begin(), p.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   const Vec3 a = p[1].second - p[0].second, b = p[2].second - p[0].second, c = p[3].second - p[0].second;

@@ -35,7 +35,7 @@ Array renumbered(const Array& ids, const std::vector<int64_t>& number) {
   return Array::from_vector(std::move(out));
 }
 
-// Points of the same place and name become one. A place alone would also close cracks that the input has.
+// Points of the same place and name become one. Positions alone would also close cracks of the input.
 DatasetPtr welded(const DatasetPtr& in) {
   using Key = std::array<uint64_t, 4>;
   const size_t n = in->point_count();
@@ -55,15 +55,14 @@ DatasetPtr welded(const DatasetPtr& in) {
   }
   for (size_t i = 0; i < n; ++i) {
     if (number[i] == int64_t(i)) number[i] = int64_t(kept.size()), kept.push_back(int64_t(i));
-    else number[i] = number[size_t(number[i])];  // the first one stands before and has its number
+    else number[i] = number[size_t(number[i])];  // the first one precedes it and has its number
   }
   m.points.xyz = gather(m.points.xyz, kept);
   m.cells.connectivity = renumbered(m.cells.connectivity, number);
   if (m.faces.size() > 0) m.faces.connectivity = renumbered(m.faces.connectivity, number);
   DatasetParts out;
   out.mesh = std::move(m);
-  for (const Field& f : in->fields())
-    out.fields.add(f.association == Association::point ? f.with(gather(f.array, kept)) : f);
+  for (const Field& f : in->fields()) out.fields.add(f.association == Association::point ? f.with(gather(f.array, kept)) : f);
   out.time = in->time();
   return make_dataset(std::move(out));
 }

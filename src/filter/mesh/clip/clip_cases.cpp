@@ -29,7 +29,7 @@ std::vector<std::array<double, 3>> places_of(CellType type) {
   }
 }
 
-// Groups of polygons that hang together by edges.
+// Groups of polygons that are connected by edges.
 std::vector<std::vector<const Polygon*>> components(const std::vector<Polygon>& polygons) {
   std::vector<std::vector<const Polygon*>> r;
   std::vector<char> seen(polygons.size());
@@ -75,7 +75,7 @@ void add_cone(const Polygon& p, uint8_t apex, Region& out) {
   else add_piece(out, CellType::tetra, {p[0], p[2], p[1], apex});
 }
 
-// Is the polyhedron a standard cell? Its faces look outward.
+// Whether the polyhedron is a standard cell. Its faces look outward.
 bool standard_cell(const std::vector<const Polygon*>& polygons, size_t vertices, Piece& out) {
   size_t quads = 0;
   for (const Polygon* p : polygons) quads += p->size() == 4;
@@ -183,7 +183,7 @@ void ClipTable::divide(std::span<const uint8_t> face, uint32_t pattern, bool joi
 
 namespace {
 
-// Chains of edges that have no partner. Where corners are zero a chain can come to a point again: each round trip is a loop of its own.
+// Chains of edges that have no partner. Where corners are zero a chain can return to a point: each round trip is a loop of its own.
 std::vector<Polygon> open_loops(const std::vector<Polygon>& polygons) {
   std::vector<Edge> open;
   for (const Polygon& p : polygons)

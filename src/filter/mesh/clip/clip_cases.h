@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a cell falls apart along a function: solid pieces for the corners on either side, made from the cell's faces alone.
+// How a cell is split along a function: solid pieces for the corners on either side, made only from the cell's faces.
 //
-// A corner is inside when its value is >= 0. Each face is divided into triangles and quads by its own values alone, so that the cells on
-// both sides of it divide it alike:
+// A corner is inside when its value is >= 0. Each face is divided into triangles and quads only by its own values, so that the cells on
+// both sides divide it alike:
 //
 //   one corner cut off        two and two           opposite corners joined
 //   d--e..o                   D----C                D..,--C
@@ -70,9 +70,9 @@ class ClipTable {
   const Sides& at(uint32_t variant) const { return sides_[variant]; }
   /// The same where some values are zero (these corners are in the pattern): cuts at them are the corners themselves.
   void sides(uint32_t pattern, uint32_t joined, uint32_t zero, Sides& out) const;
-  /// Can some piece over an inner point be inside out, for the values `h` of the corners? `places` are those of the corners; without them,
-  /// those of the regular cell. Parts of the cell's own faces never are, as these are flat.
-  /// `shares`: for each edge where its cut is moved to, from its first corner on; without them where h is zero. Means over cuts stay.
+  /// Whether some piece over an inner point can be inside out, for the values `h` of the corners. `places` are those of the corners;
+  /// without them, those of the regular cell. Parts of the cell's own faces never are, as these are flat. `shares`: for each edge where its
+  /// cut is moved to, from its first corner on; without them where h is zero. Means over cuts stay.
   bool folded(const Sides& sides, const double* h, const Vec3* places = nullptr, const double* shares = nullptr) const;
   /// Pieces that are never inside out: the faces' parts over the middle of the cell, cut along the rays to it. More of them.
   void star_sides(uint32_t pattern, uint32_t joined, uint32_t zero, const double* h, Sides& out) const;
@@ -106,7 +106,7 @@ class ClipTable {
 /// The table of a tetra, pyramid, wedge, voxel or hexahedron, made on first use; null for all other types.
 const ClipTable* clip_table(CellType type);
 
-/// Does the bilinear function on a face with alternating signs join its corners >= 0? Values in order around (Nielson, Hamann 1991).
+/// Whether the bilinear function on a face with alternating signs joins its corners >= 0. Values in order around (Nielson, Hamann 1991).
 inline bool joined_across(double a, double b, double c, double d) { return a >= 0 ? a * c >= b * d : b * d >= a * c; }
 
 }  // namespace sg::clipping

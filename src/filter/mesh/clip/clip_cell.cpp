@@ -298,7 +298,7 @@ void CellClipper::clip_ring(const Ring& ring, int level, bool side, bool divided
   const size_t m = edges.size();
   std::vector<uint16_t> cuts;
   for (const size_t k : edges) cuts.push_back(crossing(k));
-  // From each crossing where the outline leaves our side, the one where it goes on.
+  // For each crossing where the outline leaves our side, the one where it continues.
   std::vector<size_t> next(m, 0);
   if (m == 2) next = {1, 0};
   else if (n == 4) {

@@ -77,7 +77,7 @@ inline double share_of(uint64_t name, const Values& values, const Keep& keep) {
 /// One per thread. Results stay valid until the next call.
 class CellClipper {
  public:
-  /// `position` is asked for polygons that a level crosses more than twice, and for cells with pieces that could be inside out; without
+  /// `position` is called for polygons that a level crosses more than twice, and for cells with pieces that could be inside out; without
   /// it the latter are taken for regular ones, as those of grids along the axes are. `rounding`: of coordinates; faces that are flat but
   /// for it count as flat.
   CellClipper(const Keep& keep, std::function<Vec3(size_t)> position, double rounding = 0)
@@ -85,7 +85,7 @@ class CellClipper {
   /// Cuts will be moved along their edges: pieces must not be inside out there either.
   void follow(const CurvedFunction& curved, std::function<Vec3(size_t)> position) { curved_ = &curved, mesh_place_ = std::move(position); }
   /// A tetrahedron, pyramid, wedge, voxel or hexahedron. Values in the order of the ids.
-  /// `folded`: what folded() said of this cell before, or -1; it costs a look at each piece.
+  /// `folded`: an earlier result of folded() for this cell, or -1; it costs a look at each piece.
   const CellPieces& solid(const ClipTable& table, const int64_t* ids, const double* values, int folded = -1);
   bool folded() const { return folded_; }
   /// Was the last solid split because a level crosses a face that is not flat? Then its inner vertices may lie on faces, and its

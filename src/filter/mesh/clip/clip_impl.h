@@ -21,7 +21,7 @@ struct Job {
   }
 };
 
-/// A value and the levels: bits of it, and what the bits of a cell's corners joined by `or` say.
+/// A value and the levels: its bits, and the meaning of the `or` of a cell's corner bits.
 enum Side : uint8_t { side_kept = 1, side_low = 2, side_high = 4, side_missing = 8, side_on_low = 16, side_on_high = 32 };
 inline uint8_t side_of(double value, const Keep& k) {
   if (value != value) return side_missing;

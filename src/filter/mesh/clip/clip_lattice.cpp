@@ -231,7 +231,7 @@ class LatticeClip {
     }
   }
 
-  // Are faces that the level crosses not flat? Fills in the places of the corners in the order of the table.
+  // Whether faces that the level crosses are not flat. Fills in the positions of the corners in the order of the table.
   bool has_bent_faces(size_t i, size_t j, size_t k, Vec3* places) const {
     int64_t ids[8];
     double v[8];

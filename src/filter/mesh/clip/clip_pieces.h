@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pieces of cut cells on their way from what a chunk counts to what it writes.
+// Pieces of cut cells, between a chunk's counting and writing passes.
 #pragma once
 #include "filter/mesh/clip/clip_impl.h"
 
@@ -88,7 +88,7 @@ void allocate(Build& b, size_t whole_cells, size_t whole_ids, const PieceCounts&
 /// Lists of `ids` of the pieces: from first_inner on they are inner vertices.
 void merge_shared(Build& b, size_t first_inner, std::span<const std::span<int32_t>> ids);
 
-/// Of coordinates, so that faces that are flat but for it can be told.
+/// Rounding error of coordinates, to recognise faces that are flat up to it.
 double rounding_of(const Points& points, const Dataset& mesh);
 
 }  // namespace sg::clipping

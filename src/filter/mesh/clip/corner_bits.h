@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the corners of cells say together: a byte per point joined over each cell.
+// Combined state of a cell's corners: a byte per point joined over each cell.
 #pragma once
 #include <cstdint>
 

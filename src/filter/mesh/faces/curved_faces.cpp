@@ -12,7 +12,7 @@ namespace {
 constexpr double field_tolerance = 4;  // times the tolerance: colours are coarser than shapes
 constexpr size_t grain = 256;
 
-// Is a field one that pictures blend? Numberings and weights are not.
+// Whether pictures may interpolate a field. Numberings and weights are not interpolated.
 bool blends(const Field& f) {
   return f.association == Association::point && is_float(f.array.type()) && f.role != Role::global_ids && f.role != Role::labels &&
          f.name != "RationalWeights";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Curved faces and curves of high-order cells, split by their own shape functions as finely as a tolerance asks.
 //
-// Each edge decides by its own nodes alone into how many segments it goes: its order times a power of two, at most 32; two cells that
+// The number of segments of each edge depends only on its own nodes: its order times a power of two, at most 32; two cells that
 // share an edge therefore agree. A face is a regular grid of its finest need; on an edge with fewer segments the grid's points move to the
 // nearest point that the edge has, so that no crack opens. Nodes stay points under their own number; new points are numbered behind
 // the points of the mesh.
@@ -76,7 +76,7 @@ class CurvedSkin {
   void merge(std::vector<SurfaceChunk>& chunks, bool outlines) const;
   /// Points of the mesh and new ones together.
   size_t point_count() const { return points_; }
-  /// Are there Bezier control points, which lie beside the surface?
+  /// Whether there are Bezier control points, which lie off the surface.
   bool moves_nodes() const { return !bezier_nodes_.empty(); }
   /// A surviving point as a blend of points of the mesh (appended): itself, a Bezier node's place on the surface, or a new point.
   void blend(int64_t number, std::vector<int64_t>& ids, std::vector<double>& weights) const;
@@ -131,7 +131,7 @@ class CurvedSkin {
     Array array;
     double scale;
   };
-  std::vector<Scaled> fields_;  // of those that say how fine to split
+  std::vector<Scaled> fields_;  // of those that determine the subdivision
   Array rational_;
   double scale_ = 1;
   size_t points_ = 0;

@@ -26,7 +26,7 @@ uint64_t point_hash(uint32_t id) {
 }
 
 constexpr size_t slots_per_point = 4;
-constexpr size_t ahead = 384;  // ids that are asked for ahead of their use
+constexpr size_t ahead = 384;  // prefetch distance in ids
 constexpr uint32_t no_point = UINT32_MAX;
 
 // A face that may have no partner: its sorted corners, in a pool, and its mark.

@@ -15,12 +15,12 @@ struct FacesParams {
 
 inline void describe(Schema& s, FacesParams& p) {
   s("tolerance", p.tolerance,
-    "Largest distance between curved cells and their triangles, as a share of the mesh's diagonal; point fields: four times that share "
+    "Largest distance between curved cells and their triangles, as a share of the mesh's diagonal; for point fields four times that share "
     "of their range.")
       .positive();
-  s("original_cell", p.original_cell, "Adds the number of the input cell to every face as cell field 'original_cell'.");
+  s("original_cell", p.original_cell, "Add the number of each face's input cell as cell field 'original_cell'.");
   s("original_point", p.original_point,
-    "Adds the number of the input point to every point as point field 'original_point' (-1: a new point on a curved cell).");
+    "Add the number of each point's input point as point field 'original_point' (-1: a new point on a curved cell).");
 }
 
 /// External faces of any mesh as a SurfaceMesh. A face that two solid cells share disappears, also a large one with several small

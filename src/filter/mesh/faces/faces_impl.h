@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of faces(), one per family of meshes. Each returns chunks in an order that depends on the mesh alone.
+// The parts of faces(), one per family of meshes. Each returns chunks in an order that depends only on the mesh.
 #pragma once
 #include "base/context.h"
 #include "filter/mesh/faces/curved_faces.h"

@@ -23,7 +23,7 @@ void add_side(SurfaceChunk& out, const std::array<int64_t, 3>& points, const std
   out.polygons.add(quad, id);
 }
 
-// Is the cell at (i, j, k) mirrored? Affine and separable lattices: all are or none.
+// Whether the cell at (i, j, k) is mirrored. Affine and separable lattices: all are or none.
 bool is_mirrored(const LatticeView& v, int64_t i, int64_t j, int64_t k) {
   auto at = [&](int64_t a, int64_t b, int64_t c) { return v.position(size_t(i + a), size_t(j + b), size_t(k + c)); };
   Vec3 axis[3];  // sums of the four edges along each axis

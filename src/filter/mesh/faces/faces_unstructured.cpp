@@ -39,7 +39,7 @@ class ChunkWalk {
     }
   }
 
-  // Outer cells lie apart in memory: their lists, then their points, are asked for some cells ahead.
+  // Outer cells are scattered in memory: their lists, then their points, are prefetched some cells ahead.
   void expect_cell(size_t cell) const {
     const size_t at = cells_.begin(cell) * (cells_.connectivity.wide ? 8 : 4);
     __builtin_prefetch(static_cast<const char*>(cells_.connectivity.data) + at);
@@ -78,7 +78,7 @@ class ChunkWalk {
     for (int64_t id : ids) corner_.push_back(at_[size_t(id)]);
   }
 
-  // Which faces of a polyhedron look inward as they are listed: told by their edges and the volume, as it need not be convex.
+  // Which faces of a polyhedron look inward as they are listed: decided by their edges and the volume, since the cell need not be convex.
   void turn_polyhedron(size_t n) {
     numbers_.clear(), triangles_.clear(), face_of_.clear(), corner_.clear();
     std::vector<size_t> first(n);

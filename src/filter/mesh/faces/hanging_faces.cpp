@@ -15,7 +15,7 @@ namespace {
 
 constexpr uint32_t none = UINT32_MAX;
 constexpr double off_surface = 1e-4;  // of the larger face's size
-constexpr double off_height = 0.1;    // of the smaller face's height: what lies farther off is another face beside the larger one
+constexpr double off_height = 0.1;    // of the smaller face's height: what lies farther away is another face next to the larger one
 constexpr double off_border = 1e-3;   // in its parameters
 
 struct OuterFace {
@@ -158,8 +158,8 @@ class HangingFaces {
       for (size_t k = 1; k + 1 < ids.size(); ++k) area += cross(at_[size_t(ids[k])] - o, at_[size_t(ids[k + 1])] - o);
       return area;
     };
-    // Which way is out: faces that go round all alike sum to nothing, and the sign of their volume tells. Others by the middle of the cell,
-    // which need not lie behind each face of a cell that is not convex.
+    // Which way is out: consistently oriented faces sum to zero, and the sign of their volume gives the orientation. Others by the middle
+    // of the cell, which need not lie behind each face of a cell that is not convex.
     Vec3 middle, sum;
     double volume = 0, total = 0;
     for (size_t i = cells_.begin(cell); i < cells_.end(cell); ++i) middle += at_[size_t(cells_.connectivity[i])] - origin;

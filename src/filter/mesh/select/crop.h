@@ -13,7 +13,7 @@ struct CropParams {
 
 inline void describe(Schema& s, CropParams& p) {
   s("region", p.region, "First and last point along x, y, z: i0,i1,j0,j1,k0,k1, counted from 0; default: all.").at_least(0);
-  s("stride", p.stride, "Keeps every n-th point: one number or one per axis.").at_least(1);
+  s("stride", p.stride, "Keep every n-th point: one number or one per axis.").at_least(1);
 }
 
 /// Points of a uniform, rectilinear or curvilinear grid in an index box, every n-th: crop_lattice() of data/lattice_crop.h.

@@ -30,7 +30,7 @@ std::vector<uint8_t> chosen(const DatasetPtr& in, const ExtractParams& p, size_t
   const Association on = p.of == IdsOf::cell && !in->as<PointCloud>() ? Association::cell : Association::point;
   const Field& f = in->fields().require(p.by.name, on);
   if (f.components() != 1)
-    fail_usage(fmt::format("field '{}' has {} components", f.name, f.components()), "extract by", "ids are single numbers");
+    fail_usage(fmt::format("field '{}' has {} components", f.name, f.components()), "extract by", "ids must be single numbers");
   const std::unordered_set<int64_t> wanted(p.ids.begin(), p.ids.end());
   for (size_t i = 0; i < count; ++i) {
     const double v = f.array.get(i);
@@ -49,7 +49,7 @@ void keep_region(const DatasetPtr& in, const ExtractParams& p, std::vector<uint8
   const ImplicitFunction f = implicit_function(p.region, in, nullptr, "extract", ctx);
   CellReader reader(in);
   if (in->as<AmrGrid>()) {
-    if (!f.evaluate) fail_usage("a function of fields is not known on AMR points", "extract function", "use x, y, z alone");
+    if (!f.evaluate) fail_usage("a function of fields cannot be evaluated at AMR points", "extract function", "use only x, y, z");
     for (size_t c = 0; c < yes.size(); ++c) {
       reader.open(c);
       size_t inside = 0;
@@ -91,7 +91,7 @@ void keep_types(const DatasetPtr& in, const std::vector<std::string>& names, std
 
 void keep_levels(const DatasetPtr& in, const std::vector<int64_t>& levels, std::vector<uint8_t>& yes) {
   const AmrGrid* g = in->as<AmrGrid>();
-  if (!g) fail_usage(fmt::format("a {} mesh has no levels", in->kind()), "extract levels", "levels are of AMR grids");
+  if (!g) fail_usage(fmt::format("a {} mesh has no levels", in->kind()), "extract levels", "only AMR grids have levels");
   std::vector<uint8_t> here(yes.size(), 0);
   for (const int64_t l : levels) {
     if (l < 0 || size_t(l) >= g->levels.size())
@@ -109,7 +109,7 @@ void keep_levels(const DatasetPtr& in, const std::vector<int64_t>& levels, std::
 DatasetPtr extract(const DatasetPtr& in, const ExtractParams& p, Context& ctx) {
   const bool region = has_region(p.region);
   if (p.ids.empty() && !region && p.types.empty() && p.levels.empty())
-    fail_usage("no numbers are given", "extract ids", "like ids=3,7,12; or a region (box=...), types, levels");
+    fail_usage("nothing is selected", "extract ids", "give e.g. ids=3,7,12, or a region (box=...), types or levels");
   const bool cloud = in->as<PointCloud>();
   const bool by_points = p.of == IdsOf::point && !cloud;
   const size_t cells = cloud ? in->point_count() : in->cell_count();
@@ -138,7 +138,7 @@ Data extract_blocks(const Data& in, const ExtractParams& p, Context& ctx) {
   Data chosen = in;
   if (!p.blocks.empty()) {
     const auto* c = std::get_if<CollectionPtr>(&in);
-    if (!c) fail_usage("the input is no collection", "extract blocks", "leave blocks out");
+    if (!c) fail_usage("the input is not a collection", "extract blocks", "leave out blocks");
     std::vector<std::string> names;
     for_each_dataset(in, [&](const std::string& name, const DatasetPtr&) { names.push_back(name); });
     for (const auto& part : (*c)->parts) names.push_back(part.name);

@@ -23,22 +23,22 @@ struct ExtractParams {
   std::vector<std::string> blocks = {};
 };
 inline void describe(Schema& s, ExtractParams& p) {
-  s("ids", p.ids, "Numbers of cells or points, counted from 0; or values of the field `by`.");
-  s("of", p.of, "What the numbers are of; cells of chosen points are those that use one of them.");
-  s("by", p.by, "Field of whole numbers that holds the ids (global ids, block or material numbers); default: the places in the file.")
+  s("ids", p.ids, "Numbers of cells or points, counted from 0; or values of the field 'by'.");
+  s("of", p.of, "Whether the numbers are of cells or points; cells of selected points are those that use one of them.");
+  s("by", p.by, "Integer field that holds the ids (global ids, block or material numbers); default: the order in the file.")
       .takes(fields::scalars);
-  s("invert", p.invert, "Keeps the others.");
+  s("invert", p.invert, "Keep the others instead.");
   describe_implicit(s, p.region);
-  s("all_points", p.all_points, "With a region: a cell is chosen when all of its points lie in it (behind the plane), not just one.");
-  s("types", p.types, "Cells of these types, like Tetra,Hexahedron.");
-  s("levels", p.levels, "Cells of these levels of an AMR grid, 0 the coarsest.").at_least(0);
-  s("blocks", p.blocks, "Parts of a collection by name, path or number.");
+  s("all_points", p.all_points, "With a region: select a cell only if all its points lie in it (behind the plane), not just one.");
+  s("types", p.types, "Cell types to select, e.g. Tetra,Hexahedron.");
+  s("levels", p.levels, "Levels of an AMR grid to select; 0 is the coarsest.").at_least(0);
+  s("blocks", p.blocks, "Parts of a collection to select, by name, path or number.");
 }
 
 /// The chosen cells as a mesh of their own (see extract_cells), in input order, with all fields. With of=point: the cells that use one
 /// of the points; of a PointCloud the points. Of several conditions (ids, a region, types, levels) all must hold.
-/// Throws Error(usage) when there is none, numbers that are not there (without `by`), and
-/// for a field `by` of several components or on another place than `of`.
+/// Throws Error(usage) when nothing is selected, for nonexistent numbers (without `by`), and for a field `by` of several components or on
+/// an association other than `of`.
 DatasetPtr extract(const DatasetPtr& in, const ExtractParams& p, Context& ctx);
 /// The parts of a collection that `blocks` names (all where it is empty), by name, path of names or number among the top parts; those of
 /// which something is left after extract(), when there are other conditions.

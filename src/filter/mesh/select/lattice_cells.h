@@ -69,7 +69,7 @@ struct BitRanks {
   bool has(size_t row, size_t i) const { return (*bits)[row + (i >> 6)] >> (i & 63) & 1; }
 };
 
-/// Writes the connectivity (eight ids a cell) and, where asked for, the cell numbers of the set bits of the cell rows [first, last).
+/// Writes the connectivity (eight ids per cell) and, if requested, the cell numbers of the set bits of the cell rows [first, last).
 void write_lattice_cells(const BitRows& g, const LatticeCellKind& kind, const Bits& cells, const BitRanks& points, size_t first_row,
                          size_t last_row, int32_t* connectivity, uint32_t* source);
 /// Values, and positions, of the points whose bits are set, one after the other. Parallel.

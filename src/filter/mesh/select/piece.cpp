@@ -128,7 +128,7 @@ Data cut(const Data& data, int pieces, Context& context) {
 }  // namespace
 
 Data in_pieces(const Data& data, int pieces, Context& context) {
-  if (pieces < 1) fail_usage(fmt::format("{} pieces", pieces), "pieces", "at least 1");
+  if (pieces < 1) fail_usage(fmt::format("{} pieces", pieces), "pieces", "give at least 1");
   return pieces == 1 ? data : cut(data, pieces, context);
 }
 

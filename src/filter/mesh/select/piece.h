@@ -14,9 +14,9 @@ struct PieceParams {
 };
 
 inline void describe(Schema& s, PieceParams& p) {
-  s("piece", p.piece, "Which piece, counted from 0.").at_least(0);
+  s("piece", p.piece, "Piece to take, counted from 0.").at_least(0);
   s("pieces", p.pieces, "Number of pieces.").at_least(1);
-  s("ghost_levels", p.ghost_levels, "Layers of cells of the neighbours, marked as ghosts.").at_least(0);
+  s("ghost_levels", p.ghost_levels, "Layers of neighbouring cells to add, marked as ghosts.").at_least(0);
 }
 
 /// Piece `piece` of `pieces`: the own cells of all pieces together are the cells of the mesh, each once. Grids are cut along their

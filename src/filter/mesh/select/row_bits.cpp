@@ -39,7 +39,7 @@ namespace {
 SG_ROW_KERNELS(float)
 SG_ROW_KERNELS(double)
 
-// The largest T that is not above v and the smallest that is not below it: x > v says the same as x > floor_of(v).
+// The largest T that is not above v and the smallest that is not below it: x > v is equivalent to x > floor_of(v).
 template <class T>
 T floor_of(double v) {
   const T t = T(v);

@@ -26,14 +26,14 @@ using Ranges = std::vector<std::pair<double, double>>;
 
 Ranges ranges_of(const ThresholdParams& p) {
   if (p.ranges.empty()) return {{p.min.value_or(-HUGE_VAL), p.max.value_or(HUGE_VAL)}};
-  if (p.min || p.max) fail_usage("ranges and min or max are both given", "threshold", "put all limits into ranges");
+  if (p.min || p.max) fail_usage("ranges is given together with min or max", "threshold", "put all limits into ranges");
   if (p.ranges.size() % 2 != 0)
-    fail_usage(fmt::format("needs pairs of numbers, not {}", p.ranges.size()), "threshold ranges", "like ranges=0,1,5,9");
+    fail_usage(fmt::format("needs pairs of numbers, not {}", p.ranges.size()), "threshold ranges", "write e.g. ranges=0,1,5,9");
   Ranges r;
   for (size_t i = 0; i < p.ranges.size(); i += 2) {
     if (!(p.ranges[i] <= p.ranges[i + 1]))
       fail_usage(fmt::format("the range {} to {} is empty", short_number(p.ranges[i]), short_number(p.ranges[i + 1])), "threshold ranges",
-                 "smaller number first");
+                 "give the smaller number first");
     r.emplace_back(p.ranges[i], p.ranges[i + 1]);
   }
   return r;
@@ -43,8 +43,8 @@ Ranges ranges_of(const ThresholdParams& p) {
 std::vector<uint8_t> in_range(const Field& field, const ThresholdParams& p, const Ranges& ranges) {
   const int components = field.components();
   if (p.component >= components)
-    fail_usage(fmt::format("field '{}' has {} components, not component {}", field.name, components, p.component), "threshold",
-               components == 1 ? "leave component out" : fmt::format("0 to {}, or -1 for the magnitude", components - 1));
+    fail_usage(fmt::format("field '{}' has {} components; there is no component {}", field.name, components, p.component), "threshold",
+               components == 1 ? "leave out component" : fmt::format("0 to {}, or -1 for the magnitude", components - 1));
   std::vector<uint8_t> r(field.array.count());
   const bool magnitude = p.component < 0 && components > 1;
   const int c = std::max(p.component, 0);
@@ -70,7 +70,7 @@ std::vector<uint8_t> in_range(const Field& field, const ThresholdParams& p, cons
   return r;
 }
 
-// Does every point of the cell (or any) pass?
+// Whether every point of the cell (or any) passes.
 template <class ForEachPoint>
 bool passes(bool all, const std::vector<uint8_t>& ok, ForEachPoint for_each) {
   size_t points = 0, good = 0;
@@ -132,7 +132,7 @@ const Field& usable(const Field& field) {
 std::vector<const Field*> chosen_fields(const Dataset& in, const ThresholdParams& p) {
   std::vector<const Field*> r;
   if (!p.fields.empty()) {
-    if (!p.field.empty()) fail_usage("field and fields are both given", "threshold", "name all in fields");
+    if (!p.field.empty()) fail_usage("both field and fields are given", "threshold", "name them all in fields");
     for (const std::string& name : p.fields)
       r.push_back(&usable(with_context("threshold", [&]() -> const Field& { return in.fields().require(name); })));
     return r;
@@ -202,7 +202,7 @@ DatasetPtr threshold(const DatasetPtr& in, const ThresholdParams& p, Context& ct
   const Field& field = *fields[0];
   auto tell = [&](const DatasetPtr& out) {
     if (out->cell_count() == 0 && (!out->as<PointCloud>() || out->point_count() == 0))
-      ctx.info(fmt::format("threshold: nothing is left, '{}' runs from {} to {}", field.name, short_number(in->range(field).lo),
+      ctx.info(fmt::format("threshold: nothing is left; '{}' ranges from {} to {}", field.name, short_number(in->range(field).lo),
                            short_number(in->range(field).hi)));
     return out;
   };

@@ -20,19 +20,18 @@ struct ThresholdParams {
 inline void describe(Schema& s, ThresholdParams& p) {
   s("field", p.field, "Point or cell field to compare; default: the active scalar.");
   s("component", p.component, "Component of the field; -1: the magnitude of a field of several.").at_least(-1);
-  s("min", p.min, "Smallest value that is kept; default: no limit.").unit("@field");
-  s("max", p.max, "Largest value that is kept; default: no limit.").unit("@field");
-  s("all_points", p.all_points, "With a point field: a cell stays when all of its points are in range, not just one.");
-  s("invert", p.invert, "Keeps the cells that would go.");
-  s("ranges", p.ranges, "Several ranges in place of min and max: lo,hi,lo,hi,... ; a value in any of them is kept.").unit("@field");
-  s("fields", p.fields,
-    "Several fields in place of one, all of points or cells alike or mixed: a cell stays when each of them lets it stay.");
+  s("min", p.min, "Smallest value to keep; default: no limit.").unit("@field");
+  s("max", p.max, "Largest value to keep; default: no limit.").unit("@field");
+  s("all_points", p.all_points, "With a point field: keep a cell only if all its points are in range, not just one.");
+  s("invert", p.invert, "Keep the cells that would be removed instead.");
+  s("ranges", p.ranges, "Several ranges instead of min and max: lo,hi,lo,hi,...; values in any of them are kept.").unit("@field");
+  s("fields", p.fields, "Several fields instead of one, of points, cells or both: a cell is kept if it passes for each of them.");
 }
 
 /// Keeps the cells (of a PointCloud: the points) whose value lies in [min, max], or in one of several ranges, for each of the fields. NaN
 /// is in no range; hidden, refined and duplicate cells never stay, inverted or not. A SurfaceMesh stays one, a PointCloud stays one, every
 /// other kind becomes an UnstructuredMesh. Only used points are kept; all fields are carried, polyhedra keep their faces. Throws
-/// Error(usage) for unknown fields, fields of the whole, an empty range (min > max), ranges that are no pairs. O(cells), parallel.
+/// Error(usage) for unknown fields, fields of the whole, an empty range (min > max), ranges that are not pairs. O(cells), parallel.
 DatasetPtr threshold(const DatasetPtr& in, const ThresholdParams& p, Context& ctx);
 
 }  // namespace sg

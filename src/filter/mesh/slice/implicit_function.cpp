@@ -56,7 +56,7 @@ ImplicitFunction plane_of(const ImplicitParams& p, const Dataset& in, std::strin
   if (p.position && !shorthand)
     fail_usage("position needs an axis", std::string(who), fmt::format("write axis=z position={}", short_number(*p.position)));
   if (shorthand && p.origin)
-    fail_usage("axis and origin say the same thing twice", std::string(who), "give axis and position, or origin and normal");
+    fail_usage("axis and origin are both given", std::string(who), "give either axis and position, or origin and normal");
   Vec3 origin = p.origin.value_or(bounds.empty() ? Vec3() : bounds.center()), normal = p.normal;
   if (shorthand) {
     const int a = axis_number(p.axis);
@@ -66,7 +66,7 @@ ImplicitFunction plane_of(const ImplicitParams& p, const Dataset& in, std::strin
   }
   normal = unit(normal, who, "normal");
   for (int a = 0; a < 3; ++a)
-    if (!std::isfinite(origin[a])) fail_usage("the plane's place is not finite", std::string(who));
+    if (!std::isfinite(origin[a])) fail_usage("the plane's position is not finite", std::string(who));
   return plane_function(origin, normal, bounds);
 }
 
@@ -96,7 +96,7 @@ ImplicitFunction expression(const std::string& text, const DatasetPtr& in, Conte
   } catch (const Error&) {  // it names fields: linear between the points of the mesh
     const DatasetPtr values = calc(in, p, ctx);
     r.known = values->fields().require("f", Association::point).array.converted(ElementType::f64);
-    if (r.known.components() != 1) fail_usage("the expression gives a vector", "function", "give a single number, like mag(v)-1");
+    if (r.known.components() != 1) fail_usage("the expression yields a vector", "function", "it must yield a single number, e.g. mag(v)-1");
   }
   return r;
 }
@@ -171,29 +171,29 @@ ImplicitFunction implicit_function(const ImplicitParams& p, const DatasetPtr& in
   if (!p.function.empty()) given.push_back("function");
   if (surface) given.push_back("a second mesh");
   if (p.origin || p.position || p.axis != CutAxis::none) given.push_back("a plane");
-  if (given.size() > 1) fail_usage(fmt::format("{} and {} are both given", given[0], given[1]), std::string(who), "one shape at a time");
+  if (given.size() > 1) fail_usage(fmt::format("{} and {} are both given", given[0], given[1]), std::string(who), "give only one shape");
   if (surface) return distance_from(surface, who, ctx);
   if (!p.function.empty()) return with_context(fmt::format("{} function", who), [&] { return expression(p.function, in, ctx); });
   if (!p.sphere.empty()) {
-    need(p.sphere, 4, who, "sphere", "x,y,z,radius like 0,0,0,1");
+    need(p.sphere, 4, who, "sphere", "give x,y,z,radius, e.g. 0,0,0,1");
     const Vec3 c(p.sphere[0], p.sphere[1], p.sphere[2]);
     const double r = radius(p.sphere[3], who, "sphere");
     return by_point("a sphere", [=](Vec3 x) { return length(x - c) - r; });
   }
   if (!p.cylinder.empty()) {
-    need(p.cylinder, 7, who, "cylinder", "x,y,z, direction, radius like 0,0,0,0,0,1,0.5");
+    need(p.cylinder, 7, who, "cylinder", "give x,y,z, direction and radius, e.g. 0,0,0,0,0,1,0.5");
     const Vec3 c(p.cylinder[0], p.cylinder[1], p.cylinder[2]);
     const Vec3 d = unit(Vec3(p.cylinder[3], p.cylinder[4], p.cylinder[5]), who, "direction");
     const double r = radius(p.cylinder[6], who, "cylinder");
     return by_point("a cylinder", [=](Vec3 x) { return length(cross(x - c, d)) - r; });
   }
   if (!p.box.empty()) {
-    need(p.box, 6, who, "box", "x0,x1,y0,y1,z0,z1 like 0,1,0,1,0,1");
+    need(p.box, 6, who, "box", "give x0,x1,y0,y1,z0,z1, e.g. 0,1,0,1,0,1");
     const Vec3 lo(p.box[0], p.box[2], p.box[4]), hi(p.box[1], p.box[3], p.box[5]);
     for (int a = 0; a < 3; ++a)
       if (!(lo[a] < hi[a]))
         fail_usage(fmt::format("the box is empty along {}: {} to {}", "xyz"[a], short_number(lo[a]), short_number(hi[a])),
-                   fmt::format("{} box", who), "smaller number first: x0,x1,y0,y1,z0,z1");
+                   fmt::format("{} box", who), "give the smaller number first: x0,x1,y0,y1,z0,z1");
     return by_point("a box", [=](Vec3 x) {
       Vec3 out;
       double deepest = -HUGE_VAL;
@@ -206,7 +206,7 @@ ImplicitFunction implicit_function(const ImplicitParams& p, const DatasetPtr& in
     });
   }
   if (!p.quadric.empty()) {
-    need(p.quadric, 10, who, "quadric", "ten numbers: xx,yy,zz,xy,yz,xz,x,y,z,1");
+    need(p.quadric, 10, who, "quadric", "give ten numbers: xx,yy,zz,xy,yz,xz,x,y,z,1");
     bool any = false;
     for (size_t i = 0; i < 9; ++i) any = any || p.quadric[i] != 0;
     if (!any) fail_usage("the quadric is constant", fmt::format("{} quadric", who), "one of the first nine numbers must not be zero");

@@ -42,22 +42,22 @@ struct ImplicitParams {
 
 inline void describe_curved_tolerance(Schema& s, double& tolerance) {
   s("tolerance", tolerance,
-    "Curved cells: largest distance between them and the straight ones that are cut in their place, as a share of the mesh's size, and of "
-    "a field's range. Lengths, areas and volumes come as near. Cells are halved 7 times at the most, many large ones 2 times: what is "
-    "left beyond the tolerance is said.")
+    "Curved cells: largest distance between them and the straight cells cut in their place, as a share of the mesh's size, and of a "
+    "field's range. Lengths, areas and volumes are equally accurate. Cells are halved at most 7 times, many large ones 2 times; a note "
+    "says if the tolerance is not met.")
       .positive();
 }
 
 inline void describe_implicit(Schema& s, ImplicitParams& p) {
-  s("origin", p.origin, "A point of the plane; default: the middle of the mesh.");
-  s("normal", p.normal, "Direction across the plane.");
-  s("axis", p.axis, "Short for a normal along x, y or z.");
-  s("position", p.position, "With axis: the coordinate along it at which the plane lies; default: the middle.");
-  s("sphere", p.sphere, "A sphere in place of the plane: x,y,z of its centre and its radius.");
-  s("cylinder", p.cylinder, "An endless cylinder: x,y,z of a point of its axis, the axis' direction, its radius.");
-  s("box", p.box, "A box: x0,x1,y0,y1,z0,z1.");
-  s("quadric", p.quadric, "Where a0 x^2 + a1 y^2 + a2 z^2 + a3 xy + a4 yz + a5 xz + a6 x + a7 y + a8 z + a9 is zero: ten numbers.");
-  s("function", p.function, "Where an expression of x, y, z (or of point fields) is zero, like x^2+y^2-1; see calc.");
+  s("origin", p.origin, "Point on the plane; default: the middle of the mesh.");
+  s("normal", p.normal, "Normal of the plane.");
+  s("axis", p.axis, "Shorthand for a normal along x, y or z.");
+  s("position", p.position, "With axis: the plane's coordinate along it; default: the middle.");
+  s("sphere", p.sphere, "Sphere instead of the plane: x,y,z of its centre, and its radius.");
+  s("cylinder", p.cylinder, "Infinite cylinder: x,y,z of a point on its axis, the direction of the axis, and the radius.");
+  s("box", p.box, "Box: x0,x1,y0,y1,z0,z1.");
+  s("quadric", p.quadric, "Quadric a0 x^2 + a1 y^2 + a2 z^2 + a3 xy + a4 yz + a5 xz + a6 x + a7 y + a8 z + a9 = 0, as ten numbers.");
+  s("function", p.function, "Surface where an expression of x, y, z (or point fields) is zero, e.g. x^2+y^2-1; see calc.");
 }
 
 /// A function of place that is negative inside: behind a plane, in a sphere, cylinder, box or closed mesh, where an expression is negative.

@@ -358,7 +358,7 @@ DatasetPtr straight_near(const DatasetPtr& in, const SlicePlane& plane, double t
 
 DatasetPtr slice_one(const DatasetPtr& in, const DatasetPtr& surface, const ImplicitParams& p, Context& ctx) {
   const bool curved = has_curved_cells(*in);
-  if (curved) ctx.info("slice: curved cells are made linear first");
+  if (curved) ctx.info("slice: curved cells are linearised first");
   if (surface || !p.function.empty() || !p.sphere.empty() || !p.cylinder.empty() || !p.quadric.empty())
     return slice_shape(curved ? tessellate(in, {.tolerance = p.tolerance, .max_level = 7}, ctx) : in, p, surface, ctx);
   const ImplicitFunction f = implicit_function(p, in, nullptr, "slice", ctx);
@@ -369,17 +369,17 @@ DatasetPtr slice_one(const DatasetPtr& in, const DatasetPtr& surface, const Impl
   return slice_box(in, {Vec3(p.box[0], p.box[2], p.box[4]), Vec3(p.box[1], p.box[3], p.box[5])}, along, ctx);
 }
 
-// The planes that the parameters ask for, one after the other.
+// The planes that the parameters request, one after the other.
 std::vector<ImplicitParams> planes_of(const Dataset& in, const SliceParams& p) {
   std::vector<ImplicitParams> r;
   const bool several = p.planes != CutPlanes::none;
-  if (several && !p.positions.empty()) fail_usage("planes and positions are both given", "slice", "one of them at a time");
+  if (several && !p.positions.empty()) fail_usage("both planes and positions are given", "slice", "give only one of them");
   if (!p.positions.empty()) {
-    if (p.axis == CutAxis::none) fail_usage("positions need an axis", "slice", "like axis=z positions=1,2,3");
-    if (p.position) fail_usage("position and positions are both given", "slice", "one of them at a time");
+    if (p.axis == CutAxis::none) fail_usage("positions need an axis", "slice", "write e.g. axis=z positions=1,2,3");
+    if (p.position) fail_usage("both position and positions are given", "slice", "give only one of them");
     for (const double x : p.positions) r.emplace_back(p).position = x;
   } else if (several) {
-    if (p.axis != CutAxis::none) fail_usage("planes and axis are both given", "slice", "one of them at a time");
+    if (p.axis != CutAxis::none) fail_usage("both planes and axis are given", "slice", "give only one of them");
     const Box3& box = in.bounds();
     const Vec3 middle = p.origin.value_or(box.empty() ? Vec3() : box.center());
     for (const char a : word_of(p.planes)) {
@@ -396,7 +396,7 @@ std::vector<ImplicitParams> planes_of(const Dataset& in, const SliceParams& p) {
 
 DatasetPtr slice(const DatasetPtr& in, const DatasetPtr& surface, const SliceParams& p, Context& ctx) {
   if (in->as<PointCloud>())
-    fail_usage("a surface cuts no cells of a point cloud", "slice", "keep points by value with threshold, or show the points as they are");
+    fail_usage("a point cloud has no cells to cut", "slice", "select points by value with threshold, or show the points themselves");
   if (in->point_count() >= UINT32_MAX) fail_usage("the mesh has more than 2^32 points", "slice", "take a part of it first");
   const std::vector<ImplicitParams> planes = planes_of(*in, p);
   DatasetPtr out;
@@ -416,7 +416,7 @@ DatasetPtr slice(const DatasetPtr& in, const DatasetPtr& surface, const SlicePar
   }
   if (out->cell_count() == 0) {
     const Box3 b = in->bounds();
-    ctx.info(fmt::format("slice: the surface cuts no cell; the mesh reaches over x {} .. {}, y {} .. {}, z {} .. {}", short_number(b.lo.x),
+    ctx.info(fmt::format("slice: the surface cuts no cell; the mesh extends over x {} .. {}, y {} .. {}, z {} .. {}", short_number(b.lo.x),
                          short_number(b.hi.x), short_number(b.lo.y), short_number(b.hi.y), short_number(b.lo.z), short_number(b.hi.z)));
   };
   return out;

@@ -9,7 +9,7 @@ using SliceParams = ImplicitParams;
 
 inline void describe(Schema& s, SliceParams& p) {
   describe_implicit(s, p);
-  s("planes", p.planes, "Several planes at once through the origin (the middle): xyz is the view of three planes.");
+  s("planes", p.planes, "Several planes at once, through the origin (default: the middle): xyz gives three orthogonal planes.");
   s("positions", p.positions, "With axis: several parallel planes at these coordinates.");
   describe_curved_tolerance(s, p.tolerance);
 }

@@ -10,7 +10,8 @@ namespace sg::detail {
 
 DatasetPtr slice_box(const DatasetPtr& in, const Box3& box, const PlaneSlice& slice_plane, Context& ctx) {
   const Box3 bounds = in->bounds();
-  const double beyond = 1 + (bounds.empty() ? 0 : bounds.diagonal()) + box.diagonal();  // what is in the plane is no matter of rounding
+  const double beyond =
+      1 + (bounds.empty() ? 0 : bounds.diagonal()) + box.diagonal();  // whether something is in the plane must not depend on rounding
   Context quiet;
   DatasetPtr none;
   std::vector<Data> faces;

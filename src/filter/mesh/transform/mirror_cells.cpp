@@ -134,8 +134,7 @@ CellArray split_strips(const CellArray& a, const std::function<bool(size_t)>& sp
 
 void carry_cells(DatasetParts& parts, const std::vector<int64_t>& source) {
   FieldSet fields;
-  for (const Field& f : parts.fields)
-    fields.add(f.association == Association::cell ? f.with(gather(f.array, source)) : f);
+  for (const Field& f : parts.fields) fields.add(f.association == Association::cell ? f.with(gather(f.array, source)) : f);
   parts.fields = std::move(fields);
   if (!parts.cell_ghost.empty()) parts.cell_ghost = gather(parts.cell_ghost, source);
 }
@@ -176,7 +175,7 @@ void turn(UnstructuredMesh& m, DatasetParts& parts, Context& ctx) {
     if (fresh) at->second = places_of(std::get<0>(key), std::get<1>(key), std::get<2>(key), fits);
     unknown += !fits;
   }
-  if (unknown > 0) ctx.warn("transform: curved cells whose number of nodes fits no order stay as they are listed, and are inside out");
+  if (unknown > 0) ctx.warn("transform: curved cells whose number of nodes fits no order keep their node order and are inside out");
   m.cells = permuted(m.cells, [&] { return [&](size_t c, size_t n) { return &known.at({m.type(c), n, cell_orders(m, c)}); }; });
   if (m.faces.size() > 0) m.faces = permuted_alike(m.faces, [](size_t n) { return reversed_ring(n, false); });
 }

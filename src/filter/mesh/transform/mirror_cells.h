@@ -10,7 +10,7 @@ namespace sg {
 /// round, so that volumes keep their signs, faces point outwards as they did and normals by the inverse transpose fit their polygons.
 ///   unstructured  nodes permuted by a reflection of the reference element, orders and weights kept; polyhedra: each face reversed
 ///   surface       polygons and strips reversed
-///   lattices      when solid and left-handed now, or flat: points and cells in reverse order along an axis (those that descend, else the
+///   lattices      if solid and now left-handed, or flat: points and cells in reverse order along an axis (those that descend, else the
 ///                 first), with all fields and ghost marks; uniform grids then have positive spacing
 ///   AMR           the same along each axis of negative spacing
 /// A strip of an even number of triangles above two has no other way round: it becomes a triangle and a strip, with its fields at both.

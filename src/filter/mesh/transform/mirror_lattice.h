@@ -8,7 +8,7 @@ namespace sg {
 /// turn_mirrored_cells() for lattices and AMR grids; other meshes stay.
 void turn_mirrored_lattice(DatasetParts& parts);
 
-/// An AMR grid with negative spacing along some axes is numbered anew, with its fields, so that all are positive; indices of cells of
+/// An AMR grid with negative spacing along some axes is renumbered, with its fields, so that all are positive; indices of cells of
 /// level 0 begin at 0 or above where they did. Other meshes stay.
 void ascend_amr(DatasetParts& parts);
 

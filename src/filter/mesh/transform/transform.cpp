@@ -46,9 +46,9 @@ Affine affine_of(const TransformParams& p) {
   Affine r;
   if (!p.matrix.empty()) {
     if (p.matrix.size() != 16)
-      fail_usage(fmt::format("the matrix has {} numbers", p.matrix.size()), "transform matrix", "give 16, rows first");
+      fail_usage(fmt::format("the matrix has {} numbers", p.matrix.size()), "transform matrix", "give 16, row by row");
     if (p.matrix[12] != 0 || p.matrix[13] != 0 || p.matrix[14] != 0 || p.matrix[15] != 1)
-      fail_usage("the last row of the matrix is not 0,0,0,1", "transform matrix", "perspective belongs to the camera");
+      fail_usage("the last row of the matrix is not 0,0,0,1", "transform matrix", "perspective is a property of the camera");
     for (size_t i = 0; i < 3; ++i) {
       for (size_t j = 0; j < 3; ++j) r.linear.m[i][j] = p.matrix[4 * i + j];
       r.shift[int(i)] = p.matrix[4 * i + 3];
@@ -75,7 +75,7 @@ Affine affine_of(const TransformParams& p) {
     for (double v : row) largest = std::max(largest, std::abs(v));
   const double d = determinant(r.linear);
   if (!std::isfinite(d) || !std::isfinite(r.shift.x + r.shift.y + r.shift.z) || !(std::abs(d) > 1e-12 * largest * largest * largest))
-    fail_usage("the transform flattens the mesh", "transform", "scale factors must not be 0 and the matrix not singular");
+    fail_usage("the transform flattens the mesh", "transform", "scale factors must not be 0, nor the matrix singular");
   return r;
 }
 
@@ -86,7 +86,7 @@ Points moved(const Points& in, const Affine& t) {
   std::byte* out = nullptr;
   r.xyz = Array::make_raw(is_float(in.xyz.type()) ? in.xyz.type() : ElementType::f32, in.xyz.count(), 3, &out);
   if (in.xyz.empty()) return r;
-  // Without an origin the shift goes into f64 numbers; f32 numbers keep it apart when it is large for them.
+  // Without an origin the shift goes into f64 numbers; f32 numbers keep it separate when it is large for them.
   const bool wide = in.xyz.type() == ElementType::f64;
   Vec3 inside;
   if (wide && in.origin == Vec3()) inside = r.origin, r.origin = {};
@@ -134,7 +134,8 @@ struct Mover {
   const Mesh& whole;
 
   Mesh operator()(const UniformGrid& g) const {
-    // The images of the axes must stay at right angles; directions are kept as unit columns, lengths (and the sign of the spacing) apart.
+    // The images of the axes must stay at right angles; directions are kept as unit columns, lengths (and the sign of the spacing)
+    // separately.
     UniformGrid r = g;
     r.origin = t(g.origin);
     Vec3 column[3];
@@ -154,7 +155,7 @@ struct Mover {
         c.extent_start = g.extent_start;
         return c;
       }
-    // A pure scaling along the grid's own axes changes the spacing alone, a mirrored axis keeps its direction and gets a negative one.
+    // A pure scaling along the grid's own axes changes only the spacing; a mirrored axis keeps its direction and gets a negative spacing.
     for (int a = 0; a < 3; ++a) {
       const Vec3 old = g.direction.column(a);
       const double old_size = length(old);
@@ -180,7 +181,7 @@ struct Mover {
   }
   Mesh operator()(const AmrGrid& g) const {
     if (!t.diagonal())
-      fail_usage("an AMR grid cannot be rotated or sheared", "transform", "turn the camera, or take faces, a slice or a contour first");
+      fail_usage("an AMR grid cannot be rotated or sheared", "transform", "rotate the camera, or take faces, a slice or a contour first");
     AmrGrid r = g;
     r.origin = t(g.origin);
     for (auto& level : r.levels)

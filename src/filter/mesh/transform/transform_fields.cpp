@@ -27,7 +27,7 @@ std::string lower(std::string s) {
   return s;
 }
 
-// Names of three numbers that are no direction in space.
+// Names of three numbers that are not a direction in space.
 bool says_colors_or_texture(const std::string& name) {
   const std::string s = lower(name);
   for (const char* word : {"color", "colour", "rgb", "hsv", "albedo", "diffuse_", "texture", "texcoord", "tcoord"})
@@ -125,7 +125,7 @@ Array changed_vectors(const Field& f, FieldLaw law, const Maps& maps, const Cont
   });
 }
 
-// An order that is said is for the fields of its size.
+// An explicit order applies to fields of its size.
 bool order_fits(std::optional<TensorOrder> order, int n) {
   if (order == TensorOrder::rows) return n == 9 || n == 4;
   if (order == TensorOrder::masked) return n == 7;
@@ -163,8 +163,8 @@ void check_names(const Dataset& d, const FieldLawParams& p) {
           const int n = f.components();
           const bool fits = names == &p.axial ? n == 3 : n == 2 || n == 3 || tensor_size(n);
           if (!fits)
-            fail_usage(fmt::format("field '{}' has {} component{}, which do not turn", name, n, n == 1 ? "" : "s"), "transform",
-                       "vectors have 2 or 3 components, axial ones 3, tensors 9, 7, 6 or 4");
+            fail_usage(fmt::format("field '{}' has {} component{}, which cannot be transformed", name, n, n == 1 ? "" : "s"), "transform",
+                       "vectors have 2 or 3 components, axial vectors 3, tensors 9, 7, 6 or 4");
         }
 }
 
@@ -197,14 +197,14 @@ void transform_fields(const Dataset& d, const Mat3& linear, const FieldLawParams
     if (f.components() == 3 && f.role == Role::tensors && !p.order) order.order = TensorOrder::plane;
     Array a = is_tensor(law) ? changed_tensors(f, order, maps, ctx) : changed_vectors(f, law, maps, ctx);
     if (a.components() != f.components())
-      ctx.info(fmt::format("transform: '{}' leaves the plane and gets {} components", f.name, a.components()));
+      ctx.info(fmt::format("transform: '{}' leaves the plane and now has {} components", f.name, a.components()));
     if ((f.role == Role::none || f.role == Role::scalars) && !listed(p.turn, f.name) && !listed(p.gradients, f.name) &&
         !listed(p.axial, f.name))
       guessed += fmt::format("{}'{}' ({})", guessed.empty() ? "" : ", ", f.name, is_tensor(law) ? "tensors" : "vectors");
     out.add(f.with(std::move(a)));
   }
   if (!guessed.empty())
-    ctx.info(fmt::format("transform: turns {}, though nothing marks them as such; keep=NAME leaves a field as it is", guessed));
+    ctx.info(fmt::format("transform: also transforms {}, though they are not marked as such; keep=NAME leaves a field unchanged", guessed));
 }
 
 }  // namespace sg

@@ -30,9 +30,9 @@ struct FieldLawParams {
 };
 
 /// The law of a field of `d`. Marked as normals, vectors or tensors: by that, and the names "gradient(", "hessian(", "curl(" and
-/// "vorticity", as operations here give them. Unmarked (when allowed): fields of 3 floats are vectors unless their name says colours or
-/// texture coordinates, of 9 and 6 floats tensors, of 2 floats on meshes in a plane of equal z vectors. Named in the lists: by that.
-/// Fields of the whole stay.
+/// "vorticity", as operations here give them. Unmarked (when allowed): fields of 3 floats are vectors unless their name suggests colours or
+/// texture coordinates, of 9 and 6 floats tensors, of 2 floats on meshes in a plane of equal z vectors. Named in the lists: by that. Fields
+/// of the whole stay.
 FieldLaw field_law(const Dataset& d, const Field& f, const FieldLawParams& p);
 
 /// The fields of `d` that change under the linear map, changed; vectors and tensors of the plane become solid ones when they leave it.

@@ -20,7 +20,7 @@ AmrLeaves::AmrLeaves(const Dataset& dataset) : grid_(*dataset.as<AmrGrid>()) {
   for (size_t l = n; l-- > 1;)
     for (size_t a = 0; a < 3; ++a) {
       size_[l - 1][a] = size_[l][a] * std::max(1, grid_.levels[l].ratio[a]);
-      if (size_[l - 1][a] > (1ll << 40)) fail_usage("the levels of the grid are too far apart", "contour", "leave out its finest levels");
+      if (size_[l - 1][a] > (1ll << 40)) fail_usage("the levels of the grid are too far apart", "contour", "leave out the finest levels");
     }
   if (n > 0)
     for (int a = 0; a < 3; ++a) unit_[a] = grid_.levels[0].spacing[a] / double(size_[0][size_t(a)]);

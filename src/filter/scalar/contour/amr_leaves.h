@@ -29,7 +29,7 @@ class AmrLeaves {
   const Place& size(size_t level) const { return size_[level]; }
   /// The leaf that covers a cell of the finest level.
   Leaf at(const Place& cell) const;
-  /// Is this cell of a patch a leaf: not refined, hidden or a duplicate?
+  /// Whether this cell of a patch is a leaf: not refined, hidden or a duplicate.
   bool is_leaf(int64_t cell) const {
     return ghost_.count == 0 || !(ghost_[size_t(cell)] & (ghost_refined_cell | ghost_hidden_cell | ghost_duplicate));
   }
@@ -40,7 +40,7 @@ class AmrLeaves {
 
  private:
   struct Level {
-    Place block{};  ///< patches are looked up by blocks of so many cells
+    Place block{};  ///< patches are looked up by blocks of this many cells
     std::unordered_map<uint64_t, std::vector<uint32_t>> patches;
   };
   static uint64_t key(int64_t x, int64_t y, int64_t z) {

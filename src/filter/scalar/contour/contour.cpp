@@ -20,36 +20,36 @@ namespace sg {
 void describe(Schema& s, ContourParams& p) {
   s("field", p.field, "Point field to contour; default: the active scalar.");
   s("values", p.values, "Isovalues, one surface each; default: the middle of the range.").unit("@field");
-  s("normals", p.normals, "Unit normals from the field's gradient.");
+  s("normals", p.normals, "Add unit normals from the field's gradient.");
   s("topology", p.topology,
-    "On grids: the surface of the trilinear function in each cell, or marching cubes' fixed table with values at or above the isovalue "
-    "apart on every face.");
-  s("from_cells", p.from_cells, "Take a cell field, averaged to the points.");
+    "On grids: the surface of the trilinear function in each cell, or a fixed marching cubes table that separates values at or above the "
+    "isovalue on every face.");
+  s("from_cells", p.from_cells, "Contour a cell field, averaged to the points.");
   s("tolerance", p.tolerance, "Curved cells: largest distance of the triangles from the surface, as a share of the mesh's diagonal.")
       .positive();
-  s("component", p.component, "Of a field with several: 0, 1, ..., x, y, z, or magnitude.");
+  s("component", p.component, "Component of a field with several: 0, 1, ..., x, y, z, or magnitude.");
 }
 
 namespace {
 
 using namespace contouring;
 
-constexpr const char* cell_hint = "set from_cells=true for values averaged to the points, or name a field of the points";
+constexpr const char* cell_hint = "set from_cells=true to average the values to the points, or name a point field";
 
 const Field& choose_field(const Dataset& input, const FieldName& name) {
   if (!name.empty()) {
     const Field& f = input.fields().require(name.name);
     if (const Field* point = input.fields().find(name.name, Association::point)) return *point;
     if (f.association == Association::cell)
-      fail_usage(fmt::format("field '{}' lies on the cells; a contour needs values at the points", name.name), "contour", cell_hint);
-    fail_usage(fmt::format("field '{}' lies on the whole mesh; a contour needs values at the points", name.name), "contour");
+      fail_usage(fmt::format("field '{}' is a cell field; a contour needs values at the points", name.name), "contour", cell_hint);
+    fail_usage(fmt::format("field '{}' belongs to the whole mesh; a contour needs values at the points", name.name), "contour");
   }
   const Field* f = input.fields().active(1);
   if (f && f->association == Association::point) return *f;
   for (const Field& p : input.fields())
     if (p.association == Association::point && p.components() == 1) return p;
   for (const Field& p : input.fields())
-    if (p.association == Association::point) return p;  // a vector: the next check says what to do
+    if (p.association == Association::point) return p;  // a vector: the next check reports what to do
   if (f) fail_usage(fmt::format("the mesh has no point field to contour, only the cell field '{}'", f->name), "contour", cell_hint);
   fail_usage("the mesh has no point field to contour", "contour");
 }
@@ -61,9 +61,9 @@ std::pair<DatasetPtr, std::string> averaged_to_points(const DatasetPtr& input, c
     const Field& any = input->fields().require(name.name);
     f = input->fields().find(name.name, Association::cell);
     if (!f)
-      fail_usage(fmt::format("field '{}' lies on the {}, not on the cells", name.name,
+      fail_usage(fmt::format("field '{}' is defined on the {}, not on the cells", name.name,
                              any.association == Association::point ? "points" : "whole mesh"),
-                 "contour from_cells", "leave from_cells out for a field of the points");
+                 "contour from_cells", "leave out from_cells for a point field");
   } else {
     f = input->fields().active(1);
     if (!f || f->association != Association::cell) f = nullptr;
@@ -71,7 +71,7 @@ std::pair<DatasetPtr, std::string> averaged_to_points(const DatasetPtr& input, c
       if (!f && c.association == Association::cell && c.components() == 1) f = &c;
     for (const Field& c : input->fields())
       if (!f && c.association == Association::cell) f = &c;
-    if (!f) fail_usage("the mesh has no cell field to contour", "contour from_cells", "leave from_cells out");
+    if (!f) fail_usage("the mesh has no cell field to contour", "contour from_cells", "leave out from_cells");
   }
   CellToPointParams p;
   p.fields = {f->name};
@@ -92,7 +92,7 @@ int choose_component(const Field& f, const std::string& word) {
   else if (word.size() == 1) c = int64_t(std::string("xyz").find(to_lower(word)[0]));
   if (c < 0 || c >= n)
     fail_usage(fmt::format("field '{}' has no component '{}'", f.name, word), "contour component",
-               n > 1 ? choices : "it has one component: leave component out");
+               n > 1 ? choices : "it has one component: leave out component");
   return int(c);
 }
 
@@ -122,18 +122,17 @@ Vec3 choose_origin(const Box3& box) {
 }
 
 void check_mesh(const Dataset& input) {
-  if (input.point_count() > size_t(UINT32_MAX))
-    fail_usage("the mesh has more than 2^32 points", "contour", "contour a part of it at a time");
+  if (input.point_count() > size_t(UINT32_MAX)) fail_usage("the mesh has more than 2^32 points", "contour", "contour one part at a time");
   if (is_lattice(input.mesh())) {
     int axes = 0;
     for (size_t n : lattice_dims(input.mesh())) axes += n > 1;
     if (axes < 2 && input.point_count() > 0)
       fail_usage(fmt::format("a grid with {} axis of more than one point has no contour", axes), "contour",
-                 "give it a grid of two or three axes");
+                 "use a grid of two or three axes");
   } else if (!input.as<UnstructuredMesh>() && !input.as<SurfaceMesh>()) {
     const bool amr = input.as<AmrGrid>();
     fail_usage(fmt::format("a mesh of kind '{}' cannot be contoured", input.kind()), "contour",
-               amr ? "its outer surface can be shown: -f faces" : "points alone have no inside");
+               amr ? "show its outer surface instead: -f faces" : "points alone have no inside");
   }
 }
 
@@ -195,7 +194,7 @@ Array repeated(const std::vector<size_t>& counts, const std::vector<double>& num
   return a;
 }
 
-// One isovalue per point; integer fields become f32, as 0.5 is no integer.
+// One isovalue per point; integer fields become f32, since 0.5 is not an integer.
 Array isovalues(const std::vector<Piece>& pieces, const std::vector<double>& values, ElementType type) {
   std::vector<size_t> counts;
   for (const Piece& p : pieces) counts.push_back(p.point_count());
@@ -223,7 +222,7 @@ DatasetPtr assemble(const Dataset& input, const Field& field, const std::vector<
                     bool wants_normals) {
   size_t total = 0;
   for (const Piece& p : pieces) total += p.point_count();
-  if (total > size_t(INT32_MAX)) fail_usage("the surfaces have more than 2^31 points", "contour", "ask for fewer values at a time");
+  if (total > size_t(INT32_MAX)) fail_usage("the surfaces have more than 2^31 points", "contour", "use fewer values at a time");
   SurfaceMesh mesh;
   mesh.points.xyz = joined(
       pieces, 3, [](Piece& p) { return p.xyz; }, false);
@@ -301,7 +300,7 @@ DatasetPtr contour(const DatasetPtr& given, const ContourParams& params, Context
     values.push_back(range.empty() ? 0.0 : range.lo + 0.5 * (range.hi - range.lo));
   }
   for (double v : values)
-    if (!std::isfinite(v)) fail_usage(fmt::format("{} is no isovalue", v), "contour values", "give finite numbers");
+    if (!std::isfinite(v)) fail_usage(fmt::format("{} is not a valid isovalue", v), "contour values", "give finite numbers");
 
   const bool trilinear = params.topology == ContourTopology::trilinear;
   Job job{*input, choose_samples(field, component), params.normals, false, trilinear, true, choose_origin(input->bounds()), context};
@@ -328,7 +327,7 @@ DatasetPtr contour(const DatasetPtr& given, const ContourParams& params, Context
     if (pieces[i].lines.count() + pieces[i].triangles.count() > 0) continue;
     const Range range = input->range(field, component);  // not before: it is a pass over all samples
     context.info(range.empty() ? fmt::format("contour: field '{}' has no values", field.name)
-                               : fmt::format("contour: nothing at {} = {}; the field runs from {} to {}", field.name,
+                               : fmt::format("contour: nothing at {} = {}; the field ranges from {} to {}", field.name,
                                              short_number(values[i]), short_number(range.lo), short_number(range.hi)));
   }
   return assemble(*input, field, values, std::move(pieces), job, params.normals && dimension == 3);

@@ -38,16 +38,16 @@ void describe(Schema& s, ContourParams& p);
 /// neighbour's. On grids the surface in each cell has the topology of the trilinear function: faces that can be cut in two ways by the
 /// asymptotic decider (Nielson and Hamann 1991), tubes through cells (trilinear_cell.h); cells with a tube or a long loop have points
 /// inside, which follow those on edges. Ties, also at saddles, count as inside: the surface is that of a value lower by less than any
-/// number. topology=fixed: marching cubes' one table, where corners inside are apart on every ambiguous face; it is closed too, but its
-/// number of parts and handles may be wrong. Triangles and the point field "Normals" (f32, unit) face the smaller values; on lines the
-/// larger values lie on the left in x-y meshes. Cells that touch a NaN or a hidden point, and ghost and blanked cells, leave clean borders.
-/// All fields are carried: point fields interpolated along the edges and trilinearly inside cells (the contoured field itself is the
-/// isovalue exactly, f32 for integer fields), cell fields from the cell. With several values, which may come in any order, the surfaces
-/// lie one behind the other and the cell field "contour value" says which. Nothing crossed: an empty mesh with its fields, and a note in
-/// the log. from_cells contours a cell field by its averages at the points (cell_to_point); a point field of the same name is left out.
-/// Memory: less than one byte per sample beside the result (with more than eight values, at most a bit per sample and value up to
-/// 256 MB). Several values share one pass over a grid. Same bytes for any number of threads.
-/// Throws Error(usage) for an unknown field, a cell field, a vector without `component`, and meshes without an interior.
+/// number. topology=fixed: marching cubes' single table, in which inside corners are separated on every ambiguous face; it is closed too,
+/// but its number of parts and handles may be wrong. Triangles and the point field "Normals" (f32, unit) face the smaller values; on lines
+/// the larger values lie on the left in x-y meshes. Cells that touch a NaN or a hidden point, and ghost and blanked cells, leave clean
+/// borders. All fields are carried: point fields interpolated along the edges and trilinearly inside cells (the contoured field itself is
+/// the isovalue exactly, f32 for integer fields), cell fields from the cell. With several values, which may come in any order, the surfaces
+/// are stored one after the other and the cell field "contour value" identifies them. Nothing crossed: an empty mesh with its fields, and a
+/// note in the log. from_cells contours a cell field by its averages at the points (cell_to_point); a point field of the same name is left
+/// out. Memory: less than one byte per sample besides the result (with more than eight values, at most a bit per sample and value up to 256
+/// MB). Several values share one pass over a grid. Same bytes for any number of threads. Throws Error(usage) for an unknown field, a cell
+/// field, a vector without `component`, and meshes without an interior.
 DatasetPtr contour(const DatasetPtr& input, const ContourParams& params, Context& context);
 
 }  // namespace sg

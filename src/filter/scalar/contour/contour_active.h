@@ -14,7 +14,7 @@ struct LatticeIndex {
 };
 
 /// The index of the field under `key` (its name and component), made when this is not the first of the contours that were asked of it;
-/// null before. `values`: how many are asked for now; cells are looked at once for each (lattices once for all).
+/// null before. `values`: how many are requested now; cells are looked at once for each (lattices once for all).
 std::shared_ptr<const LatticeIndex> lattice_index(const Job& job, const std::string& key);
 std::shared_ptr<const CellActiveIndex> cell_index(const Job& job, const std::string& key, size_t values);
 

@@ -96,7 +96,7 @@ class Builder {
     return false;
   }
 
-  // Leaves in whose neighbourhood the field reaches a value; those beside finer ones always.
+  // Leaves in whose neighbourhood the field reaches a value; those next to finer ones always.
   std::vector<Leaf> leaves_near() const {
     struct Row {
       uint32_t level, patch;
@@ -352,7 +352,7 @@ DatasetPtr contour_amr(const DatasetPtr& input, const ContourParams& params, int
   }
   if (!field) fail_usage("the grid has no field to contour", "contour");
   if (field->association == Association::whole)
-    fail_usage(fmt::format("field '{}' lies on the whole mesh; a contour needs values at the points", field->name), "contour");
+    fail_usage(fmt::format("field '{}' belongs to the whole mesh; a contour needs values at the points", field->name), "contour");
   const int component = component_of(*field, params.component);
   ContourParams flat = params;
   if (flat.values.empty()) {
@@ -360,7 +360,7 @@ DatasetPtr contour_amr(const DatasetPtr& input, const ContourParams& params, int
     flat.values.push_back(range.empty() ? 0.0 : range.lo + 0.5 * (range.hi - range.lo));
   }
   for (double v : flat.values)
-    if (!std::isfinite(v)) fail_usage(fmt::format("{} is no isovalue", v), "contour values", "give finite numbers");
+    if (!std::isfinite(v)) fail_usage(fmt::format("{} is not a valid isovalue", v), "contour values", "give finite numbers");
   flat.field.name = field->name;
   flat.from_cells = false;
   if (field->association == Association::cell) flat.component.clear();

@@ -7,7 +7,7 @@
 
 namespace sg::contouring {
 
-/// An unstructured mesh of the leaf cells that one of the values crosses, and those around them; without values, of all. Leaves beside
+/// An unstructured mesh of the leaf cells that one of the values crosses, and those around them; without values, of all. Leaves next to
 /// finer ones are polyhedra (2D: polygons) with the finer ones' corners in their faces and edges, at level jumps of any ratio; the others
 /// are voxels (pixels). So neighbours share whole faces, and a contour has no cracks.
 ///

@@ -43,11 +43,11 @@ struct Finder {
   bool skipped(size_t cell) const {
     return cell_ghost.count && (cell_ghost[cell] & (ghost_duplicate | ghost_refined_cell | ghost_hidden_cell));
   }
-  // A tetrahedron, whose triangles are few: a point alone or two by two.
+  // A tetrahedron, whose triangles are few: one point, or pairs of points.
   void tetra(const CellsView& cells, size_t cell, Found& out) const {
     static constexpr uint8_t side[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
     static constexpr uint8_t edge[4][4] = {{0, 0, 1, 2}, {0, 0, 3, 4}, {1, 3, 0, 5}, {2, 4, 5, 0}};
-    // For a corner k alone, the other three so that they turn counterclockwise seen from k's far side.
+    // For a single corner k, the other three, counterclockwise as seen from the side opposite k.
     static constexpr uint8_t others[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
     int64_t p[4];
     uint32_t in = 0;

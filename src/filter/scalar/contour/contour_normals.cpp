@@ -85,7 +85,7 @@ class Gradients {
   }
 
   // Sums for the slots of the points that visit(f) names; the first slot. A point that is not wanted has the slot of the next one
-  // that is; the first sum takes what nobody asks for, which spares a branch.
+  // that is; the first sum absorbs what is not needed, which saves a branch.
   template <class Visit>
   uint32_t range(Run& run, Visit&& visit) const {
     uint32_t lo = UINT32_MAX, hi = 0;
@@ -95,7 +95,7 @@ class Gradients {
     return lo;
   }
 
-  // The same as add_cells for a mesh of tetrahedra alone, without a question of type in the loop.
+  // The same as add_cells for a mesh of only tetrahedra, without a type check in the loop.
   bool add_tetrahedra(std::span<const uint32_t> list, Run& run) const {
     const ElementType t = job_.samples.type();
     if (!mesh_.types.empty() || mesh_.single_type != CellType::tetra || cells_.fixed != 4 || ghost_.count || !is_float(t)) return false;
@@ -220,7 +220,7 @@ class Gradients {
       for (size_t i = b; i < e; ++i) {
         const EdgePoint edge = edges[i];
         const double *from = sums_[slot_[edge.a]].g, *to = sums_[slot_[edge.b]].g;
-        // A point all of whose cells are flat or lack values: the other end alone.
+        // A point all of whose cells are flat or lack values: only the other end.
         const double s = from[3] > 0 ? (1 - double(edge.t)) / from[3] : 0, t = to[3] > 0 ? double(edge.t) / to[3] : 0;
         put(Vec3(from[0], from[1], from[2]) * s + Vec3(to[0], to[1], to[2]) * t, out + 3 * i);
       }

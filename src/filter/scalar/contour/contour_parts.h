@@ -50,7 +50,7 @@ struct Piece {
   std::array<ptrdiff_t, 3> stride{};             ///< of the inner points' corners
   Block<std::array<uint32_t, 8>> inner_corners;  ///< not on lattices: the corners themselves
   Array lines, triangles;                        ///< i32 connectivity, 2 and 3 per cell
-  Block<uint32_t> line_cells, triangle_cells;    ///< source cell of each; empty when not asked for
+  Block<uint32_t> line_cells, triangle_cells;    ///< source cell of each; empty when not requested
 
   size_t first_point = 0;  ///< what the connectivity's numbers already count from
   size_t point_count() const { return points.count + inner.count; }

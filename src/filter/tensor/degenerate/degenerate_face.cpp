@@ -14,8 +14,8 @@ struct Corners {
   double s[3], t[3];  // their places in the whole triangle
 };
 
-// Can none of the forms be ruled out by the sign of its Bernstein coefficients? With the polar form F of a cubic form f, F(a,a,b) and
-// F(a,b,c) are the coefficients on the sides and in the middle.
+// Whether none of the forms can be ruled out by the sign of its Bernstein coefficients. With the polar form F of a cubic form f, F(a,a,b)
+// and F(a,b,c) are the coefficients on the sides and in the middle.
 bool may_vanish(const Corners& k) {
   const SymTensor* v[3] = {&k.a, &k.b, &k.c};
   double lo[7], hi[7], corner[3][7], pair[3][7], f[7];
@@ -93,7 +93,7 @@ class Search {
   }
 
  private:
-  // A face that is degenerate all over, but for rounding, has parts without end in which nothing is found; others a few beside each place.
+  // A face that is degenerate all over, but for rounding, has parts without end in which nothing is found; others a few around each place.
   static constexpr int most_fruitless = 100;
 
   void look_in(const Corners& k) {

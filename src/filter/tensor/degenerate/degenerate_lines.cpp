@@ -70,8 +70,8 @@ void cut_cell(CellReader& reader, std::vector<Tetra>& out) {
   }
 }
 
-// Eigenvalues of a sum move apart or together by no more than sqrt(2) times the norm of what is added (Weyl): where the mean's differ by
-// more than that of the corners from it, no combination of the corners has equal ones.
+// The distance between eigenvalues of a sum changes by no more than sqrt(2) times the norm of what is added (Weyl): where the mean's differ
+// by more than that of the corners from it, no combination of the corners has equal ones.
 bool may_be_degenerate(std::span<const int64_t> ids, const std::vector<SymTensor>& d) {
   SymTensor mean;
   for (int64_t id : ids) mean = mean + d[size_t(id)];
@@ -82,7 +82,7 @@ bool may_be_degenerate(std::span<const int64_t> ids, const std::vector<SymTensor
   return !(std::min(e.value[0] - e.value[1], e.value[1] - e.value[2]) > 1.42 * most);
 }
 
-// Numbers in [-1, 1] that depend on the point alone.
+// Numbers in [-1, 1] that depend only on the point.
 SymTensor noise(int64_t id) {
   double v[6];
   for (uint64_t k = 0; k < 6; ++k) v[k] = 2 * random_unit(0x7e2507, uint64_t(id) * 6 + k) - 1;
@@ -213,8 +213,8 @@ void tell_of_surfaces(const Dataset& lines, double diagonal, Context& ctx) {
   for (size_t l = 0; l < length.count(); ++l) pieces += length.get(l) < little * diagonal;
   if (pieces >= many && 2 * pieces >= length.count())
     ctx.warn(
-        fmt::format("degenerate_lines: {} of {} lines are shorter than a tenth of the data: eigenvalues are equal all over surfaces (as "
-                    "in symmetric data), of which lines show only pieces",
+        fmt::format("degenerate_lines: {} of {} lines are shorter than a tenth of the data: eigenvalues are equal on whole surfaces (as in "
+                    "symmetric data), of which lines show only pieces",
                     pieces, length.count()));
 }
 
@@ -222,16 +222,16 @@ void tell_of_surfaces(const Dataset& lines, double diagonal, Context& ctx) {
 
 void describe(Schema& s, DegenerateLinesParams& p) {
   describe_tensors(s, p.tensors);
-  s("perturb", p.perturb, "Change of each tensor, as a share of its deviator, that moves lines off edges and corners of cells; 0: none.")
+  s("perturb", p.perturb, "Perturbation of each tensor, as a share of its deviator, that moves lines off cell edges and corners; 0: none.")
       .range(0, 0.01);
-  s("min_gap", p.min_gap, "Leaves out places whose third eigenvalue differs by less than this share of the field's largest deviator.")
+  s("min_gap", p.min_gap, "Leave out points whose third eigenvalue differs by less than this share of the field's largest deviator.")
       .range(0, 1);
 }
 
 DatasetPtr degenerate_lines(const DatasetPtr& input, const DegenerateLinesParams& p, Context& ctx) {
   if (const int dimension = dimension_of_cells(input); dimension != 3)
     fail_usage(fmt::format("a mesh ({}) with cells of dimension {} has no degenerate lines", input->kind(), dimension), "degenerate_lines",
-               dimension == 2 ? "degenerate_points finds those of flat meshes and surfaces" : "a mesh of solid cells");
+               dimension == 2 ? "use degenerate_points for flat meshes and surfaces" : "use a mesh of solid cells");
   // Curved cells in parts, as many as can be looked through in a moment, and three halvings at least.
   TessellateParams straight;
   while (straight.max_level > 3 && double(input->cell_count()) * std::pow(8.0, straight.max_level) > 100'000) --straight.max_level;
@@ -239,7 +239,7 @@ DatasetPtr degenerate_lines(const DatasetPtr& input, const DegenerateLinesParams
   TensorField t = read_point_tensors(in, p.tensors, "degenerate_lines", ctx);
   if (t.dimension != 3)
     fail_usage(fmt::format("'{}' holds 2D tensors on a mesh of solid cells", t.field.name), "degenerate_lines",
-               "tensors of 6 or 9 components");
+               "use tensors of 6 or 9 components");
   double largest = 0;
   for (const SymTensor& d : t.d)
     if (d.finite()) largest = std::max(largest, d.deviator().norm());
@@ -266,7 +266,7 @@ DatasetPtr degenerate_lines(const DatasetPtr& input, const DegenerateLinesParams
   std::vector<Segment> segments;
   size_t alone = 0;
   for (const Chunk& c : chunks) segments.insert(segments.end(), c.segments.begin(), c.segments.end()), alone += c.alone;
-  if (alone > 0) ctx.info(fmt::format("degenerate_lines: {} places on faces have no partner in their tetrahedron; lines end there", alone));
+  if (alone > 0) ctx.info(fmt::format("degenerate_lines: {} points on faces have no partner in their tetrahedron; lines end there", alone));
   const DatasetPtr parts = as_mesh(segments, t.field.unit);
   if (segments.empty()) return parts;
   PolylinesParams joined;

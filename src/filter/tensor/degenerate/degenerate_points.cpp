@@ -79,7 +79,7 @@ void add(std::vector<Found>& out, const Plane& plane, double u, double w, double
   out.push_back(x);
 }
 
-// Nothing is rounded away at corners and edges; who finds a point twice is sorted out later.
+// Nothing is rounded away at corners and edges; points found twice are removed later.
 constexpr double slack = 1e-12;
 
 bool in_triangle(const Plane& plane, const Corner& p, const Corner& q, const Corner& r, int64_t cell, std::vector<Found>& out) {
@@ -193,7 +193,7 @@ void describe(Schema& s, DegeneratePointsParams& p) { describe_tensors(s, p.tens
 DatasetPtr degenerate_points(const DatasetPtr& in, const DegeneratePointsParams& p, Context& ctx) {
   if (const int dimension = dimension_of_cells(in); dimension != 2)
     fail_usage(fmt::format("a mesh ({}) with cells of dimension {} has no degenerate points", in->kind(), dimension), "degenerate_points",
-               dimension == 3 ? "slice it first, or ask for its degenerate_lines" : "a flat mesh or a surface");
+               dimension == 3 ? "slice it first, or use degenerate_lines" : "use a flat mesh or a surface");
   const TensorField t = read_point_tensors(in, p.tensors, "degenerate_points", ctx);
   const CellReader all_cells(in);
   constexpr size_t grain = 4096;

@@ -11,8 +11,8 @@ struct DegeneratePointsParams {
 void describe(Schema& s, DegeneratePointsParams& p);
 
 /// The exact zeros of half the difference of the diagonal, f = (Tuu - Tww) / 2, and of g = Tuw, in the plane of each cell: of the linear
-/// interpolant of triangles, the bilinear one of quads and pixels; other polygons are cut into triangles. 3D tensors on surfaces and cuts
-/// count by their part in the surface. With delta = f_u g_w - f_w g_u (Delmarcelle, Hesselink 1994): delta < 0 a trisector of tensor
+/// interpolant of triangles, the bilinear one of quads and pixels; other polygons are cut into triangles. Of 3D tensors on surfaces and
+/// cuts only the part in the surface counts. With delta = f_u g_w - f_w g_u (Delmarcelle, Hesselink 1994): delta < 0 a trisector of tensor
 /// index -1/2, delta > 0 a wedge of index +1/2. Points on shared edges are given once.
 ///
 /// A PointCloud (f64) with "index" (-0.5, 0.5), "type" (labels: 0 trisector, 1 wedge), "delta", "eigenvalue" (the one there is),

@@ -87,7 +87,7 @@ SymTensor tensor_in(const double* x) { return {x[1], x[2], x[3], x[4], x[5], x[6
 DiffusionModel::DiffusionModel(const GradientTable& t) : n_(t.size()) {
   scale_ = 0;
   for (double b : t.b) scale_ = std::max(scale_, b);
-  if (!(scale_ > 0)) fail_usage("all b-values are 0: nothing tells of diffusion", "tensor_fit");
+  if (!(scale_ > 0)) fail_usage("all b-values are 0: the data carries no diffusion weighting", "tensor_fit");
   for (size_t i = 0; i < n_; ++i) {
     const double b = t.b[i] / scale_;
     const Vec3 g = t.g[i];
@@ -107,7 +107,7 @@ DiffusionModel::DiffusionModel(const GradientTable& t) : n_(t.size()) {
   }
   if (!good)
     fail_usage(fmt::format("the {} gradients do not determine a tensor", n_), "tensor_fit",
-               "six directions that are not on one cone or plane, and a volume with another b (0)");
+               "use at least six directions not on one cone or plane, and a volume with another b-value (0)");
 }
 
 bool DiffusionModel::solve(const double* weight, double* x) {

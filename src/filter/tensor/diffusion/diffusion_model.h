@@ -24,8 +24,8 @@ struct DiffusionResult {
 /// Stejskal, Tanner 1965: ln S_i = ln S0 - b_i g_i^T D g_i (Basser, Mattiello, Le Bihan 1994).
 class DiffusionModel {
  public:
-  /// Throws Error(usage) when the gradients do not determine the seven unknowns: fewer than six directions in general position, or one b
-  /// alone without a volume of another b.
+  /// Throws Error(usage) when the gradients do not determine the seven unknowns: fewer than six directions in general position, or a single
+  /// b without a volume of another b.
   explicit DiffusionModel(const GradientTable& gradients);
 
   /// linear: least squares of the logarithms, by a QR factorisation, exact for signals without noise. weighted: each logarithm counts with

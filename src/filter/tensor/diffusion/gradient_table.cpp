@@ -22,15 +22,15 @@ std::vector<double> read_rows(const std::string& path, size_t& columns) {
     size_t n = 0;
     for (std::string_view w : words(line)) {
       const auto v = parse_double(w);
-      if (!v) fail_data(fmt::format("line {}: '{}' is no number", line_number, w.substr(0, 40)), path);
+      if (!v) fail_data(fmt::format("line {}: '{}' is not a number", line_number, w.substr(0, 40)), path);
       r.push_back(*v), ++n;
     }
     if (n == 0) continue;
     if (columns == 0) columns = n;
     if (n != columns)
-      fail_data(fmt::format("line {} has {} numbers, the first has {}", line_number, n, columns), path, "rows of equal length");
+      fail_data(fmt::format("line {} has {} numbers, the first has {}", line_number, n, columns), path, "rows must have equal length");
   }
-  if (r.empty()) fail_data("there is no number in it", path);
+  if (r.empty()) fail_data("it contains no numbers", path);
   return r;
 }
 
@@ -39,7 +39,7 @@ std::vector<double> read_bvals(const std::string& path) {
   std::vector<double> r = read_rows(path, columns);
   if (columns != 1 && columns != r.size())
     fail_data(fmt::format("{} rows of {} numbers", r.size() / columns, columns), path,
-              "one row or one column of b-values; three rows are directions");
+              "b-values are one row or one column; three rows are directions");
   return r;
 }
 
@@ -49,7 +49,7 @@ std::vector<Vec3> read_bvecs(const std::string& path, size_t count) {
   const size_t rows = v.size() / columns;
   if (rows * columns != 3 * count || (rows != 3 && columns != 3))
     fail_data(fmt::format("{} rows of {} numbers do not fit {} b-values", rows, columns, count), path,
-              fmt::format("3 rows of {0}, or {0} rows of 3", count));
+              fmt::format("expected 3 rows of {0}, or {0} rows of 3", count));
   std::vector<Vec3> g(count);
   for (size_t i = 0; i < count; ++i)
     g[i] = columns == count && rows == 3 ? Vec3(v[i], v[count + i], v[2 * count + i]) : Vec3(v[3 * i], v[3 * i + 1], v[3 * i + 2]);
@@ -59,9 +59,9 @@ std::vector<Vec3> read_bvecs(const std::string& path, size_t count) {
 const Field& whole_field(const Dataset& d, const char* name, int components, const char* parameter) {
   const Field* f = d.fields().find(name, Association::whole);
   if (!f || f->components() != components)
-    fail_usage(
-        fmt::format("there are no diffusion gradients: {} names no file, and the data carry no field '{}' of the whole", parameter, name),
-        "tensor_fit", "bvals=FILE bvecs=FILE");
+    fail_usage(fmt::format("there are no diffusion gradients: {} names no file, and the data has no field '{}' of the whole dataset",
+                           parameter, name),
+               "tensor_fit", "give bvals=FILE bvecs=FILE");
   return *f;
 }
 
@@ -82,11 +82,12 @@ GradientTable read_gradients(const Dataset& d, const std::string& bvals, const s
   }
   const std::string where = bvals.empty() ? "tensor_fit" : bvals;
   for (size_t i = 0; i < t.size(); ++i) {
-    if (!(t.b[i] >= 0) || !std::isfinite(t.b[i])) fail_data(fmt::format("b-value {} is {}", i + 1, t.b[i]), where, "s/mm^2, 0 or more");
+    if (!(t.b[i] >= 0) || !std::isfinite(t.b[i]))
+      fail_data(fmt::format("b-value {} is {}", i + 1, t.b[i]), where, "b-values are in s/mm^2, 0 or more");
     const double l = length(t.g[i]);
     if (l > 0 && std::isfinite(l)) t.g[i] = t.g[i] / l;
     else if (t.b[i] <= b0) t.g[i] = {0, 0, 0};
-    else fail_data(fmt::format("volume {} has b = {} and no direction", i + 1, t.b[i]), bvecs.empty() ? where : bvecs);
+    else fail_data(fmt::format("volume {} has b = {} but no direction", i + 1, t.b[i]), bvecs.empty() ? where : bvecs);
   }
   return t;
 }

@@ -25,8 +25,8 @@ struct GradientTable {
 
 /// From text files in FSL's form (bvals: one number a volume; bvecs: three rows of them, or three numbers a row), or, where a path is
 /// empty, from the fields of the whole "bval" and "bvec" that come with a NIfTI file. Directions are normalised. A direction that is zero
-/// or not a number is none when its b is at most `b0`, else an error. Throws Error(usage) when there are none, Error(data) naming the file
-/// and what is wrong: words that are no numbers, unequal counts, negative b.
+/// or not a number counts as no direction when its b is at most `b0`; otherwise it is an error. Throws Error(usage) when there are none,
+/// Error(data) naming the file and what is wrong: words that are not numbers, unequal counts, negative b.
 GradientTable read_gradients(const Dataset& d, const std::string& bvals, const std::string& bvecs, double b0);
 
 /// Turns directions into the world of the grid. `frame`: world: they are that already; voxel: along the axes of the image; fsl: along the

@@ -26,10 +26,10 @@ Images images_of(const Dataset& d, const TensorFitParams& p, size_t volumes) {
     for (const std::string& name : p.fields) {
       const Field& f = d.fields().require(name);
       if (f.components() != 1)
-        fail_usage(fmt::format("field '{}' has {} components; each image of `fields` has one", name, f.components()), "tensor_fit");
+        fail_usage(fmt::format("field '{}' has {} components; each image of 'fields' must have one", name, f.components()), "tensor_fit");
       if (!im.arrays.empty() && (f.association != im.association || f.array.count() != im.count()))
-        fail_usage(fmt::format("field '{}' lies elsewhere than '{}'", name, p.fields[0]), "tensor_fit",
-                   "all images on the points or all on the cells");
+        fail_usage(fmt::format("fields '{}' and '{}' are not on the same points or cells", name, p.fields[0]), "tensor_fit",
+                   "put all images on the points or all on the cells");
       im.association = f.association;
       im.arrays.push_back(f.array), im.names.push_back(name);
     }
@@ -40,13 +40,13 @@ Images images_of(const Dataset& d, const TensorFitParams& p, size_t volumes) {
       if (!f && g.association != Association::whole && size_t(g.components()) == volumes) f = &g;
     if (!f)
       fail_usage(fmt::format("no field has {} components, one for each b-value", volumes), "tensor_fit",
-                 "a series of volumes becomes one field by the source gradient_images path=FILE");
+                 "the source gradient_images path=FILE turns a series of volumes into one field");
     im.association = f->association;
     for (int c = 0; c < f->components(); ++c) im.arrays.push_back(f->array.component(c));
     im.names.push_back(f->name);
   }
   if (im.arrays.size() != volumes) fail_usage(fmt::format("{} images for {} b-values", im.arrays.size(), volumes), "tensor_fit");
-  if (im.association == Association::whole) fail_usage("the images lie on the whole, not on points or cells", "tensor_fit");
+  if (im.association == Association::whole) fail_usage("the images belong to the whole dataset, not to points or cells", "tensor_fit");
   for (const Array& a : im.arrays) im.wide |= element_size(a.type()) == 8;
   return im;
 }
@@ -87,21 +87,21 @@ bool wanted(std::span<const double> signal, const GradientTable& t, const Tensor
 }  // namespace
 
 void describe(Schema& s, TensorFitParams& p) {
-  s("field", p.field, "Field with one component for each gradient; default: the first with as many components as there are b-values.");
-  s("fields", p.fields, "In its place: fields of one component, in the order of the gradients.");
-  s("bvals", p.bvals, "Text file of b-values in s/mm^2, one a volume; default: the field 'bval' that comes with a NIfTI file.")
+  s("field", p.field, "Field with one component per gradient; default: the first with as many components as there are b-values.");
+  s("fields", p.fields, "Alternatively, fields of one component, in the order of the gradients.");
+  s("bvals", p.bvals, "Text file of b-values in s/mm^2, one per volume; default: the field 'bval' that comes with a NIfTI file.")
       .unit("file");
   s("bvecs", p.bvecs, "Text file of directions, three rows or three columns; default: the field 'bvec' that comes with a NIfTI file.")
       .unit("file");
   s("frame", p.frame,
-    "What the directions are relative to. fsl: the axes of the image, x turned where they are right-handed, as FSL's files are; voxel: the "
-    "axes of the image; world: x, y, z of the mesh.");
-  s("b0", p.b0, "Volumes with b up to this count as without gradient where they have no direction.").at_least(0).unit("s/mm^2");
+    "Frame of the directions. fsl: the image axes, with x flipped if they are right-handed, as in FSL's files; voxel: the image axes; "
+    "world: x, y, z of the mesh.");
+  s("b0", p.b0, "Volumes without direction and with b up to this value count as unweighted.").at_least(0).unit("s/mm^2");
   s("method", p.method,
-    "Least squares of the logarithms: linear; weighted by the squared signals; positive: weighted, with a Cholesky factor where the tensor "
-    "would have eigenvalues of zero or below.");
-  s("mask", p.mask, "Field beside the images that is above 0 where tensors are wanted.");
-  s("min_signal", p.min_signal, "No tensor where the mean signal without gradient is below this.").unit("@field");
+    "Least squares of the logarithms: linear; weighted, by the squared signals; positive: weighted, with a Cholesky factor where the "
+    "tensor would otherwise have eigenvalues of zero or below.");
+  s("mask", p.mask, "Field that is above 0 where tensors are wanted.");
+  s("min_signal", p.min_signal, "Make no tensor where the mean unweighted signal is below this.").unit("@field");
   s("name", p.name, "Name of the tensor field.");
 }
 
@@ -141,7 +141,7 @@ DatasetPtr tensor_fit(const DatasetPtr& in, const TensorFitParams& p, Context& c
     ctx.info(fmt::format("tensor_fit: {} of {} tensors were not positive and were fitted by a Cholesky factor", counts.raised, n));
   if (counts.negative > 0)
     ctx.warn(fmt::format(
-        "tensor_fit: {} of {} tensors have negative eigenvalues, which diffusion cannot have; method=positive fits them without",
+        "tensor_fit: {} of {} tensors have negative eigenvalues, which are impossible for diffusion; method=positive avoids them",
         counts.negative, n));
   DatasetParts parts = in->parts();
   for (const std::string& name : images.names) parts.fields.remove(name, images.association);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surfaces that stand for one tensor: vertices in the frame of its eigenvectors, the same faces for all tensors of a shape.
+// The surfaces that represent one tensor: vertices in the frame of its eigenvectors, the same faces for all tensors of a shape.
 #pragma once
 #include <array>
 #include <cstdint>

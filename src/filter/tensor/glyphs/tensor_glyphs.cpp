@@ -106,7 +106,7 @@ int extents(const Box3& box, double& volume) {
   return dimension;
 }
 
-// A long and narrow box is small on the picture: no more glyphs along it than can be told apart.
+// A long and narrow box is small on the picture: no more glyphs along it than can be distinguished.
 int64_t fitting(const DatasetPtr& in, const TensorGlyphsParams& p) {
   if (p.count > 0) return p.count;
   const Vec3 size = in->bounds().size();
@@ -147,7 +147,7 @@ std::vector<int64_t> in_cubes(const std::vector<Vec3>& at, const std::vector<uin
   }
 }
 
-// Median distance to the nearest other place: what keeps glyphs on curves and in clusters apart. 0 when there are too many to look at.
+// Median distance to the nearest other place: keeps glyphs on curves and in clusters separate. 0 when there are too many to look at.
 double usual_distance(const std::vector<Vec3>& at) {
   if (at.size() < 2 || at.size() > 5000) return 0;
   std::vector<double> nearest(at.size(), HUGE_VAL);
@@ -181,7 +181,7 @@ Chosen choose(const DatasetPtr& in, const TensorField& t, const TensorGlyphsPara
       if (dims[a] > 1) c.spacing = std::min(c.spacing, length(at[middle] - at[middle - step[a]]) * double(stride));
     if (!std::isfinite(c.spacing)) c.spacing = 1;
     if (stride > 1 && p.stride == 0)
-      ctx.info(fmt::format("tensor_glyphs: one at every {}. point along each axis ({} of {})", stride, c.ids.size(), at.size()));
+      ctx.info(fmt::format("tensor_glyphs: stride {} along each axis ({} of {})", stride, c.ids.size(), at.size()));
   } else {
     std::vector<uint8_t> kept = good;
     if (p.stride > 1)
@@ -195,7 +195,7 @@ Chosen choose(const DatasetPtr& in, const TensorField& t, const TensorGlyphsPara
     const int dimension = box.empty() ? 0 : extents(box, volume);
     c.spacing = usual_distance(chosen);
     if (!(c.spacing > 0)) c.spacing = dimension > 0 ? std::pow(volume / double(c.ids.size()), 1.0 / dimension) : 1;
-    if (edge > 0) ctx.info(fmt::format("tensor_glyphs: {} of {} places, about {:.3g} apart", c.ids.size(), at.size(), c.spacing));
+    if (edge > 0) ctx.info(fmt::format("tensor_glyphs: {} of {} points, about {:.3g} apart", c.ids.size(), at.size(), c.spacing));
   }
   if (unusable > 0)
     ctx.info(fmt::format("tensor_glyphs: {} of {} tensors get no glyph (zero, no value, hidden, masked or FA below min_fa)", unusable,
@@ -224,7 +224,7 @@ std::vector<double> factors(const Chosen& c, TensorShape shape, const TensorGlyp
   if (!p.scale) {
     if (scale == TensorScale::eigenvalues && c.with_negative == 0) longest = std::min(most, 1.6 * median);
     ctx.info(fmt::format("tensor_glyphs: scale={}; the largest eigenvalue is {:.3g} times the median{}", word_of(scale), most / median,
-                         longest < most ? "; those above 1.6 times it are drawn as that" : ""));
+                         longest < most ? "; those above 1.6 times it are drawn at that size" : ""));
   }
   const double low = median > 0 ? median / 50 : most;
   for (size_t i = 0; i < m.size(); ++i) {
@@ -245,7 +245,7 @@ Surface build(const Chosen& c, const GlyphPattern& pattern, const std::vector<do
   const size_t n = c.ids.size(), nv = pattern.vertices(), corners = pattern.ids().size(), faces = pattern.offsets().size() - 1;
   if (n * std::max(corners, nv) >= (size_t(1) << 31))
     fail_usage(fmt::format("{} glyphs of {} corners are too many for one surface", n, corners), "tensor_glyphs",
-               "count, stride or resolution make it smaller");
+               "reduce count or resolution, or increase stride");
   Surface s;
   float *xyz = nullptr, *normals = nullptr, *relative = nullptr;
   int8_t* sign = nullptr;
@@ -308,24 +308,23 @@ Array repeated(const Chosen& c, size_t nv, int components, F&& f) {
 void describe(Schema& s, TensorGlyphsParams& p) {
   describe_tensors(s, p.tensors);
   s("shape", p.shape,
-    "Surface for a tensor: half axes by the eigenvalues, or lobes by the normal (reynolds) or shear stress (hwy) across each direction.");
+    "Shape of a tensor: half axes by the eigenvalues, or lobes by the normal (reynolds) or shear stress (hwy) across each direction.");
   s("gamma", p.gamma, "Sharpness of the edges of superquadrics; 0: ellipsoids.").at_least(0);
-  s("min_ratio", p.min_ratio, "Half axes below this share of the longest count as that, so that thin ones are seen; not for lobes.")
+  s("min_ratio", p.min_ratio, "Half axes below this share of the longest are drawn at it, so that thin glyphs stay visible; not for lobes.")
       .range(0, 1);
-  s("count", p.count, "About how many glyphs at most, when no stride is given; 0: 600, in long and narrow data fewer.").range(0, 1e7);
-  s("stride", p.stride, "A glyph at every so-many-th point along each axis; 0: chosen by count.").at_least(0);
-  s("mask", p.mask, "Field beside the tensors that is above 0 where glyphs may be.");
-  s("min_fa", p.min_fa, "No glyphs where the fractional anisotropy is below this.").range(0, 10);
+  s("count", p.count, "Approximate maximum number of glyphs if no stride is given; 0: 600, fewer in long and narrow data.").range(0, 1e7);
+  s("stride", p.stride, "Place a glyph at every n-th point along each axis; 0: from count.").at_least(0);
+  s("mask", p.mask, "Field that is above 0 where glyphs may be placed.");
+  s("min_fa", p.min_fa, "Place no glyphs where the fractional anisotropy is below this.").range(0, 10);
   s("scale", p.scale,
-    "Sizes by the eigenvalues, by their logarithm, or normalized (all alike large); auto: log where the largest is more than 5 times the "
-    "median (with negative ones 2.5 times), else eigenvalues, of positive tensors up to 1.6 times the median.");
-  s("size", p.size, "Length of the longest glyph as a share of the distance between glyphs.").positive();
-  s("factor", p.factor, "Half axis = absolute eigenvalue times this, in place of scale and size.").positive();
+    "Size by the eigenvalues, by their logarithm, or normalized (all of one size); auto: log if the largest is more than 5 times the "
+    "median (2.5 times with negative ones), else eigenvalues, limited to 1.6 times the median for positive tensors.");
+  s("size", p.size, "Length of the longest glyph, as a share of the distance between glyphs.").positive();
+  s("factor", p.factor, "Half axes are the absolute eigenvalues times this, instead of scale and size.").positive();
   s("color", p.color,
-    "direction (red x, green y, blue z), FA, sign, none, or the name of a field; auto: the relative stress of lobes, the signed share "
-    "where "
-    "more than a tenth have negative eigenvalues, else direction.");
-  s("resolution", p.resolution, "Rows of faces from pole to pole.").range(2, 200);
+    "Colour by direction (red x, green y, blue z), FA, sign, none, or the name of a field; auto: the relative stress for lobes, the signed "
+    "share if more than a tenth have negative eigenvalues, else direction.");
+  s("resolution", p.resolution, "Number of rows of faces from pole to pole.").range(2, 200);
 }
 
 DatasetPtr tensor_glyphs(const DatasetPtr& in, const TensorGlyphsParams& p, Context& ctx) {

@@ -56,35 +56,38 @@ std::vector<double> lengths_from_start(const TensorLines& lines) {
 
 void describe(Schema& s, HyperstreamlinesParams& p) {
   describe_tensors(s, p.tensors);
-  s("eigenvector", p.eigenvector, "Which eigenvector to follow; 1 belongs to the largest eigenvalue, 3 to the smallest.").range(1, 3);
-  s("seeds", p.seeds, "Where lines begin: x,y,z,x,y,z,...; default: the points of a second input, else an even lattice.");
-  s("count", p.count, "About how many seeds an even lattice in the box of the data has.").range(1, 1e7);
-  s("direction", p.direction, "The way from a seed; the sign of an eigenvector is a convention (largest component positive).");
-  s("section", p.section,
-    "What is drawn around the line: an ellipse or a cross whose half axes are the other two eigenvalues, or the line alone.");
-  s("factor", p.factor, "Half axis of the section = absolute eigenvalue times this; default: from the values and the size of the data.")
+  s("eigenvector", p.eigenvector, "Eigenvector to follow; 1 belongs to the largest eigenvalue, 3 to the smallest.").range(1, 3);
+  s("seeds", p.seeds, "Seed points x,y,z,x,y,z,...; default: the points of a second input, else a regular lattice.");
+  s("count", p.count, "Approximate number of seeds of the regular lattice in the bounding box.").range(1, 1e7);
+  s("direction", p.direction, "Direction from a seed; the sign of an eigenvector is a convention (largest component positive).");
+  s("section", p.section, "Cross-section of the line: an ellipse or a cross whose half axes are the other two eigenvalues, or none.");
+  s("factor", p.factor,
+    "Half axes of the cross-section are the absolute eigenvalues times this; default: from the values and the size of the data.")
       .positive();
-  s("max_radius", p.max_radius, "Larger sections are scaled down to this, ratio kept; default: 3 % of the diagonal of the data.")
+  s("max_radius", p.max_radius,
+    "Larger cross-sections are scaled down to this radius, with their ratio kept; default: 3 % of the diagonal of the data.")
       .positive()
       .unit("length");
-  s("min_radius", p.min_radius, "Shorter half axes are drawn this long; 0: exact; default: 0.1 % of the diagonal of the data.")
+  s("min_radius", p.min_radius, "Shorter half axes are drawn at this length; 0: exact; default: 0.1 % of the diagonal of the data.")
       .at_least(0)
       .unit("length");
-  s("sides", p.sides, "Sides of an elliptic section.").range(3, 256);
+  s("sides", p.sides, "Number of sides of an elliptic cross-section.").range(3, 256);
   s("step", p.step, "Length of a step.").positive().unit("cells");
-  s("max_length", p.max_length, "Length of each half of a line; default: four times the diagonal of the data.").positive().unit("length");
-  s("max_steps", p.max_steps, "Steps of each half of a line.").range(1, 1e7);
-  s("min_gap", p.min_gap, "A line ends where its eigenvalue is closer to the next one than this share of the largest absolute eigenvalue.")
+  s("max_length", p.max_length, "Maximum length of each half of a line; default: four times the diagonal of the data.")
+      .positive()
+      .unit("length");
+  s("max_steps", p.max_steps, "Maximum number of steps of each half of a line.").range(1, 1e7);
+  s("min_gap", p.min_gap, "End a line where its eigenvalue is closer to the next one than this share of the largest absolute eigenvalue.")
       .range(0, 1);
-  s("min_eigenvalue", p.min_eigenvalue, "A line ends where the absolute value of its eigenvalue is below this.").at_least(0);
-  s("interpolation", p.interpolation, "Between the points: components of the tensor, or its logarithm (positive tensors only).");
-  s("fields", p.fields, "Fields of the input to carry along the lines; default: all but the tensors.");
+  s("min_eigenvalue", p.min_eigenvalue, "End a line where the absolute value of its eigenvalue is below this.").at_least(0);
+  s("interpolation", p.interpolation, "Interpolate the components of the tensor, or its logarithm (positive tensors only).");
+  s("fields", p.fields, "Fields of the input to carry along the lines; default: all except the tensors.");
 }
 
 DatasetPtr hyperstreamlines(const DatasetPtr& in, const DatasetPtr& second, const HyperstreamlinesParams& p, Context& ctx) {
   const TensorSampler sampler(in, p.tensors, p.interpolation, "hyperstreamlines", ctx);
   if (p.eigenvector > sampler.dimension())
-    fail_usage("on a surface there are two eigenvectors; the third is its normal", "hyperstreamlines", "eigenvector 1 or 2");
+    fail_usage("on a surface there are two eigenvectors", "hyperstreamlines", "choose eigenvector 1 or 2");
   const std::vector<Vec3> seeds = seeds_for(in, second, p);
   const double diagonal = in->bounds().diagonal();
   TensorLineOptions o;
@@ -94,7 +97,7 @@ DatasetPtr hyperstreamlines(const DatasetPtr& in, const DatasetPtr& second, cons
   o.min_gap = p.min_gap, o.min_eigenvalue = p.min_eigenvalue;
   const TensorLines lines = trace_tensor_lines(sampler, seeds, o, ctx);
   if (lines.lines() < seeds.size())
-    ctx.info(fmt::format("hyperstreamlines: {} of {} seeds give no line (outside, without a value, or without a single direction)",
+    ctx.info(fmt::format("hyperstreamlines: {} of {} seeds give no line (outside, without a value, or without a unique direction)",
                          seeds.size() - lines.lines(), seeds.size()));
 
   DatasetParts parts;
@@ -116,8 +119,8 @@ DatasetPtr hyperstreamlines(const DatasetPtr& in, const DatasetPtr& second, cons
     LineSurface surface = sections_around(lines, o.eigenvector, s, ctx);
     if (!p.factor) ctx.info(fmt::format("hyperstreamlines: factor {:.4g}", s.factor));
     if (surface.limited > 0)
-      ctx.info(fmt::format("hyperstreamlines: {} of {} sections are scaled down to max_radius {:.4g}", surface.limited, lines.points.size(),
-                           s.max_radius));
+      ctx.info(fmt::format("hyperstreamlines: {} of {} cross-sections are scaled down to max_radius {:.4g}", surface.limited,
+                           lines.points.size(), s.max_radius));
     repeat = surface.per_section;
     line_of_cell = std::move(surface.line);
     normals = surface.normals;

@@ -40,8 +40,8 @@ void describe(Schema& s, HyperstreamlinesParams& p);
 /// where it comes back to its seed.
 ///
 /// A SurfaceMesh: tubes of elliptic section, crosses, or plain lines. Half axes are the absolute values of the other two eigenvalues times
-/// `factor` (default: 90 % of them stay below 1.2 % of the data's diagonal; max_radius 3 % of it keeps singular places in bounds, a note
-/// tells how many sections; min_radius 0.1 % keeps thin ones visible). Point fields: "eigenvalue" (the followed one, with its sign),
+/// `factor` (default: 90 % of them stay below 1.2 % of the data's diagonal; max_radius, 3 % of it, bounds singular places, and a note gives
+/// the number of sections; min_radius 0.1 % keeps thin ones visible). Point fields: "eigenvalue" (the followed one, with its sign),
 /// "eigenvalue 1" to "3", "length" (from the line's start), "Normals" of surfaces, and `fields` of the input (default: all but the
 /// tensors). Cell fields: "line" (labels), "seed", "stop" (0 outside, 1 length, 2 steps, 3 degenerate, 4 eigenvalue, 5 anisotropy, 6 angle,
 /// 7 closed; of the forward end). Seeds that give no line are counted in a note. Throws Error(usage) for bad seeds, points without cells,

@@ -150,7 +150,7 @@ LineSurface sections_around(const TensorLines& lines, int k, const SectionOption
   const size_t vertices = lines.points.size() * out.per_section;
   if (vertices >= (size_t(1) << 31) / 4)
     fail_usage(fmt::format("{} vertices are too many for one surface", vertices), "hyperstreamlines",
-               "fewer seeds, a larger step, fewer sides");
+               "use fewer seeds, a larger step or fewer sides");
   float *xyz = nullptr, *normals = nullptr;
   out.mesh.points.xyz = Array::make<float>(vertices, 3, &xyz);
   out.normals = Array::make<float>(vertices, 3, &normals);

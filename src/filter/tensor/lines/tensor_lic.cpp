@@ -12,27 +12,26 @@ namespace sg {
 
 void describe(Schema& s, TensorLicParams& p) {
   describe_tensors(s, p.tensors);
-  s("eigenvector", p.eigenvector, "Which eigenvector in the surface to follow: 1 of the larger eigenvalue, 2 of the smaller one.")
-      .range(1, 2);
+  s("eigenvector", p.eigenvector, "In-surface eigenvector to follow: 1 of the larger eigenvalue, 2 of the smaller.").range(1, 2);
   s("density", p.density,
-    "Samples along the diagonal of the data's box: triangles are split until their edges are no longer than the diagonal divided by this; "
-    "0 keeps the triangles of the mesh. Default: 400, or fewer where that would make more than 150 000 to 300 000 triangles.")
+    "Samples along the diagonal of the bounding box: triangles are split until their edges are no longer than the diagonal divided by "
+    "this; 0 keeps the triangles of the mesh. Default: 400, or fewer if that would make more than 150 000 to 300 000 triangles.")
       .range(0, 100000);
-  s("steps", p.steps, "Steps of each line each way.").range(1, 10000);
+  s("steps", p.steps, "Steps of each line in each direction.").range(1, 10000);
   s("step", p.step, "Length of a step; 0: half the mean edge of the split triangles.").unit("length").at_least(0);
-  s("kernel", p.kernel, "Weights along a line: hann fades out, box is even.");
-  s("stretch", p.stretch, "Spreads the means over 0 to 1 by what is known of their variance; false leaves the means of the noise.");
+  s("kernel", p.kernel, "Weights along a line: hann fades out, box is uniform.");
+  s("stretch", p.stretch, "Spread the means over 0 to 1 by their known variance; false keeps the means of the noise.");
   s("fade", p.fade,
-    "Anisotropy |a - b| / (|a| + |b|) of the two eigenvalues in the surface from which on the texture is full; it fades below, where the "
-    "direction means little. 0: full everywhere.")
+    "Anisotropy |a - b| / (|a| + |b|) of the two in-surface eigenvalues from which the texture has full contrast; below it fades, since "
+    "the direction means little there. 0: full everywhere.")
       .range(0, 1);
-  s("isotropic", p.isotropic, "What it fades to: noise (lines get shorter, down to grains) or gray (no contrast).");
-  s("seed", p.seed, "Number of the noise.");
+  s("isotropic", p.isotropic, "What the texture fades to: noise (lines get shorter, down to grains) or gray (no contrast).");
+  s("seed", p.seed, "Random seed of the noise.");
 }
 
 namespace {
 
-/// What is no tensor of this surface is refused before work is done; the name of the field.
+/// What is not a tensor of this surface is refused before work is done; the name of the field.
 std::string accepted(const Dataset& surface, const TensorSource& source, Context& ctx) {
   if (const Field* f = find_tensors(surface, source.field); f && f->role == Role::vectors && !source.order)
     fail_usage(fmt::format("field '{}' holds vectors, not tensors", f->name), "tensor_lic",
@@ -40,9 +39,9 @@ std::string accepted(const Dataset& surface, const TensorSource& source, Context
   const TensorField t = read_tensors(surface, source, "tensor_lic", ctx);
   const Box3 box = surface.bounds();
   if (t.dimension == 2 && box.hi.z - box.lo.z > 1e-6 * box.diagonal())
-    fail_usage(fmt::format("field '{}' has {} components, a tensor in the xy-plane, and the surface is not in it", t.field.name,
-                           t.field.components()),
-               "tensor_lic", "take tensors of 9 or 6 components, or flat data");
+    fail_usage(fmt::format("field '{}' has {} components, a tensor in the xy-plane, but the surface does not lie in that plane",
+                           t.field.name, t.field.components()),
+               "tensor_lic", "use tensors of 9 or 6 components, or flat data");
   return t.field.name;
 }
 

@@ -153,7 +153,7 @@ std::string_view tensor_stop_name(TensorStop s) {
 }
 
 TensorLines trace_tensor_lines(const TensorSampler& sampler, std::span<const Vec3> seeds, const TensorLineOptions& options, Context& ctx) {
-  need_memory(double(seeds.size()) * double(sizeof(Line)), fmt::format("{} seeds", seeds.size()), "seeds", "take fewer: count, seeds");
+  need_memory(double(seeds.size()) * double(sizeof(Line)), fmt::format("{} seeds", seeds.size()), "seeds", "use fewer: count, seeds");
   std::vector<Line> lines(seeds.size());
   parallel_for(
       seeds.size(), 8,
@@ -203,7 +203,7 @@ std::vector<Vec3> even_places(const Box3& box, int64_t count) {
 
 std::vector<Vec3> listed_places(const std::vector<double>& numbers, std::string_view who) {
   if (numbers.size() % 3 != 0)
-    fail_usage(fmt::format("seeds has {} numbers, which are no whole points", numbers.size()), std::string(who), "x,y,z,x,y,z,...");
+    fail_usage(fmt::format("seeds has {} numbers, not a multiple of three", numbers.size()), std::string(who), "x,y,z,x,y,z,...");
   std::vector<Vec3> r;
   for (size_t i = 0; i < numbers.size(); i += 3) r.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
   return r;

@@ -50,11 +50,11 @@ TensorLines trace_tensor_lines(const TensorSampler& sampler, std::span<const Vec
 
 /// About `count` places of an even lattice inside a box; axes without extent get one.
 std::vector<Vec3> even_places(const Box3& box, int64_t count);
-/// From a list x,y,z,... Throws Error(usage) naming `who` when it is no multiple of three.
+/// From a list x,y,z,... Throws Error(usage) naming `who` when it is not a multiple of three.
 std::vector<Vec3> listed_places(const std::vector<double>& numbers, std::string_view who);
 
 /// Adds `fields` of the sampler's dataset at the points of the lines (named ones; none named: all but the tensors). `repeat`: how often
-/// each point's values stand one after the other (vertices of a section).
+/// each point's values are stored one after the other (vertices of a section).
 void carry_along(FieldSet& out, const TensorSampler& sampler, const std::vector<Vec3>& points, const std::vector<std::string>& fields,
                  size_t repeat, Context& ctx);
 

@@ -110,16 +110,18 @@ FieldSet line_fields(const TensorLines& lines, int dimension, const std::string&
 
 void describe(Schema& s, TractographyParams& p) {
   describe_tensors(s, p.tensors);
-  s("seeds", p.seeds, "Where lines begin: x,y,z,x,y,z,...; default: the points of a second input, else every point of the data.");
-  s("mask", p.mask, "Point field that is above 0 where lines may begin.").takes(fields::on_points);
-  s("stride", p.stride, "Lines begin at every so-many-th point along each axis.").at_least(1);
-  s("seed_fa", p.seed_fa, "Lines begin only where the fractional anisotropy is at least this.").range(0, 1);
-  s("min_fa", p.min_fa, "Lines end where the fractional anisotropy falls below this.").range(0, 1);
-  s("max_angle", p.max_angle, "Lines end where they turn by more than this within one cell length.").range(0, 180).unit("deg");
+  s("seeds", p.seeds, "Seed points x,y,z,x,y,z,...; default: the points of a second input, else every point of the data.");
+  s("mask", p.mask, "Point field that is above 0 where lines may start.").takes(fields::on_points);
+  s("stride", p.stride, "Start lines at every n-th point along each axis.").at_least(1);
+  s("seed_fa", p.seed_fa, "Start lines only where the fractional anisotropy is at least this.").range(0, 1);
+  s("min_fa", p.min_fa, "End lines where the fractional anisotropy falls below this.").range(0, 1);
+  s("max_angle", p.max_angle, "End lines where they turn by more than this within one cell length.").range(0, 180).unit("deg");
   s("step", p.step, "Length of a step.").positive().unit("cells");
-  s("min_length", p.min_length, "Shorter lines are left out.").at_least(0).unit("length");
-  s("max_length", p.max_length, "Length of each half of a line; default: four times the diagonal of the data.").positive().unit("length");
-  s("interpolation", p.interpolation, "Between the points: components of the tensor, or its logarithm (positive tensors only).");
+  s("min_length", p.min_length, "Leave out shorter lines.").at_least(0).unit("length");
+  s("max_length", p.max_length, "Maximum length of each half of a line; default: four times the diagonal of the data.")
+      .positive()
+      .unit("length");
+  s("interpolation", p.interpolation, "Interpolate the components of the tensor, or its logarithm (positive tensors only).");
 }
 
 DatasetPtr tractography(const DatasetPtr& in, const DatasetPtr& second, const TractographyParams& p, Context& ctx) {

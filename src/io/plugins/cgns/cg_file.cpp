@@ -50,14 +50,14 @@ CgFile::CgFile(const std::string& path) : path_(path) {
   }
   int type = CGIO_FILE_NONE;
   if (cgio_check_file(path.c_str(), &type) != CGIO_ERR_NONE)
-    fail_data(fmt::format("is no CGNS file: {}", message()), path, "it may be cut or damaged");
+    fail_data(fmt::format("is not a CGNS file: {}", message()), path, "it may be truncated or damaged");
   if (cgio_open_file(path.c_str(), CGIO_MODE_READ, type, &file_) != CGIO_ERR_NONE)
-    fail_data(fmt::format("cannot be opened: {}", message()), path, "it may be cut or damaged");
+    fail_data(fmt::format("cannot be opened: {}", message()), path, "it may be truncated or damaged");
   double id = 0;
   if (cgio_get_root_id(file_, &id) != CGIO_ERR_NONE) {
     const std::string why = message();
     cgio_close_file(file_);
-    fail_data(fmt::format("has no tree: {}", why), path);
+    fail_data(fmt::format("has no node tree: {}", why), path);
   }
   root_.id = id;
 }
@@ -74,7 +74,7 @@ Node CgFile::node_of(double id, const std::string& parent) const {
   n.path = parent;
   // Longer than the library promises: a damaged ADF file has types of 32 characters.
   char name[128] = {}, label[128] = {}, type[128] = {};
-  if (cgio_get_name(file_, id, name) != CGIO_ERR_NONE) fail(fmt::format("a node has no name: {}", message()), n);
+  if (cgio_get_name(file_, id, name) != CGIO_ERR_NONE) fail(fmt::format("cannot read the name of a node: {}", message()), n);
   n.name = name;
   n.path = parent + "/" + n.name;
   if (cgio_get_label(file_, id, label) != CGIO_ERR_NONE || cgio_get_data_type(file_, id, type) != CGIO_ERR_NONE)
@@ -86,7 +86,7 @@ Node CgFile::node_of(double id, const std::string& parent) const {
   cgsize_t dims[CGIO_MAX_DIMENSIONS + 1] = {};
   if (cgio_get_dimensions(file_, id, &rank, dims) != CGIO_ERR_NONE) fail(fmt::format("its size cannot be read: {}", message()), n);
   for (int k = 0; k < std::min(rank, CGIO_MAX_DIMENSIONS); ++k) {
-    if (dims[k] < 0) fail(fmt::format("has a size of {}", dims[k]), n, "sizes of 2^31 and more are not read");
+    if (dims[k] < 0) fail(fmt::format("has a size of {}", dims[k]), n, "sizes of 2^31 and more are not supported");
     n.dims.push_back(size_t(dims[k]));
   }
   return n;
@@ -96,15 +96,15 @@ Node CgFile::node_of(double id, const std::string& parent) const {
 void CgFile::check_link(const Node& node, double id) const {
   int file_length = 0, name_length = 0;
   if (cgio_link_size(file_, id, &file_length, &name_length) != CGIO_ERR_NONE || file_length > 4096 || name_length > 4096)
-    fail(fmt::format("a link that cannot be read: {}", message()), node);
+    fail(fmt::format("has a link that cannot be read: {}", message()), node);
   std::string file(8192, '\0'), name(8192, '\0');
   if (cgio_get_link(file_, id, file.data(), name.data()) != CGIO_ERR_NONE)
-    fail(fmt::format("a link that cannot be read: {}", message()), node);
+    fail(fmt::format("has a link that cannot be read: {}", message()), node);
   file.resize(std::strlen(file.c_str()));
   if (file.empty()) return;  // within this file
   const std::string beside = named_file(path_, file);
   for (const std::string& path : {beside, file})
-    if (file_exists(path) && !is_plain_file(path)) fail(fmt::format("links to '{}', which is no file", file), node);
+    if (file_exists(path) && !is_plain_file(path)) fail(fmt::format("links to '{}', which is not a file", file), node);
 }
 
 std::vector<Node> CgFile::children(const Node& node) const {

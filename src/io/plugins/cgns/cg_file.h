@@ -58,7 +58,7 @@ class CgFile {
   size_t file_size_ = 0;
   bool hdf5_ = false;
   void check_link(const Node& node, double id) const;
-  mutable bool links_ = false;  // data may stand in other files
+  mutable bool links_ = false;  // data may be in other files
   int file_ = -1;
   Node root_;
 };

@@ -97,7 +97,7 @@ const ElementKind* element_kind(int64_t type) {
   return type >= 2 && type <= type_pyra13 && kinds[size_t(type)].dimension >= 0 ? &kinds[size_t(type)] : nullptr;
 }
 
-// Version 3.0 alone put PYRA_13 before PYRA_14.
+// Only version 3.0 put PYRA_13 before PYRA_14.
 int64_t numbered(int64_t type, double version) {
   if (std::fabs(version - 3.0) > 0.005 || type < 13 || type > 21) return type;
   return type == 13 ? int64_t(type_pyra13) : type - 1;
@@ -146,7 +146,7 @@ class Zone {
     if (head.empty() || !range || !ids) file_.fail("has no type, range or connectivity", n);
     const std::vector<int64_t> r = file_.integers(*range);
     if (r.size() != 2 || r[0] < 1 || r[1] < r[0] || r[1] - r[0] >= int64_t(ids->count()))
-      file_.fail("its range of element numbers does not fit", n);
+      file_.fail("its range of element numbers does not match", n);
     s.type = numbered(head[0], version_);
     s.first = r[0], s.count = r[1] - r[0] + 1;
     s.ids = file_.numbers(*ids);
@@ -155,8 +155,8 @@ class Zone {
     else {
       const ElementKind* kind = element_kind(s.type);
       if (!kind)
-        file_.fail(fmt::format("elements of type {} are not read", s.type), n,
-                   "read are linear and quadratic elements, MIXED, NGON_n, NFACE_n");
+        file_.fail(fmt::format("elements of type {} are not supported", s.type), n,
+                   "supported: linear and quadratic elements, MIXED, NGON_n, NFACE_n");
       if (s.ids.count() / kind->nodes < size_t(s.count))
         file_.fail(fmt::format("{} elements of {} nodes need more than {} ids", s.count, kind->nodes, s.ids.count()), n);
       s.dimension = kind->dimension;
@@ -170,10 +170,11 @@ class Zone {
     const auto n = int64_t(s.ids.count());
     if (starts) {
       s.offsets = file_.integers(*starts);
-      if (s.offsets.size() != size_t(s.count) + 1) file_.fail(fmt::format("{} places for {} elements", s.offsets.size(), s.count), *starts);
+      if (s.offsets.size() != size_t(s.count) + 1)
+        file_.fail(fmt::format("has {} offsets for {} elements", s.offsets.size(), s.count), *starts);
       for (size_t i = 0; i < s.offsets.size(); ++i)
         if (s.offsets[i] < (i ? s.offsets[i - 1] : 0) || s.offsets[i] > n)
-          file_.fail(fmt::format("place {} is {}", i, s.offsets[i]), *starts);
+          file_.fail(fmt::format("offset {} is {}", i, s.offsets[i]), *starts);
     }
     s.dimension = s.type == type_ngon ? 2 : s.type == type_nface ? 3 : -1;
     if (s.type == type_mixed) {
@@ -184,18 +185,18 @@ class Zone {
         if (known) at = s.offsets[size_t(e)];
         if (at >= n) file_.fail(fmt::format("its list ends before element {}", s.first + e), *s.node);
         const size_t size = mixed_size(s, ids[size_t(at)]);
-        if (int64_t(size) > n - at - 1) file_.fail(fmt::format("its list ends in element {}", s.first + e), *s.node);
+        if (int64_t(size) > n - at - 1) file_.fail(fmt::format("its list ends within element {}", s.first + e), *s.node);
         s.dimension = std::max(s.dimension, mixed_dimension(ids[size_t(at)]));
         at += int64_t(size) + 1;
         if (!known) s.offsets.push_back(at);
-        else if (at > s.offsets[size_t(e) + 1]) file_.fail(fmt::format("element {} is longer than its place", s.first + e), *s.node);
+        else if (at > s.offsets[size_t(e) + 1]) file_.fail(fmt::format("element {} is longer than its entry", s.first + e), *s.node);
       }
     } else if (!starts) {
       std::vector<int64_t> packed, ends{0};
       int64_t at = 0;
       for (int64_t e = 0; e < s.count; ++e) {
         const int64_t size = at < n ? ids[size_t(at)] : -1;
-        if (size < 0 || size > n - at - 1) file_.fail(fmt::format("its list ends in element {}", s.first + e), *s.node);
+        if (size < 0 || size > n - at - 1) file_.fail(fmt::format("its list ends within element {}", s.first + e), *s.node);
         for (int64_t k = 1; k <= size; ++k) packed.push_back(ids[size_t(at + k)]);
         ends.push_back(int64_t(packed.size()));
         at += size + 1;
@@ -210,7 +211,7 @@ class Zone {
     type = numbered(type, version_);
     if (const ElementKind* kind = element_kind(type)) return kind->nodes;
     if (version_ < 3.2 && type > type_ngon && type < type_ngon + 10000) return size_t(type - type_ngon);
-    file_.fail(fmt::format("has an element of type {}, which is not read", type), *s.node);
+    file_.fail(fmt::format("has an element of type {}, which is not supported", type), *s.node);
   }
   int mixed_dimension(int64_t type) const {
     const ElementKind* kind = element_kind(numbered(type, version_));
@@ -285,7 +286,7 @@ class Zone {
         std::upper_bound(sections_.begin(), sections_.end(), number, [](int64_t n, const Section& f) { return n < f.first; });
     const Section* s = after == sections_.begin() ? nullptr : &after[-1];
     if (!s || number - s->first >= s->count || (s->dimension != 2 && s->type != type_mixed))
-      file_.fail(fmt::format("a face is the element {}, which is no polygon", number), *cells.node);
+      file_.fail(fmt::format("a face is element {}, which is not a polygon", number), *cells.node);
     const IndexView ids = index_view(s->ids);
     const auto e = size_t(number - s->first);
     size_t at = 0, corners = 0;
@@ -297,7 +298,7 @@ class Zone {
       else at = e * element_kind(type)->nodes;
       corners = type == 5 || type == 6 ? 3 : 4;
       if (!element_kind(type) || element_kind(type)->dimension != 2)
-        file_.fail(fmt::format("a face is the element {}, which is no polygon", number), *cells.node);
+        file_.fail(fmt::format("a face is element {}, which is not a polygon", number), *cells.node);
     }
     for (size_t k = 0; k < corners; ++k) {
       const int64_t id = zero_based(ids[at + k]);

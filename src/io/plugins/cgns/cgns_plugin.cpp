@@ -23,7 +23,7 @@ std::vector<Node> bases_of(const CgFile& file) {
   return bases;
 }
 
-/// Time values of a base; their numbers when only iterations are told.
+/// Time values of a base; their numbers when only iterations are given.
 std::vector<double> times_of(const CgFile& file, const std::vector<Node>& parts) {
   const Node* iterative = CgFile::labelled(parts, "BaseIterativeData_t");
   if (!iterative) return {};
@@ -36,7 +36,7 @@ std::vector<double> times_of(const CgFile& file, const std::vector<Node>& parts)
   return {};
 }
 
-/// Zones that exist at the step, where the file tells it (ZonePointers); else all.
+/// Zones that exist at the step, if the file states it (ZonePointers); else all.
 std::vector<Node> zones_at(const CgFile& file, const std::vector<Node>& parts, size_t step) {
   std::vector<Node> zones;
   std::vector<std::string> active;
@@ -78,8 +78,7 @@ Data read(const std::string& path, const ReadOptions& options, Context& context)
     base.node = node;
     base.version = version;
     const std::vector<int64_t> dims = file.integers(node);
-    if (dims.size() != 2 || dims[0] < 1 || dims[0] > 3 || dims[1] < dims[0] || dims[1] > 3)
-      file.fail("is of no dimension that is known", node);
+    if (dims.size() != 2 || dims[0] < 1 || dims[0] > 3 || dims[1] < dims[0] || dims[1] > 3) file.fail("has an unknown dimension", node);
     base.cell_dimension = int(dims[0]), base.physical_dimension = int(dims[1]);
     const std::vector<Node> parts = file.children(node);
     std::vector<double> times = times_of(file, parts);

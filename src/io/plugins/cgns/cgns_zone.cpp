@@ -36,10 +36,10 @@ ZoneSize size_of(const CgFile& file, const Node& zone, const std::vector<Node>& 
   const std::string text = type ? file.text(*type) : "Structured";
   z.structured = text == "Structured";
   if (!z.structured && text != "Unstructured")
-    file.fail(fmt::format("is a zone of type '{}'", text), zone, "known are Structured and Unstructured");
+    file.fail(fmt::format("is a zone of type '{}'", text), zone, "supported: Structured and Unstructured");
   const std::vector<int64_t> n = file.integers(zone);
   const size_t rank = zone.dims.empty() ? 0 : zone.dims[0];
-  if (rank < 1 || rank > 3 || n.size() < 2 * rank) file.fail("does not say its size", zone);
+  if (rank < 1 || rank > 3 || n.size() < 2 * rank) file.fail("does not give its size", zone);
   for (size_t a = 0; a < rank; ++a) {
     if (n[a] < 0 || n[rank + a] < 0) file.fail(fmt::format("has {} points and {} cells", n[a], n[rank + a]), zone);
     z.points.push_back(size_t(n[a])), z.cells.push_back(size_t(n[rank + a]));
@@ -61,7 +61,7 @@ std::vector<size_t> rind_of(const CgFile& file, const std::vector<Node>& parts, 
   return rind;
 }
 
-/// The numbers of a node without its rind (or stand-ins for them); empty when its size does not fit `n`.
+/// The numbers of a node without its rind (or placeholders for them); empty when its size does not fit `n`.
 Array inner(const CgFile& file, const Node& node, const std::vector<size_t>& n, const std::vector<size_t>& rind, bool header_only = false) {
   std::vector<size_t> whole = n;
   bool cut = false;
@@ -122,7 +122,7 @@ Points positions(const CgFile& file, const Node& grid, const ZoneSize& size) {
     for (size_t i = 0; i < n; ++i) x[i] = r.get(i) * std::cos(theta.get(i)), y[i] = r.get(i) * std::sin(theta.get(i));
   }
   if (n > 0 && axes[0].empty() && axes[1].empty() && axes[2].empty())
-    file.fail("has no CoordinateX, CoordinateY or CoordinateZ", grid, "spherical and auxiliary coordinates are not read");
+    file.fail("has no CoordinateX, CoordinateY or CoordinateZ", grid, "spherical and auxiliary coordinates are not supported");
   const Array* some = nullptr;
   for (const Array& a : axes)
     if (!a.empty()) some = &a;
@@ -147,7 +147,7 @@ class Fields {
     const Node* location = CgFile::labelled(parts, "GridLocation_t");
     const std::string where = location ? file_.text(*location) : "Vertex";
     if (where != "Vertex" && where != "CellCenter") {
-      context_.info(fmt::format("{}: {} is on {}, which is not read", file_.path(), solution.path, where));
+      context_.info(fmt::format("{}: {} is on {}, which is not supported; it is left out", file_.path(), solution.path, where));
       return;
     }
     const Association association = where == "Vertex" ? Association::point : Association::cell;
@@ -162,7 +162,7 @@ class Fields {
       std::vector<Array> members;
       for (const size_t k : group.members) {
         Array a = inner(file_, *nodes[k], n, rind, options_.header_only);
-        // An unstructured mesh may hold fewer cells than its zone says: those of lower dimension are left out.
+        // An unstructured mesh may have fewer cells than its zone states: those of lower dimension are left out.
         const size_t expected = association == Association::point ? ZoneSize::product(size_.points) : cells_;
         if (a.count() == expected && expected > 0) members.push_back(std::move(a));
         else
@@ -189,7 +189,7 @@ class Fields {
     }
     return false;
   }
-  // DimensionalUnits: five words of 32 characters; told only where a single one is not "Null" or "UserDefined".
+  // DimensionalUnits: five words of 32 characters; given only where a single one is not "Null" or "UserDefined".
   std::string unit_of(const Node& array) const {
     const std::vector<Node> parts = file_.children(array, "Descriptor_t");
     for (const Node& d : parts)

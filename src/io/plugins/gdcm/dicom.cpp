@@ -48,7 +48,7 @@ std::vector<Group> group(const std::vector<DicomPicture>& pictures) {
     if (!home) home = &groups.emplace_back(Group{p.description.empty() ? "series" : p.description, {}});
     home->pictures.push_back(&p);
   }
-  // Names tell apart.
+  // Names are distinguished.
   for (size_t i = 0; i < groups.size(); ++i) {
     size_t same = 0;
     for (size_t j = 0; j < i; ++j) same += groups[j].pictures[0]->description == groups[i].pictures[0]->description;
@@ -105,7 +105,7 @@ void place(UniformGrid& grid, const std::vector<Slice>& v, bool placed, DatasetP
     // A leaning gantry shifts slices sideways: the axis leans with them. Less than half a degree is rounding.
     if (length(cross(normalize(way), z)) > 0.009) {
       z = normalize(way);
-      out.notes.emplace_back("shear", "slices are shifted: the third axis is not at right angles to them");
+      out.notes.emplace_back("shear", "slices are shifted: the third axis is not perpendicular to them");
     } else {
       grid.spacing.z = dot(way, z) / steps;
     }
@@ -198,7 +198,7 @@ std::vector<DicomPicture> headers_of(const std::string& path, Context& context) 
   std::vector<DicomPicture> pictures;
   DicomPicture p;
   if (!is_folder(path)) {
-    if (!read_dicom_header(path, p)) fail_data("holds no picture", path, "it may be a DICOM directory, report or plan");
+    if (!read_dicom_header(path, p)) fail_data("contains no picture", path, "it may be a DICOM directory, report or plan");
     pictures.push_back(std::move(p));
     return pictures;
   }
@@ -216,7 +216,7 @@ std::vector<DicomPicture> headers_of(const std::string& path, Context& context) 
     if (read_dicom_header(file, p)) pictures.push_back(std::move(p));
     else ++others;
   }
-  if (pictures.empty()) fail_data("holds no DICOM pictures", path);
+  if (pictures.empty()) fail_data("contains no DICOM pictures", path);
   if (others) context.info(fmt::format("{}: {} DICOM files without a picture are left out", path, others));
   return pictures;
 }
@@ -233,7 +233,7 @@ Data read_dicom(const std::string& path, const ReadOptions& options, Context& co
       all.parts.push_back({name, make_volume(volumes[i], placed, path, options, context)});
     }
     if (!placed && g.pictures.size() > 1)
-      context.warn(fmt::format("{}: slices of '{}' do not tell their positions: ordered by number", path, g.name));
+      context.warn(fmt::format("{}: slices of '{}' have no positions and are ordered by number", path, g.name));
   }
   if (all.parts.size() == 1) return all.parts[0].data;
   context.info(fmt::format("{}: {} volumes, one part each", path, all.parts.size()));

@@ -56,18 +56,18 @@ struct Walker {
       }
     }
     if (h.length == undefined) h.sequence = true;
-    else if (h.length > end - h.e.value) fail(at, h.e.tag, fmt::format("tells {} bytes, {} follow", h.length, end - h.e.value));
+    else if (h.length > end - h.e.value) fail(at, h.e.tag, fmt::format("announces {} bytes, but {} follow", h.length, end - h.e.value));
     h.e.end = h.length == undefined ? end : h.e.value + h.length;
     return h;
   }
 
   // Items of a sequence from `at`; returns where it ends.
   size_t sequence(size_t at, size_t end, bool open, int depth, bool keep) {
-    if (depth > 16) fail_data(fmt::format("byte {}: sequences nest deeper than 16", at), d.path);
+    if (depth > 16) fail_data(fmt::format("byte {}: sequences are nested more than 16 deep", at), d.path);
     while (at < end) {
       const Head h = head(at, end);
       if (h.e.tag == sequence_end && open) return h.e.value;
-      if (h.e.tag != item_tag) fail(at, h.e.tag, "is no item of a sequence");
+      if (h.e.tag != item_tag) fail(at, h.e.tag, "is not an item of a sequence");
       at = h.length == undefined ? item(h.e.value, end, true, depth, keep) : item(h.e.value, h.e.end, false, depth, keep);
     }
     if (open) fail_data(fmt::format("byte {}: a sequence has no end", at), d.path);
@@ -93,11 +93,11 @@ struct Walker {
     while (at < end) {
       const Head h = head(at, end);
       if (h.e.tag == sequence_end) return h.e.value;
-      if (h.e.tag != item_tag || h.length == undefined) fail(at, h.e.tag, "is no fragment of pixel data");
+      if (h.e.tag != item_tag || h.length == undefined) fail(at, h.e.tag, "is not a fragment of pixel data");
       d.fragment_bytes += h.length;
       at = h.e.end;
     }
-    fail_data(fmt::format("byte {}: the pixel data have no end", at), d.path);
+    fail_data(fmt::format("byte {}: the pixel data has no end", at), d.path);
   }
 
   void dataset(size_t at) {
@@ -168,12 +168,12 @@ DicomElements walk_dicom(std::span<const std::byte> bytes, const std::string& pa
     // Group 2 is always explicit little endian.
     for (at = 132; at + 8 <= bytes.size() && load<uint16_t>(bytes.data() + at) == 2;) {
       const auto h = w.head(at, bytes.size());
-      if (h.sequence) w.fail(at, h.e.tag, "is a sequence where none belongs");
+      if (h.sequence) w.fail(at, h.e.tag, "is an unexpected sequence");
       if (h.e.tag == 0x00020010) d.transfer_syntax = d.text(h.e);
       at = h.e.end;
     }
   } else if (bytes.size() < 16 || (load<uint16_t>(bytes.data()) != 8 && load<uint16_t>(bytes.data()) != 2)) {
-    fail_data("is no DICOM file: there is no 'DICM' at byte 128, and no element of group 8 at its beginning", path);
+    fail_data("is not a DICOM file: there is no 'DICM' at byte 128, and no element of group 8 at its beginning", path);
   } else {
     // Old files without a preamble: the VR is either there or not.
     const auto* vr = reinterpret_cast<const char*>(bytes.data()) + 4;
@@ -181,7 +181,7 @@ DicomElements walk_dicom(std::span<const std::byte> bytes, const std::string& pa
   }
   d.meta_end = at;
   if (d.transfer_syntax == "1.2.840.10008.1.2.1.99")
-    fail_data("its data set is deflated, which is not read", path, "convert it: gdcmconv --raw");
+    fail_data("its data set is deflated, which is not supported", path, "convert it: gdcmconv --raw");
   w.explicit_vr = d.explicit_vr = d.transfer_syntax != "1.2.840.10008.1.2";
   w.big = d.big_endian = d.transfer_syntax == "1.2.840.10008.1.2.2";
   w.dataset(at);

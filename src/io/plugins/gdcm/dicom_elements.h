@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The elements of a DICOM file (PS3.5): every length is checked against the file, nothing is copied. GDCM is only given what has
-// passed here, because it asks for memory before it looks whether a file can fill it.
+// The elements of a DICOM file (PS3.5): every length is checked against the file, nothing is copied. GDCM is only given files that have
+// passed here, because it allocates memory before checking that a file can fill it.
 #pragma once
 #include <cstdint>
 #include <map>

@@ -95,7 +95,7 @@ void decode_here(const std::string& file, const DicomPicture& p, Result& r, char
   std::istringstream stream(file);
   gdcm::ImageReader reader;
   reader.SetStream(stream);
-  if (!reader.Read()) return say(r, "the decoder does not know them");
+  if (!reader.Read()) return say(r, "the decoder does not support them");
   const gdcm::Image* image = &reader.GetImage();
   gdcm::ImageApplyLookupTable lookup;
   gdcm::ImageChangePlanarConfiguration planar;
@@ -108,7 +108,7 @@ void decode_here(const std::string& file, const DicomPicture& p, Result& r, char
   if (image->GetPixelFormat().GetSamplesPerPixel() == 3 && image->GetPlanarConfiguration() == 1) {
     planar.SetInput(*image);
     planar.SetPlanarConfiguration(0);
-    if (!planar.Change()) return say(r, "the colour planes cannot be put together");
+    if (!planar.Change()) return say(r, "the colour planes cannot be combined");
     image = &static_cast<const gdcm::Image&>(planar.GetOutput());
   }
   if (image->GetPhotometricInterpretation() == gdcm::PhotometricInterpretation::YBR_FULL) {
@@ -121,7 +121,7 @@ void decode_here(const std::string& file, const DicomPicture& p, Result& r, char
   r.is_signed = f.GetPixelRepresentation() == 1;
   const size_t need = p.numbers_per_frame() * p.frames * size_t(r.bits_allocated / 8), have = image->GetBufferLength();
   if (have != need || need > room || int(f.GetSamplesPerPixel()) != p.components())
-    return say(r, fmt::format("they unpack to {} bytes, {} are needed", have, need));
+    return say(r, fmt::format("they decompress to {} bytes, but {} are needed", have, need));
   if (!image->GetBuffer(out)) return say(r, "they are damaged");
   r.state = 1;
 }
@@ -140,7 +140,7 @@ Decoded decode(const DicomPicture& p) {
   auto* r = new (shared) Result;
   char* out = static_cast<char*>(shared) + sizeof(Result);
 
-  const ChildLimits limits = reading_limits(room);  // unpacking goes through a few copies of the pixels
+  const ChildLimits limits = reading_limits(room);  // decompression makes a few copies of the pixels
   run_child(limits, p.path, Context(), [&] {
     try {
       decode_here(minimal, p, *r, out, room);
@@ -214,7 +214,7 @@ bool read_dicom_header(const std::string& path, DicomPicture& p) {
   if (p.bits_allocated != 8 && p.bits_allocated != 16 && p.bits_allocated != 32)
     fail_data(fmt::format("{} bits per number", p.bits_allocated), path, "8, 16 or 32");
   if (p.bits_stored < 1 || p.bits_stored > p.bits_allocated || p.high_bit >= p.bits_allocated || p.high_bit + 1 < p.bits_stored)
-    fail_data(fmt::format("{} bits of {} up to bit {}", p.bits_stored, p.bits_allocated, p.high_bit), path);
+    fail_data(fmt::format("{} of {} bits up to bit {}", p.bits_stored, p.bits_allocated, p.high_bit), path);
   p.is_signed = d.whole(0x00280103, 0) == 1;
   p.photometric = d.text(0x00280004);
   p.big_endian = d.big_endian;
@@ -226,7 +226,7 @@ bool read_dicom_header(const std::string& path, DicomPicture& p) {
   const size_t per_frame = p.rows * p.columns * size_t(p.samples) * size_t(p.bits_allocated / 8);
   if (!multiply(per_frame, p.frames, need) ||
       need / (d.encapsulated ? 5000 : 1) > (d.encapsulated ? d.fragment_bytes + 64 : p.pixels_bytes))
-    fail_data(fmt::format("{} frames of {} x {} need {} bytes, there are {}", p.frames, p.columns, p.rows, need,
+    fail_data(fmt::format("{} frames of {} x {} need {} bytes, but there are {}", p.frames, p.columns, p.rows, need,
                           d.encapsulated ? d.fragment_bytes : p.pixels_bytes),
               path);
   read_geometry(d, p);
@@ -266,7 +266,7 @@ void read_dicom_frames(const DicomPicture& p, size_t first, size_t count, Elemen
     in = decoded.bytes;
   } else {
     file = MappedFile(p.path);
-    if (p.pixels_begin > file.size() || p.pixels_bytes > file.size() - p.pixels_begin) fail_data("has changed while it was read", p.path);
+    if (p.pixels_begin > file.size() || p.pixels_bytes > file.size() - p.pixels_begin) fail_data("changed while it was being read", p.path);
     in = file.data() + p.pixels_begin;
   }
   const size_t n = p.numbers_per_frame(), size = size_t(c.bits / 8);

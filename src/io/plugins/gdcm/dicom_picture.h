@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One DICOM file: what its header says of geometry and numbers, and its frames.
+// One DICOM file: geometry and number format from its header, and its frames.
 #pragma once
 #include <string>
 #include <utility>
@@ -20,7 +20,7 @@ struct DicomPicture {
   bool has_orientation = false, has_spacing = false;
   Vec3 x{1, 0, 0}, y{0, 1, 0};  ///< directions of columns and rows
   double spacing_x = 1, spacing_y = 1;
-  double slice_distance = 0;    ///< told between slices (or their thickness); 0 = not
+  double slice_distance = 0;    ///< given spacing between slices (or their thickness); 0 = not
   std::vector<Vec3> positions;  ///< one per frame, one for all, or none
   double instance = 0;
   size_t pixels_begin = 0, pixels_bytes = 0;
@@ -33,7 +33,7 @@ struct DicomPicture {
 /// Reads the header; false when the file holds no picture. Throws Error(data) for a damaged one, or sizes that the file cannot back.
 bool read_dicom_header(const std::string& path, DicomPicture& picture);
 
-/// What frames become: the stored type, widened where slope and intercept ask for it.
+/// What frames become: the stored type, widened where slope and intercept require it.
 ElementType dicom_type(const DicomPicture& picture, bool as_float);
 
 /// Writes frames [first, first + count) as `type` to out, colours together, slope and intercept applied. Only pictures that need

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ENZO output: the text files that tell of grids (NAME.hierarchy) and parameters (NAME). Format: ENZO user guide, "Enzo output formats".
+// ENZO output: the text files that describe grids (NAME.hierarchy) and parameters (NAME). Format: ENZO user guide, "Enzo output formats".
 #pragma once
 #include <map>
 

@@ -75,9 +75,10 @@ struct Parser {
 
   void pointer(std::string_view text, Links& links) const {  // "Grid[1]->NextGridThisLevel = 0"
     const size_t open = text.find('['), close = text.find(']'), equal = text.find('=');
-    if (open == text.npos || close == text.npos || close < open || equal == text.npos) fail("is no pointer to a grid");
+    if (open == text.npos || close == text.npos || close < open || equal == text.npos) fail("is not a pointer to a grid");
     const auto from = parse_int(trim(text.substr(open + 1, close - open - 1))), to = parse_int(trim(text.substr(equal + 1)));
-    if (!from || !to || *from < 1 || *to < 0 || *from > int64_t(most_grids) || *to > int64_t(most_grids)) fail("is no pointer to a grid");
+    if (!from || !to || *from < 1 || *to < 0 || *from > int64_t(most_grids) || *to > int64_t(most_grids))
+      fail("is not a pointer to a grid");
     const std::string_view name = trim(text.substr(close + 1, equal - close - 1));
     if (*to == 0) return;
     if (name == "->NextGridThisLevel") links.same[int(*from)] = int(*to);
@@ -93,7 +94,7 @@ void check(const Draft& d, const std::string& path) {
   for (int a = 0; a < d.rank; ++a) {
     const EnzoGrid& g = d.grid;
     const auto i = size_t(a);
-    if (g.end[i] < g.start[i] || g.end[i] >= g.dims[i]) fail(fmt::format("runs from {} to {} of {}", g.start[i], g.end[i], g.dims[i]));
+    if (g.end[i] < g.start[i] || g.end[i] >= g.dims[i]) fail(fmt::format("extends from {} to {} of {}", g.start[i], g.end[i], g.dims[i]));
     if (!(g.right[a] > g.left[a])) fail(fmt::format("has edges at {} and {}", g.left[a], g.right[a]));
   }
 }
@@ -120,16 +121,16 @@ EnzoHierarchy parse_enzo_hierarchy(std::string_view text, const std::string& pat
     const std::string_view key = trim(line.substr(0, equal)), value = trim(line.substr(equal + 1));
     if (key == "Grid") {
       const auto n = parse_int(value);
-      if (!n || *n < 1 || *n > int64_t(most_grids)) parser.fail(fmt::format("Grid is '{}'", value), "a number from 1 on");
+      if (!n || *n < 1 || *n > int64_t(most_grids)) parser.fail(fmt::format("Grid is '{}'", value), "expected a number of at least 1");
       const auto [it, fresh] = grids.try_emplace(int(*n));
-      if (!fresh) parser.fail(fmt::format("grid {} comes twice", *n));
+      if (!fresh) parser.fail(fmt::format("grid {} appears twice", *n));
       now = &it->second;
       now->grid.number = int(*n), now->line = parser.line;
     } else if (now) {
       parser.entry(*now, h, key, value);
     }
   }
-  if (grids.empty() || grids.begin()->first != 1) fail_data("holds no grid 1", path, "the file is truncated");
+  if (grids.empty() || grids.begin()->first != 1) fail_data("contains no grid 1", path, "the file is truncated");
   h.rank = grids.begin()->second.rank;
   // From grid 1 along the pointers: siblings keep the level, children are one deeper.
   std::vector<std::pair<int, int>> open{{1, 0}};
@@ -138,8 +139,8 @@ EnzoHierarchy parse_enzo_hierarchy(std::string_view text, const std::string& pat
     const auto [n, l] = open.back();
     open.pop_back();
     const auto it = grids.find(n);
-    if (it == grids.end()) fail_data(fmt::format("points to grid {}, which is not there", n), path, "the file is truncated");
-    if (l > 60 || !level.try_emplace(n, l).second) fail_data(fmt::format("reaches grid {} twice", n), path, "the pointers run in circles");
+    if (it == grids.end()) fail_data(fmt::format("points to grid {}, which does not exist", n), path, "the file is truncated");
+    if (l > 60 || !level.try_emplace(n, l).second) fail_data(fmt::format("reaches grid {} twice", n), path, "the pointers form a cycle");
     if (const auto s = links.same.find(n); s != links.same.end()) open.emplace_back(s->second, l);
     if (const auto f = links.finer.find(n); f != links.finer.end()) open.emplace_back(f->second, l + 1);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ENZO output: grids of the hierarchy as an AMR grid, their fields from the HDF5 files beside it, in CGS units where the parameter
+// ENZO output: grids of the hierarchy as an AMR grid, their fields from the HDF5 files next to it, in CGS units where the parameter
 // file gives factors.
 #include <fmt/core.h>
 
@@ -35,9 +35,9 @@ AmrGrid amr_of(const EnzoHierarchy& h, const std::string& path) {
       const auto i = size_t(a);
       const double spacing = (g.right[a] - g.left[a]) / double(n[i]);
       if (fresh) level.spacing[a] = spacing;
-      // Edges are written with few digits: cells sit where the nearest whole number of cells says.
+      // Edges are written with few digits: positions are rounded to whole cells.
       if (std::fabs(spacing / level.spacing[a] - 1) > 1e-3)
-        fail_data(fmt::format("grid {} has cells of {}, others of its level {}", g.number, spacing, level.spacing[a]), path);
+        fail_data(fmt::format("grid {} has cells of {}, but others of its level have {}", g.number, spacing, level.spacing[a]), path);
       patch.lo[i] = std::llround((g.left[a] - amr.origin[a]) / level.spacing[a]);
       patch.hi[i] = patch.lo[i] + static_cast<long long>(n[i]) - 1;
       if (!fresh) continue;
@@ -170,9 +170,9 @@ Data read_enzo(const std::string& path, const ReadOptions& options, Context& con
   AmrGrid amr = amr_of(h, path);
   read_enzo_fields(h, path, options, context, parts);
   if (cell_count(amr) > (size_t(1) << 26) && parts.fields.empty() && !options.header_only && options.fields.empty())
-    fail_data(fmt::format("tells of {} cells but there are no fields on them", cell_count(amr)), path);
+    fail_data(fmt::format("announces {} cells, but there are no fields on them", cell_count(amr)), path);
   if (!parts.fields.empty() || cell_count(amr) <= (size_t(1) << 26)) parts.cell_ghost = refined_cells(amr);
-  if (h.particles > 0) context.info(fmt::format("{}: its {} particles are not read", path, h.particles));
+  if (h.particles > 0) context.info(fmt::format("{}: its {} particles are ignored", path, h.particles));
   parts.mesh = std::move(amr);
   return make_dataset(std::move(parts));
 }

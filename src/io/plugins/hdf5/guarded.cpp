@@ -23,7 +23,7 @@ constexpr int most_milliseconds = 10000;
 constexpr size_t most_memory = size_t(256) << 20;
 constexpr int most_computing = 300000;  // microseconds; reading a text takes a few
 
-// In the child: the answer with a '+' before it. Nothing of the parent's state may be flushed or destroyed.
+// In the child: the answer, prefixed with '+'. Nothing of the parent's state may be flushed or destroyed.
 [[noreturn]] void answer(int to, const std::function<std::string()>& f) {
   become_child({most_memory, 1, most_milliseconds / 1000});
   std::signal(SIGPROF, SIG_DFL);

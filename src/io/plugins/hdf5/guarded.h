@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calls into the library that crash or hang on damaged files.
+// Calls into the library that crash or stall on damaged files.
 #pragma once
 #include <functional>
 #include <optional>

@@ -43,7 +43,7 @@ std::string library_message() {
 
 namespace {
 
-// "" or what the library said, in brackets, without line ends.
+// "" or the library's message, in brackets, without line ends.
 std::string said() {
   std::string t = library_message();
   for (char& c : t)
@@ -73,7 +73,7 @@ herr_t check_link(const char* parent, const char*, const char* child, const char
 void guard_links() {
   static const bool done = [] {
     for (const hid_t list : {H5P_LINK_ACCESS_DEFAULT, H5P_DATASET_ACCESS_DEFAULT, H5P_GROUP_ACCESS_DEFAULT})
-      if (H5Pset_elink_cb(list, check_link, nullptr) < 0) fail_internal("HDF5 takes no guard of external links");
+      if (H5Pset_elink_cb(list, check_link, nullptr) < 0) fail_internal("HDF5 does not accept a callback for external links");
     return true;
   }();
   (void)done;
@@ -82,7 +82,7 @@ void guard_links() {
 }  // namespace
 
 static const std::string& probed(const std::string& path) {
-  if (!is_plain_file(path)) MappedFile missing(path);  // says why it cannot be read
+  if (!is_plain_file(path)) MappedFile missing(path);  // explains why it cannot be read
   probe(path);
   return path;
 }
@@ -96,7 +96,7 @@ File::File(const std::string& path, Unprobed) : path_(path) {
   H5Pset_file_locking(access, false, true);  // reading needs no lock, and some shared folders have none
   H5Pset_fclose_degree(access, H5F_CLOSE_SEMI);
   file_ = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access));
-  if (!file_.good()) fail_data("cannot be opened as HDF5" + said(), path, "the file is truncated, damaged or no HDF5 file");
+  if (!file_.good()) fail_data("cannot be opened as HDF5" + said(), path, "the file is truncated, damaged or not HDF5");
   hsize_t size = 0;
   if (H5Fget_filesize(file_, &size) < 0) fail_data("cannot be measured" + said(), path);
   size_ = size;
@@ -145,7 +145,7 @@ bool File::is_dataset(const std::string& object) const { return is_kind(*this, o
 std::vector<std::string> File::children(const std::string& group) const {
   std::vector<std::string> names;
   const Handle g(H5Gopen2(file_, group.c_str(), H5P_DEFAULT));
-  if (!g.good()) fail("is no group that can be opened", group);
+  if (!g.good()) fail("is not a group that can be opened", group);
   const Handle made(H5Gget_create_plist(g));
   unsigned order = 0;
   H5Pget_link_creation_order(made, &order);
@@ -206,8 +206,8 @@ hid_t native_type(ElementType t) {
   fail_internal("native_type: unknown element type");
 }
 
-// Integers and IEEE floats of 1, 2, 4 or 8 bytes in one of the two byte orders, and enumerations of such. The library converts other
-// types, but trusts what the file says about their bits.
+// Integers and IEEE floats of 1, 2, 4 or 8 bytes in one of the two byte orders, and enumerations of such. The library converts other types,
+// but trusts the file's description of their bits.
 bool plain_type(hid_t type, ElementType& out, bool& big_endian) {
   const Handle base(H5Tget_class(type) == H5T_ENUM ? H5Tget_super(type) : H5Tcopy(type));
   if (!base.good()) return false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// HDF5 files, reading: handles that close themselves, objects named by absolute paths, sizes checked against the file before
-// memory is asked for, errors that say file, object and what the library says. The library prints nothing.
+// HDF5 files, reading: handles that close themselves, objects named by absolute paths, sizes checked against the file before memory is
+// allocated, errors that name the file, the object and the library's message. The library prints nothing.
 #pragma once
 #include <hdf5.h>
 
@@ -73,7 +73,7 @@ class File {
   /// Names in a group, in the order of creation where the file keeps it, else by name; at most 1 million.
   std::vector<std::string> children(const std::string& group) const;
   std::optional<std::string> text_attribute(const std::string& object, const std::string& name) const;
-  /// Nothing when there is no such attribute or it is no list of at most 4096 numbers.
+  /// Nothing when there is no such attribute or it is not a list of at most 4096 numbers.
   std::vector<double> number_attribute(const std::string& object, const std::string& name) const;
 
   [[noreturn]] void fail(std::string problem, const std::string& object, std::string hint = {}) const;
@@ -105,7 +105,7 @@ class Dataset {
   ElementType type() const { return type_; }
   /// Reading costs nothing: the numbers lie in the file as they are needed.
   bool in_place() const { return at_.has_value(); }
-  /// Whether the file is large enough for what the shape says.
+  /// Whether the file is large enough for the shape.
   bool backed() const { return numeric_ && count_ <= backed_ / element_size(type_); }
   const std::string& path() const { return path_; }
 
@@ -135,7 +135,7 @@ class Dataset {
   std::string where() const { return file_.path() + ": '" + path_ + "'"; }
   uint64_t file_size_ = 0;
   uint64_t backed_ = 0;                      // bytes that the file can back
-  std::optional<Storage> storage_;           // where the numbers lie, unless only the library can tell
+  std::optional<Storage> storage_;           // where the numbers are, unless only the library knows
   std::optional<uint64_t> at_;               // the same, when they lie there as they are needed
   mutable std::optional<MappedFile> other_;  // the file behind an external link
   std::string other_path_;

@@ -95,12 +95,12 @@ std::vector<std::byte> unpack(Stored&& s, const Storage& storage, size_t want, c
       data.resize(data.size() - 4);
       const uint32_t sum = fletcher32(data.data(), data.size());
       const uint32_t swapped = (sum & 0x00ff00ff) << 8 | (sum >> 8 & 0x00ff00ff);  // as early libraries wrote it
-      if (said != sum && said != swapped) fail("does not agree with its checksum");
+      if (said != sum && said != swapped) fail("does not match its checksum");
     } else if (storage.filters[f].id == H5Z_FILTER_DEFLATE) {
       thread_local Inflater inflater;
       std::vector<std::byte> out(before);
       if (libdeflate_zlib_decompress(inflater.d, data.data(), data.size(), out.data(), out.size(), nullptr) != LIBDEFLATE_SUCCESS)
-        fail("cannot be unpacked");
+        fail("cannot be decompressed");
       data = std::move(out);
     } else {  // shuffle: all first bytes, all second bytes, ...; what does not fill an element follows
       const size_t size = storage.filters[f].element_size, n = size > 0 ? data.size() / size : 0;
@@ -149,7 +149,7 @@ class ChunkReader {
   }
 
  private:
-  // The library copies as many bytes of an unfiltered chunk as its index says. Looking at every entry takes time with the square of
+  // The library copies as many bytes of an unfiltered chunk as its index states. Looking at every entry takes time with the square of
   // their number, so that of many only the sum is checked.
   void check_sizes() const {
     const hid_t all = H5Dget_space(set_);
@@ -160,14 +160,14 @@ class ChunkReader {
     hsize_t n = 0;
     uint64_t want = 0;
     if (H5Dget_num_chunks(set_, all, &n) < 0 || !multiply(n, chunk_bytes_, want) || H5Dget_storage_size(set_) != want)
-      fail("has not the size that all chunks have");
+      fail("does not have the size of the other chunks");
     std::vector<hsize_t> at(s_.dims.size());
     for (hsize_t i = 0; i < n && n <= 2048; ++i) {
       unsigned mask = 0;
       haddr_t place = 0;
       hsize_t bytes = 0;
       if (H5Dget_chunk_info(set_, all, i, at.data(), &mask, &place, &bytes) < 0 || bytes != chunk_bytes_)
-        fail("has not the size that all chunks have");
+        fail("does not have the size of the other chunks");
     }
   }
   void fetch(const Sizes& chunk) {

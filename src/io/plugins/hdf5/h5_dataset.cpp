@@ -14,7 +14,7 @@
 namespace sg::h5 {
 
 Dataset::Dataset(const File& file, const std::string& path) : file_(file), path_(path) {
-  if (!file.is_dataset(path)) file.fail("is no dataset", path, "the file is truncated or not complete");
+  if (!file.is_dataset(path)) file.fail("is not a dataset", path, "the file is truncated or not complete");
   set_ = Handle(H5Dopen2(file.id(), path.c_str(), H5P_DEFAULT));
   if (!set_.good()) file.fail("cannot be opened", path, "the file is damaged");
   type_in_file_ = Handle(H5Dget_type(set_));
@@ -43,16 +43,16 @@ void Dataset::find_layout() {
   hsize_t size = 0;
   if (!made.good() || !file.good() || H5Fget_filesize(file, &size) < 0) file_.fail("has no layout", path_, "the file is damaged");
   const H5D_layout_t layout = H5Pget_layout(made);
-  if (layout == H5D_VIRTUAL) file_.fail("is a virtual dataset: these are not read", path_, "copy it with h5repack first");
+  if (layout == H5D_VIRTUAL) file_.fail("is a virtual dataset, which is not supported", path_, "copy it with h5repack first");
   if (layout == H5D_CONTIGUOUS && H5Pget_external_count(made) > 0)
-    file_.fail("keeps its numbers in other files: that is not read", path_, "copy it with h5repack first");
+    file_.fail("keeps its numbers in other files, which is not supported", path_, "copy it with h5repack first");
   const int filters = H5Pget_nfilters(made);
   const uint64_t stored = std::min<uint64_t>(H5Dget_storage_size(set_), size);
   if (!multiply(stored, filters > 0 ? 1032 : 1, backed_) || !add(backed_, 1 << 20, backed_)) backed_ = UINT64_MAX;
   uint64_t bytes = H5Tget_size(type_in_file_);
   if (layout == H5D_CHUNKED) {
     std::vector<hsize_t> chunk(dims_.size());
-    if (H5Pget_chunk(made, int(chunk.size()), chunk.data()) != int(dims_.size())) file_.fail("has chunks of other dimensions", path_);
+    if (H5Pget_chunk(made, int(chunk.size()), chunk.data()) != int(dims_.size())) file_.fail("has chunks of different dimensions", path_);
     for (const hsize_t c : chunk)
       if (c == 0 || !multiply(bytes, c, bytes)) bytes = UINT64_MAX;
     if (bytes > backed_ && count_ > 0)
@@ -95,7 +95,7 @@ void Dataset::find_storage(hid_t made, H5D_layout_t layout) {
       const H5Z_filter_t id = H5Pget_filter2(made, unsigned(i), &flags, &n, values, 0, nullptr, &config);
       if (id != H5Z_FILTER_DEFLATE && id != H5Z_FILTER_SHUFFLE && id != H5Z_FILTER_FLETCHER32) {
         if (id < 0 || H5Zfilter_avail(id) <= 0)
-          file_.fail(fmt::format("is packed with the filter {}, which is not installed", int(id)), path_,
+          file_.fail(fmt::format("is compressed with the filter {}, which is not installed", int(id)), path_,
                      "repack it: h5repack -f GZIP=4 IN OUT");
         return;
       }
@@ -128,9 +128,9 @@ const MappedFile& Dataset::home() const {
 }
 
 void Dataset::check_backed(uint64_t bytes) const {
-  if (!numeric_) file_.fail("holds no numbers of a type that is read", path_, "integers and floats of 1, 2, 4 or 8 bytes");
+  if (!numeric_) file_.fail("holds no numbers of a supported type", path_, "supported: integers and floats of 1, 2, 4 or 8 bytes");
   if (bytes > backed_)
-    file_.fail(fmt::format("has {} bytes, more than what the file holds of it can give", bytes), path_, "the file is truncated or damaged");
+    file_.fail(fmt::format("has {} bytes, more than its stored data can give", bytes), path_, "the file is truncated or damaged");
   check_plausible(bytes, std::max(file_.size(), file_size_), file_.path());
 }
 
@@ -185,7 +185,7 @@ Array Dataset::read(int components) const {
 Array Dataset::read_rows(uint64_t begin, uint64_t n) const {
   uint64_t end = 0;
   if (!add(begin, n, end) || end > rows())
-    file_.fail(fmt::format("has {} rows but rows {} to {} are asked for", rows(), begin, end), path_, "the file is not complete");
+    file_.fail(fmt::format("has {} rows, but rows {} to {} are requested", rows(), begin, end), path_, "the file is not complete");
   if (row_size_ > 1 << 20) file_.fail(fmt::format("has rows of {} numbers", row_size_), path_);
   if (dims_.empty()) return read();
   if (auto there = mapped(begin * row_size_, n * row_size_, component_count(row_size_))) return *there;

@@ -69,7 +69,7 @@ bool write_packed(hid_t set, const std::byte* values, const Sizes& dims, const S
         n, 4,
         [&](size_t from, size_t to) {
           const Compressor compressor(level);
-          if (!compressor.c) fail_data("there is not enough memory to pack chunks");
+          if (!compressor.c) fail_data("there is not enough memory to compress chunks");
           std::vector<std::byte> data(bytes);
           for (size_t k = from; k < to; ++k) {
             Sizes& at = places[k];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A first look at a file by somebody who may die of it.
+// A first look at a file, in a process that may crash on it.
 #pragma once
 #include <string>
 

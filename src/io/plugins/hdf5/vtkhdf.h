@@ -36,7 +36,7 @@ std::vector<std::string> field_names(const Group& g, const std::string& data);
 Role role_of(const Group& g, const std::string& data, const std::string& name);
 /// A field with its role and its unit (an attribute "units" of the array, ours).
 Field field_of(const Group& g, const std::string& data, const std::string& name, Association association, Array values);
-/// Rows [begin, begin+n) of an array of `data`, from where the step's table says it begins, else from `otherwise` on.
+/// Rows [begin, begin+n) of an array of `data`, from the start given by the step's table, else from `otherwise` on.
 Array read_field(const Group& g, const std::string& data, const std::string& name, uint64_t otherwise, uint64_t begin, uint64_t n);
 /// FieldData: arrays of the whole, and texts as notes.
 void read_whole_fields(const Group& g, DatasetParts& parts);

@@ -64,7 +64,8 @@ std::optional<Array> read_levels(const Group& g, const AmrGrid& grid, const std:
   return vtk::concatenated(parts);
 }
 
-// Whether every level has a cell field as long as its boxes say: what is computed for each cell must not be asked for by boxes alone.
+// Whether every level has a cell field of the length that its boxes imply: memory per cell must not be allocated on the word of the boxes
+// alone.
 bool fields_back(const Group& g, const AmrGrid& grid) {
   for (size_t l = 0; l < grid.levels.size(); ++l) {
     uint64_t n = 0;
@@ -87,7 +88,7 @@ bool fields_back(const Group& g, const AmrGrid& grid) {
 void read_amr(const Group& g, DatasetParts& parts) {
   AmrGrid grid;
   const std::string plane = g.file.text_attribute(g.path, "GridDescription").value_or("XYZ");
-  if (plane != "XYZ" && plane != "XY") g.file.fail(fmt::format("is an AMR grid in '{}'", plane), g.path, "XYZ or XY");
+  if (plane != "XYZ" && plane != "XY") g.file.fail(fmt::format("is an AMR grid in '{}'", plane), g.path, "use XYZ or XY");
   grid.dimension = plane == "XY" ? 2 : 3;
   const std::vector<double> origin = g.file.number_attribute(g.path, "Origin");
   if (origin.size() != 3) g.file.fail("has no attribute 'Origin' of 3 numbers", g.path);
@@ -99,15 +100,15 @@ void read_amr(const Group& g, DatasetParts& parts) {
     const Group first{g.file, g.at(level_name(0)), g.options, g.context, {}};
     for (const std::string& name : field_names(first, data)) {
       if (auto a = read_levels(g, grid, data, name)) parts.fields.add(field_of(first, data, name, association, std::move(*a)));
-      else g.context.warn(fmt::format("{}: array '{}' is not the same in all levels: left out", g.file.path(), name));
+      else g.context.warn(fmt::format("{}: array '{}' differs between levels and is left out", g.file.path(), name));
     }
   }
-  // Whoever wrote no ghosts means that finer levels cover coarser ones.
+  // Files without ghosts mean that finer levels cover coarser ones.
   const bool marked = parts.fields.find("vtkGhostType", Association::cell) != nullptr;
   const size_t cells = cell_count(grid);
   if (!marked) {
     if (cells > (size_t(1) << 26) && !fields_back(g, grid))
-      g.file.fail(fmt::format("has boxes of {} cells but no fields on them", cells), g.path, "the file is damaged");
+      g.file.fail(fmt::format("has boxes of {} cells, but no fields on them", cells), g.path, "the file is damaged");
     parts.cell_ghost = refined_cells(grid);
   }
   parts.mesh = std::move(grid);

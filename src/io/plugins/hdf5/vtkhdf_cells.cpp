@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // VTKHDF: unstructured grids and polygonal data. Partitions lie one after the other in every array, each numbering its points from 0;
-// they are merged here. In a series, tables in Steps say which partitions, points, cells and ids belong to a step.
+// they are merged here. In a series, tables in Steps give the partitions, points, cells and ids of a step.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 uint64_t total(const Group& g, const std::string& what, const std::vector<uint64_t>& counts) {
   uint64_t n = 0;
   for (const uint64_t c : counts)
-    if (!add(n, c, n) || n > (uint64_t(1) << 60)) g.file.fail("adds up to more than can be counted", g.at(what), "the file is damaged");
+    if (!add(n, c, n) || n > (uint64_t(1) << 60)) g.file.fail("adds up to too many to count", g.at(what), "the file is damaged");
   return n;
 }
 
@@ -70,12 +70,12 @@ CellLists read_lists(const Group& g, const Partitions& p, const std::string& at,
   if (!add(r.cell_offset, p.first, from)) from = UINT64_MAX;
   const Array offsets = vtk::as_indices(h5::Dataset(g.file, g.at(at + "Offsets")).read_rows(from, r.cell_count + p.size()));
   const Array ids = vtk::as_indices(h5::Dataset(g.file, g.at(at + "Connectivity")).read_rows(id_offset, id_count));
-  if (offsets.components() != 1 || ids.components() != 1) g.file.fail("has cells that are no lists of numbers", g.at(at));
+  if (offsets.components() != 1 || ids.components() != 1) g.file.fail("has cells that are not lists of numbers", g.at(at));
   size_t o = 0, c = 0;
   for (size_t i = 0; i < p.size(); ++i) {
     const size_t n = r.cells[i], m = r.ids[i];
     if (n > 0)
-      r.lists[i] = with_context(fmt::format("taking apart the cells of partition {} in '{}'", p.first + i, g.at(at)),
+      r.lists[i] = with_context(fmt::format("splitting the cells of partition {} in '{}'", p.first + i, g.at(at)),
                                 [&] { return vtk::cells_from_starts(offsets.slice(o, o + n + 1), ids.slice(c, c + m)); });
     o += n + 1, c += m;
   }
@@ -91,7 +91,7 @@ std::vector<size_t> starts(const std::vector<uint64_t>& counts) {
 
 /// Faces of polyhedra since version 2.5: lists of faces, and for each cell the numbers of its faces.
 void read_faces(const Group& g, const Partitions& p, const CellLists& cells, UnstructuredMesh& mesh) {
-  auto before_and_here = [&](const char* name) {  // what stands before the step's partitions, and their counts
+  auto before_and_here = [&](const char* name) {  // what precedes the step's partitions, and their counts
     std::vector<uint64_t> all = h5::read_counts(g.file, g.at(name), 0, p.first + p.size());
     uint64_t before = 0;
     for (uint64_t i = 0; i < p.first; ++i) before += all[i];
@@ -177,11 +177,11 @@ void read_unstructured(const Group& g, DatasetParts& parts) {
   mesh.cells = vtk::concatenated_cells(cells.lists, starts(p.points));
   if (cells.cell_count > 0) {
     const Array types = h5::Dataset(g.file, g.at("Types")).read_rows(cells.cell_offset, cells.cell_count);
-    if (is_float(types.type()) || types.components() != 1) g.file.fail("is no list of cell types", g.at("Types"));
+    if (is_float(types.type()) || types.components() != 1) g.file.fail("is not a list of cell types", g.at("Types"));
     vtk::set_types(mesh, types);
     if (has_polyhedra(mesh)) {
       if (!g.file.is_dataset(g.at("FaceConnectivity")))
-        g.file.fail("holds polyhedra without their faces", g.path, "faces are kept since version 2.5 of the format");
+        g.file.fail("has polyhedra without faces", g.path, "faces are stored since version 2.5 of the format");
       read_faces(g, p, cells, mesh);
     }
   }

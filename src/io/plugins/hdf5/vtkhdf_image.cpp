@@ -59,7 +59,7 @@ Array read_array(const Group& g, const std::string& data, const std::string& nam
   const h5::Dataset set(g.file, g.at(data + "/" + name));
   const auto& d = set.dims();
   uint64_t components = 1;
-  size_t from = 0;  // where z stands
+  size_t from = 0;  // position of z
   if (g.step.any && matches(d, 1, b.dims, components)) from = 1;
   else if (!matches(d, 0, b.dims, components)) {
     // Flat pictures may leave dimensions out, and lists may run over all tuples.
@@ -97,13 +97,13 @@ void read_image(const Group& g, DatasetParts& parts) {
     for (size_t a = 0; a < 3; ++a) {
       with_cells = with_cells && (r.stride[a] == 1 || grid.dims[a] == 1);
       cells.count[a] = std::max<size_t>(points.count[a] - 1, 1);
-      cells.lo[a] = std::min(r.lo[a], cells.dims[a] - 1);  // a plane at the far side takes the cells before it
+      cells.lo[a] = std::min(r.lo[a], cells.dims[a] - 1);  // a plane at the far side takes the preceding cells
     }
   }
   for (const std::string& name : field_names(g, "PointData"))
     parts.fields.add(field_of(g, "PointData", name, Association::point, read_array(g, "PointData", name, points)));
   if (!with_cells) {
-    parts.notes.emplace_back("crop", "cell fields were left out: cells do not survive a stride");
+    parts.notes.emplace_back("crop", "cell fields were left out: a stride keeps points, not cells");
     return;
   }
   for (const std::string& name : field_names(g, "CellData"))

@@ -122,7 +122,7 @@ struct Reader {
     else if (type == "OverlappingAMR") read_amr(g, parts);
     else
       file.fail(fmt::format("holds a dataset of type '{}'", type), path,
-                "ImageData, UnstructuredGrid, PolyData, OverlappingAMR, PartitionedDataSetCollection or MultiBlockDataSet");
+                "supported: ImageData, UnstructuredGrid, PolyData, OverlappingAMR, PartitionedDataSetCollection, MultiBlockDataSet");
     read_whole_fields(g, parts);
     if (const Field* t = parts.fields.find("TimeValue", Association::whole); t && !parts.time && t->array.count() == 1) {
       parts.time = t->array.get(0);
@@ -135,7 +135,7 @@ struct Reader {
   // A block of a collection: a dataset, or (in an assembly) a group of further ones.
   Data node(const std::string& path, int depth) {
     context.check();
-    if (depth > deepest || ++blocks > most_blocks) file.fail("holds too many blocks within each other", path, "the file is damaged");
+    if (depth > deepest || ++blocks > most_blocks) file.fail("nests blocks too deeply", path, "the file is damaged");
     const auto type = file.text_attribute(path, "Type");
     if (!type || *type == "MultiBlockDataSet" || *type == "PartitionedDataSetCollection") return collection(path, type.value_or(""), depth);
     return leaf(path, *type);
@@ -182,8 +182,8 @@ struct Reader {
     }
     found += (found.empty() ? "" : ", ") + name + (file.is_group("/" + name) ? "/" : "");
   }
-  fail_data(fmt::format("is an HDF5 file of no known kind: it holds {}", found.empty() ? "nothing" : found), file.path(),
-            "read are VTKHDF (a group 'VTKHDF'), netCDF 4 (.nc), Exodus (.e .exo), CGNS (.cgns), MINC 2 (.mnc), ENZO (open its "
+  fail_data(fmt::format("is an HDF5 file of an unknown kind: it contains {}", found.empty() ? "nothing" : found), file.path(),
+            "supported: VTKHDF (a group 'VTKHDF'), netCDF 4 (.nc), Exodus (.e .exo), CGNS (.cgns), MINC 2 (.mnc), ENZO (open its "
             ".hierarchy) and XDMF (open its .xdmf)");
 }
 

@@ -61,7 +61,7 @@ class Writer {
     const Handle space(H5Screate_simple(1, &n, nullptr));
     attribute(object, name, h5::native_type(element_type_of<T>()), space, values.data());
   }
-  /// An array with the dimensions `dims`, slowest first; chunked and packed when asked for and worth it.
+  /// An array with the dimensions `dims`, slowest first; chunked and compressed when requested and worthwhile.
   void array(const std::string& path, const Array& values, std::vector<hsize_t> dims) {
     context_.check();
     const Array packed = values.made_packed();
@@ -95,7 +95,7 @@ class Writer {
   [[noreturn]] void fail(const std::string& what) const {
     std::string why = h5::library_message();
     if (errno) why += (why.empty() ? "" : ", ") + std::string(std::strerror(errno));
-    fail_data(what + (why.empty() ? "" : " (" + why + ")"), path_, "is the folder there, may it be written to, and is there room?");
+    fail_data(what + (why.empty() ? "" : " (" + why + ")"), path_, "check that the folder exists, is writable and has room");
   }
   void attribute(const std::string& object, const char* name, hid_t type, hid_t space, const void* value) {
     const Handle a(H5Acreate_by_name(file_, object.c_str(), name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
@@ -317,7 +317,7 @@ void write_kind(const Out& o) {
         using M = std::remove_cvref_t<decltype(mesh)>;
         if constexpr (std::is_same_v<M, RectilinearGrid> || std::is_same_v<M, CurvilinearGrid>)
           fail_usage(fmt::format("VTKHDF has no grids of kind {}", o.d.kind()), o.w.path(),
-                     "write .vtr or .vts, or turn it into cells first");
+                     "write .vtr or .vts, or convert it to cells first");
         else write(o, mesh);
       },
       o.d.mesh());
@@ -333,7 +333,7 @@ void write_vtkhdf(const std::string& path, const Data& data, const WriteOptions&
   const DatasetPtr d = single_dataset(data, "a VTKHDF file");
   const Compression compression = options.compression.value_or(Compression::none);
   if (compression != Compression::none && compression != Compression::zlib)
-    fail_usage(fmt::format("VTKHDF files are not packed with '{}'", word_of(compression)), path, "zlib or none");
+    fail_usage(fmt::format("VTKHDF files cannot be compressed with '{}'", word_of(compression)), path, "use zlib or none");
   const h5::Turn turn;
   errno = 0;
   vtkhdf::Writer writer(path, compression == Compression::zlib, context);

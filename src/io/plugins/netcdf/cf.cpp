@@ -196,8 +196,8 @@ Data read_cf(const NcFile& file, const ReadOptions& options, Context& context) {
   const CfModel model(file);
   if (model.grids().empty()) {
     if (file.has_group("minc-2.0"))
-      file.fail("is a MINC 2 file, which is not read", {}, "convert it with mincconvert to MINC 1 or with mnc2nii to NIfTI");
-    file.fail("holds no variable on a grid", {}, "expected a numeric variable with at least one dimension longer than 1");
+      file.fail("is a MINC 2 file, which is not supported", {}, "convert it to MINC 1 with mincconvert or to NIfTI with mnc2nii");
+    file.fail("contains no variable on a grid", {}, "expected a numeric variable with at least one dimension longer than 1");
   }
   const std::vector<double> times = times_of(file, model);
   size_t step = 0;
@@ -207,7 +207,7 @@ Data read_cf(const NcFile& file, const ReadOptions& options, Context& context) {
     time = times[step];
   }
   const auto one = [&](size_t i) { return read_grid(file, model, model.grids()[i], i == 0, step, time, options, context); };
-  // Grids that hold nothing of what is asked for are left out.
+  // Grids with nothing that is requested are left out.
   std::vector<size_t> chosen;
   for (size_t i = 0; i < model.grids().size() && !options.fields.empty(); ++i) {
     const auto& variables = model.grids()[i].variables;

@@ -62,7 +62,7 @@ ElementType unsigned_of(ElementType t) {
   return t == ElementType::i8 ? ElementType::u8 : t == ElementType::i16 ? ElementType::u16 : t == ElementType::i32 ? ElementType::u32 : t;
 }
 
-// f32 where it holds every value that small stored numbers can stand for.
+// f32 where it holds every value that small stored numbers can represent.
 bool narrow(const Coding& c, ElementType stored) {
   const bool small = element_size(stored) <= 2 || stored == ElementType::f32;
   const auto single = [](double x) { return double(float(x)) == x; };

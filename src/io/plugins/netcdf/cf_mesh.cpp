@@ -43,7 +43,7 @@ Axis axis_of(const NcFile& file, const CfModel& model, int dim, CfMesh& out, Con
       return axis;
     }
     if (axis.at.size() > 1)
-      context.warn(fmt::format("{}: variable {} is not monotone; its axis is counted 0, 1, 2, ...", file.path(), v->name));
+      context.warn(fmt::format("{}: variable {} is not monotone; its axis is numbered 0, 1, 2, ...", file.path(), v->name));
   }
   axis.at.resize(d.length);
   axis.single = false;
@@ -73,7 +73,7 @@ void note_axis(const NcFile& file, const Variable& v, char letter, CfMesh& out) 
   out.notes.emplace_back(fmt::format("{} axis", letter), text);
 }
 
-// Which dimension goes along x, y, z: as their letters say; those without one take what is left, the fastest first.
+// Which dimension goes along x, y, z: as their letters indicate; those without one take what is left, the fastest first.
 std::vector<int> axis_order(const CfModel& model, const CfGrid& grid) {
   std::vector<int> order(3, -1), rest;
   for (size_t k = grid.dims.size(); k-- > 0;) {

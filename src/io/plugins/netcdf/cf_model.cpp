@@ -115,7 +115,7 @@ void CfModel::find_grids() {
     return std::tuple(n > 1 || g.lon, timed > 0, g.variables.size(), g.points);
   };
   std::stable_sort(grids_.begin(), grids_.end(), [&](const CfGrid& a, const CfGrid& b) { return rank(a) > rank(b); });
-  // Profiles along an axis of the main grid are no grids.
+  // Profiles along an axis of the main grid are not grids.
   for (size_t i = 1; i < grids_.size();) {
     const CfGrid& g = grids_[i];
     const auto& main = grids_[0].dims;
@@ -161,7 +161,7 @@ void CfModel::find_positions(CfGrid& grid) const {
     return true;
   };
   if (last.size() == 2 && search(last)) return;
-  if (search({last.back()})) {  // a list of places; the dimensions before it are not drawn
+  if (search({last.back()})) {  // a list of places; the preceding dimensions are not drawn
     const int d = last.back();
     grid.points = file_.dimensions()[size_t(d)].length;
     for (CfVariable& c : grid.variables) {

@@ -58,7 +58,7 @@ ExodusMesh::ExodusMesh(const NcFile& file, const ReadOptions& options, Context& 
       context_(context) {
   nodes_ = file.dim("num_nodes").value_or(0);
   const size_t space = file.dim("num_dim").value_or(3);
-  if (space < 1 || space > 3) file.fail(fmt::format("is a mesh in {} dimensions", space), {}, "Exodus II has 1 to 3");
+  if (space < 1 || space > 3) file.fail(fmt::format("is a mesh in {} dimensions", space), {}, "Exodus II has 1 to 3 dimensions");
   space_ = int(space);
   const std::vector<double> times = exodus_times(file);
   if (!times.empty()) {
@@ -74,7 +74,7 @@ ExodusMesh::ExodusMesh(const NcFile& file, const ReadOptions& options, Context& 
     if (!v) continue;  // nodes without coordinates along this axis
     const size_t rank = together ? 2 : 1;
     if (!v->is_number() || v->shape.size() != rank || v->shape.back() != nodes_ || (together && v->shape[0] < space))
-      file.fail(fmt::format("must hold coordinates of {} nodes", nodes_), v->name);
+      file.fail(fmt::format("must hold the coordinates of {} nodes", nodes_), v->name);
     const ElementType type = v->element() == ElementType::f32 ? ElementType::f32 : ElementType::f64;
     axes_[a] = together ? file.read(*v, {a, 0}, {1, nodes_}, type) : file.read(*v, type);
   }
@@ -126,12 +126,12 @@ Data read_exodus(const NcFile& file, const ReadOptions& options, Context& contex
   for (const auto& [kind, objects] : {std::pair(&face_blocks, &mesh.faces), {&edge_blocks, &mesh.edges}}) {
     if (asked_for(*kind)) add(*objects, *kind, block);
     else if (!objects->empty())
-      context.info(fmt::format("{}: {} {} are left out; ask for a field of theirs to read them", file.path(), objects->size(),
+      context.info(fmt::format("{}: {} {} are left out; request one of their fields to read them", file.path(), objects->size(),
                                to_lower(kind->group)));
   }
   add(mesh.sides, side_sets, [&](const ExodusObject& o) { return mesh.side_set(o); });
   add(mesh.node_lists, node_sets, [&](const ExodusObject& o) { return mesh.node_set(o); });
-  if (all.parts.empty()) file.fail("holds no elements");
+  if (all.parts.empty()) file.fail("contains no elements");
   return std::make_shared<const Collection>(std::move(all));
 }
 

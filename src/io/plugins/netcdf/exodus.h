@@ -13,8 +13,8 @@ namespace sg::nc {
 
 bool is_exodus(const NcFile& file);
 std::vector<double> exodus_times(const NcFile& file);
-/// A collection of "Element Blocks", "Side Sets" and "Node Sets" (those that hold anything), each a collection of datasets; blocks
-/// of faces and edges when there are no element blocks or one of their variables is asked for.
+/// A collection of "Element Blocks", "Side Sets" and "Node Sets" (those that hold anything), each a collection of datasets; blocks of faces
+/// and edges when there are no element blocks or one of their variables is requested.
 Data read_exodus(const NcFile& file, const ReadOptions& options, Context& context);
 
 /// The kinds of objects that have names, ids and variables. The words are those of the file's variables.
@@ -62,7 +62,7 @@ class ExodusMesh {
   DatasetPtr block(const ExodusObject& o);
   DatasetPtr side_set(const ExodusObject& o);
   DatasetPtr node_set(const ExodusObject& o);
-  /// Whether a field is asked for.
+  /// Whether a field is requested.
   bool wanted(const std::string& name) const;
   std::vector<std::string> variable_names(const ObjectKind& kind) const;
 
@@ -75,7 +75,7 @@ class ExodusMesh {
   const BlockCells& cells_of(const ExodusObject& o);
   void add_polyhedra(const BlockCells& cells, const ExodusObject& o, UnstructuredMesh& mesh, std::vector<int64_t>& ids);
   std::vector<std::pair<const BlockCells*, size_t>> all_faces();
-  /// Takes ids (node numbers from 0) into `mesh`, with points and point fields of those nodes alone.
+  /// Takes ids (node numbers from 0) into `mesh`, with points and point fields of those nodes only.
   DatasetPtr finish(UnstructuredMesh mesh, std::vector<int64_t> ids, FieldSet cell_fields, const ExodusObject& o, size_t cells);
   FieldSet object_fields(const ExodusObject& o, size_t cells);
   void add_point_fields(FieldSet& fields, const std::vector<int64_t>* nodes);

@@ -48,7 +48,7 @@ std::optional<Array> ExodusMesh::values(const ObjectKind& kind, size_t i, const 
                         : file_.find(fmt::format("vals_nod_var{}", i + 1));
   const size_t n = o ? o->size : nodes_;
   if (v) {
-    if (!v->is_number() || v->shape.size() != 2 || v->shape[1] != n) file_.fail(fmt::format("must hold {} numbers a step", n), v->name);
+    if (!v->is_number() || v->shape.size() != 2 || v->shape[1] != n) file_.fail(fmt::format("must hold {} numbers per step", n), v->name);
     if (step_ >= v->shape[0]) return {};
     if (options_.header_only) return unread_values(ElementType::f64, n);
     return file_.read(*v, {step_, 0}, {1, n}, ElementType::f64);
@@ -116,7 +116,7 @@ FieldSet ExodusMesh::object_fields(const ExodusObject& o, size_t cells) {
   return fields;
 }
 
-// A map gives numbers to nodes or elements; the one that says 1, 2, 3, ... says nothing.
+// A map gives numbers to nodes or elements; the one that says 1, 2, 3, ... has no information.
 void ExodusMesh::add_map(FieldSet& fields, Association a, const char* variable, std::string name, size_t first, size_t count,
                          bool skip_identity, const std::vector<int64_t>* nodes) {
   const Variable* v = file_.find(variable);
@@ -155,7 +155,8 @@ void ExodusMesh::add_point_fields(FieldSet& fields, const std::vector<int64_t>* 
   }
   for (const Field& f : *node_fields_) {
     Field copy = f;
-    const bool unread = options_.header_only && is_float(f.array.type());  // maps are read: only so one knows whether they say anything
+    const bool unread =
+        options_.header_only && is_float(f.array.type());  // maps are read: the only way to know whether they contain anything
     if (nodes) copy.array = unread ? unread_values(f.array.type(), nodes->size(), f.components()) : gathered(f.array, *nodes);
     fields.add(std::move(copy));
   }

@@ -30,7 +30,7 @@ const BlockCells& ExodusMesh::cells_of(const ExodusObject& o) {
   if (polyhedra) v = of_faces;
   if (!v || !v->is_number()) file_.fail(fmt::format("block {} has no elements", o.number), v ? v->name : std::string_view());
   const ElementType type = v->element() == ElementType::i64 ? ElementType::i64 : ElementType::i32;
-  // Elements of different sizes stand one after the other, with their sizes beside them.
+  // Elements of different sizes are stored one after the other, with a list of their sizes.
   const Variable* sizes = file_.find(fmt::format("{}epecnt{}",
                                                  o.kind == &face_blocks   ? "fb"
                                                  : o.kind == &edge_blocks ? "ed"
@@ -55,7 +55,7 @@ const BlockCells& ExodusMesh::cells_of(const ExodusObject& o) {
     if (v->shape.empty() || v->shape.size() > 2 || v->shape[0] != o.size)
       file_.fail(fmt::format("must list the nodes of {} elements", o.size), v->name);
     c.per = v->shape.size() == 2 ? v->shape[1] : 1;
-    if (polyhedra || c.per == 0) file_.fail("elements have no list of sizes", v->name);
+    if (polyhedra || c.per == 0) file_.fail("the elements have no list of sizes", v->name);
     try {
       c.shape = exodus_shape(name, c.per, o.kind == &edge_blocks ? 1 : space_);
     } catch (const Error& e) {

@@ -183,8 +183,8 @@ ExodusShape exodus_shape(std::string_view full_name, size_t nodes, int space) {
     case Family::none: break;
   }
   if (shape.order.empty())
-    fail_data(fmt::format("elements '{}' of {} nodes are of no known shape", trim(full_name), nodes), {},
-              "known are HEX, TET, WEDGE, PYRAMID, QUAD, TRI, SHELL, BAR, BEAM, TRUSS, SPHERE, NSIDED, NFACED with their linear and "
+    fail_data(fmt::format("elements '{}' of {} nodes have an unknown shape", trim(full_name), nodes), {},
+              "supported: HEX, TET, WEDGE, PYRAMID, QUAD, TRI, SHELL, BAR, BEAM, TRUSS, SPHERE, NSIDED, NFACED with their linear and "
               "quadratic nodes");
   return shape;
 }

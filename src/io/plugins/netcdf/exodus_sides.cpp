@@ -70,7 +70,7 @@ DatasetPtr ExodusMesh::side_set(const ExodusObject& o) {
         std::upper_bound(elements.begin(), elements.end(), e, [](int64_t n, const ExodusObject& b) { return n < int64_t(b.first); });
     const ExodusObject* block = e < 0 || after == elements.begin() ? nullptr : &after[-1];
     if (!block || size_t(e) - block->first >= block->size)
-      file_.fail(fmt::format("side {} is of the element {}, which is not there", i, element_list.view<int64_t>().data[i]),
+      file_.fail(fmt::format("side {} is of element {}, which does not exist", i, element_list.view<int64_t>().data[i]),
                  fmt::format("elem_ss{}", o.number));
     add_side(o, *block, size_t(e) - block->first, zero_based(side_list.view<int64_t>().data[i]), out);
     out.offsets.push_back(int64_t(out.ids.size()));

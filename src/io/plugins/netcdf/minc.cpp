@@ -36,11 +36,11 @@ MincLayout layout_of(const NcFile& file, const Variable& image) {
     if (name == "vector_dimension") l.vector = int(k), l.components = image.shape[k];
     else if (at != std::end(spaces)) l.axes.push_back(int(k)), l.space.push_back(int(at - std::begin(spaces)));
     else if (name == "time") l.time = int(k);
-    else file.fail(fmt::format("has the dimension '{}'", name), image.name, "known are xspace, yspace, zspace, time and vector_dimension");
+    else file.fail(fmt::format("has the dimension '{}'", name), image.name, "supported: xspace, yspace, zspace, time and vector_dimension");
   }
   for (size_t a = 0; a < l.axes.size(); ++a)
-    if (std::count(l.space.begin(), l.space.end(), l.space[a]) > 1) file.fail("has one direction twice", image.name);
-  if (l.axes.empty() || l.components < 1 || l.components > 64) file.fail("is no volume", image.name);
+    if (std::count(l.space.begin(), l.space.end(), l.space[a]) > 1) file.fail("has the same direction twice", image.name);
+  if (l.axes.empty() || l.components < 1 || l.components > 64) file.fail("is not a volume", image.name);
   return l;
 }
 
@@ -79,7 +79,7 @@ UniformGrid grid_of(const NcFile& file, const Variable& image, const MincLayout&
   return g;
 }
 
-// Stored numbers with the sign that "signtype" says: netCDF's types are signed, MINC's bytes are not.
+// Stored numbers with the sign given by "signtype": netCDF's types are signed, MINC's bytes are not.
 Array with_sign(const NcFile& file, const Variable& image, const Array& read) {
   const std::string sign = file.text(&image, "signtype");
   const bool is_unsigned = sign.empty() ? image.type == NC_BYTE : sign.starts_with("unsigned");
@@ -117,7 +117,7 @@ class Scaling {
     if (!used_) return;
     for (size_t k = 0; k < low_->dims.size(); ++k)
       if (k >= image.dims.size() || low_->dims[k] != image.dims[k])
-        file.fail("must have the slowest dimensions of image", low_->name, "one number a slice");
+        file.fail("must have the slowest dimensions of 'image'", low_->name, "expected one number per slice");
     min_ = file.doubles(*low_), max_ = file.doubles(*high_);
     for (size_t k = low_->dims.size(); k < image.dims.size(); ++k) slice_ *= image.shape[k];
   }
@@ -138,7 +138,7 @@ class Scaling {
   std::vector<double> min_, max_;
 };
 
-/// Components that stand one after the other in the file (vector_dimension is not the fastest) go side by side.
+/// Components stored one after the other in the file (vector_dimension is not the fastest) are interleaved.
 struct Components {
   size_t components, points, inner = 1;  // inner: numbers from one component to the next
   Components(const MincLayout& l, const std::vector<size_t>& count, size_t numbers)
@@ -156,7 +156,7 @@ Array real_values(const Array& stored, const Variable& image, const MincLayout& 
                   const Components& order) {
   float* out = nullptr;
   Array real = Array::make<float>(order.points, int(order.components), &out);
-  // With a time dimension, one step is read: its slices lie elsewhere in the file.
+  // With a time dimension, one step is read: its slices are elsewhere in the file.
   size_t after = 1;
   for (size_t k = 0; l.time >= 0 && k < image.shape.size(); ++k)
     if (int(k) > l.time) after *= image.shape[k];

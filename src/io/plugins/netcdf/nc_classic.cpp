@@ -40,7 +40,7 @@ class Header {
   };
 
   [[noreturn]] void fail(const std::string& problem) const {
-    fail_data(problem, fmt::format("{}: byte {}", file_.path(), at_), "the file is cut or damaged");
+    fail_data(problem, fmt::format("{}: byte {}", file_.path(), at_), "the file is truncated or damaged");
   }
   void need(uint64_t bytes) const {
     if (bytes > file_.size() - at_) fail("the netCDF header ends too early");
@@ -55,7 +55,7 @@ class Header {
   uint64_t count() { return wide_ ? take<uint64_t>() : take<uint32_t>(); }
   std::string name() {
     const uint64_t n = count();
-    if (n > longest_name) fail(fmt::format("a name of {} bytes; {} are allowed", n, longest_name));  // the library copies without a look
+    if (n > longest_name) fail(fmt::format("a name has {} bytes; {} are allowed", n, longest_name));  // the library copies without a look
     need(n);
     std::string s(file_.text().substr(at_, n));
     skip(n);
@@ -69,7 +69,7 @@ class Header {
   void list(uint32_t tag, const char* what, F&& entry) {
     const uint32_t found = take<uint32_t>();
     const uint64_t n = count();
-    if (found != tag && !(found == 0 && n == 0)) fail(fmt::format("the list of {} does not begin here", what));
+    if (found != tag && !(found == 0 && n == 0)) fail(fmt::format("expected the list of {} here", what));
     if (n > (file_.size() - at_) / 8) fail(fmt::format("{} {} are more than the file can hold", n, what));
     for (uint64_t i = 0; i < n; ++i) entry();
   }
@@ -82,7 +82,7 @@ class Header {
       name();
       const uint64_t each = size_of(take<uint32_t>()), n = count();
       uint64_t bytes = 0;
-      if (each == 0 || !multiply(each, n, bytes)) fail("an attribute is of no known type");
+      if (each == 0 || !multiply(each, n, bytes)) fail("an attribute has an unknown type");
       skip(bytes);
     });
   }
@@ -99,10 +99,10 @@ class Header {
     }
     attributes();
     const uint64_t each = size_of(take<uint32_t>());
-    if (each == 0) fail(fmt::format("variable {} is of no known type", e.name));
+    if (each == 0) fail(fmt::format("variable {} has an unknown type", e.name));
     count();  // vsize: what follows from the dimensions is believed instead
     e.begin = long_offsets_ ? take<uint64_t>() : take<uint32_t>();
-    if (!counted || !multiply(e.bytes, each, e.bytes)) fail(fmt::format("variable {} has more numbers than can be counted", e.name));
+    if (!counted || !multiply(e.bytes, each, e.bytes)) fail(fmt::format("variable {} has too many numbers to count", e.name));
     extents_.push_back(std::move(e));
   }
   void check_extent(uint64_t records) const {
@@ -111,16 +111,16 @@ class Header {
     for (const Extent& e : extents_)
       if (e.record) {
         ++record_variables;
-        if (!add(record_bytes, (e.bytes + 3) / 4 * 4, record_bytes)) fail("a record has more bytes than can be counted");
+        if (!add(record_bytes, (e.bytes + 3) / 4 * 4, record_bytes)) fail("a record has too many bytes to count");
       }
     for (const Extent& e : extents_) {
       uint64_t end = 0, before = 0;
       if (e.record && records == 0) continue;
       if (e.record && record_variables == 1) record_bytes = e.bytes;  // a lone record variable is not padded
-      if (e.record && !multiply(records - 1, record_bytes, before)) fail(fmt::format("{} records are more than can be counted", records));
+      if (e.record && !multiply(records - 1, record_bytes, before)) fail(fmt::format("{} records are too many to count", records));
       if (!add(e.begin, before, end) || !add(end, e.bytes, end) || end > file_.size())
-        fail_data(fmt::format("variable {} ends at byte {}, the file at byte {}", e.name, end, file_.size()), file_.path(),
-                  "the file is cut or damaged");
+        fail_data(fmt::format("variable {} ends at byte {}, but the file at byte {}", e.name, end, file_.size()), file_.path(),
+                  "the file is truncated or damaged");
     }
   }
 

@@ -73,7 +73,7 @@ size_t Variable::count() const {
 
 NcFile::NcFile(const std::string& path) : path_(path) {
 #ifdef SG_QUIET_HDF5
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // belongs to the thread; the library says so for the first one alone
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // belongs to the thread; the library reports only the first one
 #endif
   check_classic(path);
   {
@@ -167,7 +167,7 @@ std::string NcFile::text(const Variable* v, const char* name) const {
   int type = 0;
   size_t n = 0;
   if (std::string_view(name) == "units" && nc_inq_att(id_, id, name, &type, &n) != NC_NOERR)
-    for (const char* other : {"Unit", "Units", "unit"})  // not as CF says, but as some write
+    for (const char* other : {"Unit", "Units", "unit"})  // not according to CF, but written by some programs
       if (nc_inq_att(id_, id, other, &type, &n) == NC_NOERR) name = other;
   if (nc_inq_att(id_, id, name, &type, &n) != NC_NOERR || n == 0 || n > file_size_ * most_packing) return {};
   if (type == NC_CHAR) {
@@ -219,7 +219,7 @@ Array NcFile::read(const Variable& v, const std::vector<size_t>& start, const st
   uint64_t n = 1, bytes = 0;
   for (size_t k = 0; k < v.shape.size(); ++k) {
     if (count[k] > v.shape[k] || start[k] > v.shape[k] - count[k])
-      fail(fmt::format("numbers {}..{} of dimension {} are wanted, which has {}", start[k], start[k] + count[k], k, v.shape[k]), v.name);
+      fail(fmt::format("numbers {}..{} of dimension {} are requested, which has {}", start[k], start[k] + count[k], k, v.shape[k]), v.name);
     if (!multiply(n, count[k], n)) fail("has more numbers than can be counted", v.name);
   }
   if (!multiply(n, element_size(v.element()), bytes) || bytes > most_bytes())
@@ -229,7 +229,7 @@ Array NcFile::read(const Variable& v, const std::vector<size_t>& start, const st
   if (n == 0) return a;
   const size_t zero = 0;
   const int e = get_part(id_, v.id, start.empty() ? &zero : start.data(), count.empty() ? &zero : count.data(), type, out);
-  if (e == NC_ERANGE) fail(fmt::format("has a number that is no {}", element_name(type)), v.name);
+  if (e == NC_ERANGE) fail(fmt::format("has a number that is not a valid {}", element_name(type)), v.name);
   if (e != NC_NOERR) fail(fmt::format("cannot be read: {}", nc_strerror(e)), v.name);
   return a;
 }
@@ -241,7 +241,7 @@ std::vector<double> NcFile::doubles(const Variable& v) const {
 }
 
 std::vector<std::string> NcFile::strings(const Variable& v) const {
-  if (!v.is_text()) fail("holds no text", v.name);
+  if (!v.is_text()) fail("contains no text", v.name);
   if (v.shape.empty()) return {};
   const size_t n = v.count(), width = v.shape.back();
   if (n > most_bytes()) fail("is larger than the file", v.name);

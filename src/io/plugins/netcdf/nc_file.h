@@ -32,10 +32,10 @@ struct Variable {
 };
 
 /// Checks the header of a classic netCDF file ("CDF\1", "CDF\2", "CDF\5") against the file's size: every list, name and
-/// variable must lie in the file. Other files pass. Throws Error(data) that says which variable is cut.
+/// variable must lie in the file. Other files pass. Throws Error(data) naming the truncated variable.
 void check_classic(const std::string& path);
 
-/// An open file; read only. Only the root group of a netCDF-4 file. Not thread-safe; opened in child processes alone (io/isolated.h).
+/// An open file; read only. Only the root group of a netCDF-4 file. Not thread-safe; opened only in child processes (io/isolated.h).
 class NcFile {
  public:
   /// Throws Error(data) naming the file.

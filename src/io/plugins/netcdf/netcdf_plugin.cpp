@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The netCDF plug-in: Exodus II, MINC 1 and CF grids are told apart by what the file holds, whatever its name.
+// The netCDF plug-in: Exodus II, MINC 1 and CF grids are distinguished by what the file holds, whatever its name.
 #ifdef SG_QUIET_HDF5
 #include <hdf5.h>
 #endif

@@ -68,13 +68,13 @@ DatasetPtr vdb_points(const openvdb::GridBase& base, const std::string& path, co
   for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
     const auto handle = AttributeHandle<openvdb::Vec3f>::create(leaf->constAttributeArray("P"));
     for (auto i = leaf->beginIndexOn(); i; ++i) {
-      if (++done > count) fail_data(fmt::format("has more points than the {} that its leaves tell", count), path);
+      if (++done > count) fail_data(fmt::format("has more points than the {} in its leaves", count), path);
       const openvdb::Vec3f inside = handle->get(*i);
       const auto p = grid.transform().indexToWorld(openvdb::Vec3d(inside) + i.getCoord().asVec3d()) - center;
       for (int a = 0; a < 3; ++a) *xyz++ = float(p[a]);
     }
   }
-  if (done != count) fail_data(fmt::format("has {} points, its leaves tell {}", done, count), path);
+  if (done != count) fail_data(fmt::format("has {} points, but its leaves have {}", done, count), path);
   out.mesh = std::move(cloud);
   if (auto leaf = grid.tree().cbeginLeaf(); leaf && !options.header_only) {
     const auto& descriptor = leaf->attributeSet().descriptor();

@@ -52,8 +52,8 @@ std::vector<Group> group(const std::vector<openvdb::GridBase::ConstPtr>& grids, 
     }
     Group one{{g}, {}, {}, box};
     if (!vdb_affine(*g, one.origin, one.step))
-      fail_data(fmt::format("grid '{}' lies on a map that is not affine ({})", g->getName(), g->transform().mapType()), path,
-                "frustums are not read");
+      fail_data(fmt::format("grid '{}' has a transform that is not affine ({})", g->getName(), g->transform().mapType()), path,
+                "frustums are not supported");
     bool found = false;
     for (Group& other : groups)
       if (other.grids[0]->transform() == g->transform()) {
@@ -147,7 +147,7 @@ DatasetPtr make_grid(const Group& g, const std::string& path, const ReadOptions&
   grid.extent_start = {lo[0], lo[1], lo[2]};
   const std::array<size_t, 3> whole = grid.dims;
   uint64_t points = 0;
-  if (!multiply(whole[0], whole[1], points) || !multiply(points, whole[2], points)) fail_data("the dense box cannot be counted", path);
+  if (!multiply(whole[0], whole[1], points) || !multiply(points, whole[2], points)) fail_data("the dense box is too large", path);
   const LatticePart part = cut_grid(grid, options.region);
   out.mesh = grid;
   const size_t budget = budget_for(path, context);
@@ -161,12 +161,12 @@ DatasetPtr make_grid(const Group& g, const std::string& path, const ReadOptions&
       if (!multiply(part.points(), sizeof(T) * n, bytes) || bytes > budget)
         fail_data(fmt::format("grid '{}' is {} x {} x {} voxels when made dense: {}, more than {}", name, part.count[0], part.count[1],
                               part.count[2], human_bytes(bytes), human_bytes(budget)),
-                  path, "read a region or every n-th voxel of it, or allow more memory");
+                  path, "read a region of it or every n-th voxel, or allow more memory");
       if (options.header_only) return;
       const Role role = n == 3 ? Role::vectors : out.fields.empty() ? Role::scalars : Role::none;
       out.fields.add({name, Association::point, dense<std::decay_t<decltype(typed)>, T, n>(typed, g.box, part), "", role});
     });
-    if (!known) context.warn(fmt::format("{}: grid '{}' of type {} holds no numbers that are read", path, name, one->valueType()));
+    if (!known) context.warn(fmt::format("{}: grid '{}' of type {} holds no numbers of a supported type", path, name, one->valueType()));
     if (one->getGridClass() != openvdb::GRID_UNKNOWN)
       out.notes.emplace_back(name, openvdb::GridBase::gridClassToMenuName(one->getGridClass()));
   }
@@ -179,7 +179,7 @@ std::vector<openvdb::GridBase::ConstPtr> load_grids(const std::string& path, con
   file.open(false);
   for (auto name = file.beginName(); name != file.endName(); ++name) {
     std::string plain = name.gridName();
-    plain.resize(std::min(plain.find('['), plain.size()));  // name[1], name[2] tell apart grids of one name
+    plain.resize(std::min(plain.find('['), plain.size()));  // name[1], name[2] distinguish grids of the same name
     if (plain.empty()) plain = "values";
     const bool wanted = options.fields.empty() || std::find(options.fields.begin(), options.fields.end(), plain) != options.fields.end();
     const auto head = file.readGridMetadata(name.gridName());

@@ -109,7 +109,7 @@ void write_vdb(const std::string& path, const Data& data, const WriteOptions&, C
       grids.push_back(grid);
     }
     if (grids.empty()) fail_usage("there is no point field of 1 or 3 components to write", path);
-    // Written beside and renamed: never half a file.
+    // Written to a temporary file and renamed: never half a file.
     PartialFile partial(path);
     Archive(grids).write_to(partial.name(), path);
     partial.commit();

@@ -41,7 +41,7 @@ struct Tiff {
         o, [](TIFF*, void*, const char*, const char*, va_list) { return 1; }, nullptr);
     t = TIFFOpenExt(path.c_str(), "rm", o);
     TIFFOpenOptionsFree(o);
-    if (!t) fail("it cannot be opened");
+    if (!t) fail("cannot open it");
   }
   ~Tiff() {
     if (t) TIFFClose(t);
@@ -70,7 +70,7 @@ Page read_head(const Tiff& f) {
   TIFFGetFieldDefaulted(f.t, TIFFTAG_PLANARCONFIG, &p.planar);
   TIFFGetField(f.t, TIFFTAG_PHOTOMETRIC, &p.photometric);
   TIFFGetFieldDefaulted(f.t, TIFFTAG_COMPRESSION, &p.packing);
-  if (p.width == 0 || p.height == 0) f.fail(fmt::format("a page of {} x {} pixels", p.width, p.height));
+  if (p.width == 0 || p.height == 0) f.fail(fmt::format("a page has {} x {} pixels", p.width, p.height));
   const bool is_float = p.format == SAMPLEFORMAT_IEEEFP, is_signed = p.format == SAMPLEFORMAT_INT;
   p.as_rgb = p.photometric == PHOTOMETRIC_PALETTE || p.photometric == PHOTOMETRIC_YCBCR || p.bits < 8;
   using enum ElementType;
@@ -81,7 +81,7 @@ Page read_head(const Tiff& f) {
   else if (!is_float && p.bits == 16) p.type = is_signed ? i16 : u16;
   else if (!is_float && p.bits == 32) p.type = is_signed ? i32 : u32;
   else if (!is_float && p.bits == 64) p.type = is_signed ? i64 : u64;
-  else fail_data(fmt::format("{} numbers of {} bits are not read", is_float ? "floating-point" : "whole", p.bits), f.path);
+  else fail_data(fmt::format("{} numbers of {} bits are not supported", is_float ? "floating-point" : "whole", p.bits), f.path);
   if (p.samples < 1 || p.samples > 1024) f.fail(fmt::format("{} samples per pixel", p.samples));
   return p;
 }
@@ -97,10 +97,10 @@ std::vector<tdir_t> pages_like(Tiff& f, Page& first, size_t file_size, Context& 
     if (pages.empty()) first = p;
     if (kind & FILETYPE_REDUCEDIMAGE || !p.like(first)) ++others;
     else pages.push_back(tdir_t(n));
-    if (++n > file_size / 16) f.fail("more pages than fit in it");
+    if (++n > file_size / 16) f.fail("has more pages than fit in it");
   } while (TIFFReadDirectory(f.t));
-  if (pages.empty()) f.fail("no page with a picture");
-  if (others) context.warn(fmt::format("{}: {} pages of another size or type are left out", f.path, others));
+  if (pages.empty()) f.fail("has no page with a picture");
+  if (others) context.warn(fmt::format("{}: {} pages of a different size or type are left out", f.path, others));
   return pages;
 }
 
@@ -110,7 +110,7 @@ void read_page(Tiff& f, tdir_t number, const Page& first, size_t file_size, std:
   const Page p = read_head(f);
   if (!p.like(first)) f.fail(fmt::format("page {} has changed", number + 1));
   const size_t row = p.row(), size = element_size(p.type);
-  auto fail = [&] { f.fail(fmt::format("page {} cannot be unpacked", number + 1)); };
+  auto fail = [&] { f.fail(fmt::format("page {} cannot be decompressed", number + 1)); };
   if (p.as_rgb) {
     check_plausible(uint64_t(p.width) * p.height, 4, file_size, f.path);
     std::vector<uint32_t> raster(size_t(p.width) * p.height);
@@ -168,10 +168,10 @@ Data read_here(const std::string& path, size_t file_size, const ReadOptions& opt
   uint64_t bytes = 0;
   const size_t ratio = first.packing == COMPRESSION_NONE ? first.as_rgb ? 24 : 1 : 5000;
   if (!multiply(first.row(), first.height, bytes) || bytes / ratio > file_size || bytes > uint64_t(1) << 40)
-    f.fail(fmt::format("{} x {} pixels cannot be in {} bytes", first.width, first.height, file_size));
+    f.fail(fmt::format("{} x {} pixels do not fit into {} bytes", first.width, first.height, file_size));
   // Pages have their own bytes each.
   if (uint64_t all = 0; !multiply(bytes, pages.size(), all) || all / ratio > file_size)
-    f.fail(fmt::format("{} pages of {} x {} pixels cannot be in {} bytes", pages.size(), first.width, first.height, file_size));
+    f.fail(fmt::format("{} pages of {} x {} pixels do not fit into {} bytes", pages.size(), first.width, first.height, file_size));
   UniformGrid grid;
   grid.dims = {first.width, first.height, pages.size()};
   const LatticePart part = cut_grid(grid, options.region);

@@ -53,14 +53,14 @@ class Encoder {
  public:
   explicit Encoder(const MovieSettings& s) {
     vpx_codec_enc_cfg_t config;
-    check(vpx_codec_enc_config_default(vpx_codec_vp9_cx(), &config, 0), "has no defaults");
+    check(vpx_codec_enc_config_default(vpx_codec_vp9_cx(), &config, 0), "has no default settings");
     config.g_w = unsigned(s.width), config.g_h = unsigned(s.height);
     config.g_timebase = {1000, int(std::lround(s.fps * 1000))};
     config.g_threads = unsigned(std::clamp(thread_count(), 1, 8));
     config.g_lag_in_frames = 16;
     config.rc_end_usage = VPX_Q;
     config.kf_max_dist = unsigned(std::clamp(s.fps * 5, 1.0, 1000.0));  // a place to jump to every five seconds
-    check(vpx_codec_enc_init(&codec_, vpx_codec_vp9_cx(), &config, 0), "does not start");
+    check(vpx_codec_enc_init(&codec_, vpx_codec_vp9_cx(), &config, 0), "cannot be started");
     open_ = true;
     set(VP8E_SET_CPUUSED, 4);
     set(VP8E_SET_CQ_LEVEL, unsigned(std::clamp(s.quality, 0, 63)));
@@ -94,7 +94,7 @@ class Encoder {
  private:
   template <class T>
   void set(int what, T value) {
-    check(vpx_codec_control_(&codec_, what, value), "takes no such setting");
+    check(vpx_codec_control_(&codec_, what, value), "rejects a setting");
   }
   void check(vpx_codec_err_t status, const char* what) {
     if (status == VPX_CODEC_OK) return;

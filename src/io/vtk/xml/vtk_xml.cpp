@@ -38,7 +38,7 @@ XmlFile::XmlFile(const std::string& path) : file_(path) {
 }
 
 // Gives the XML parser the elements of `head` and `tail`, but not the long texts of DataArrays: it would copy them and look at
-// each character. They are left in the mapped file; an attribute tells the parsed element which text is its own.
+// each character. They are left in the mapped file; an attribute tells the parsed element which text belongs to it.
 void XmlFile::parse_elements(std::string_view head, std::string_view tail) {
   // Nothing in these files needs entities of their own; what comes with them is a bomb.
   if (const size_t at = head.substr(0, head.find("<VTKFile")).find("<!ENTITY"); at != std::string_view::npos)
@@ -77,7 +77,7 @@ void XmlFile::parse_elements(std::string_view head, std::string_view tail) {
       byte = byte - cut->first + cut->second;
       break;
     }
-  fail_data(fmt::format("is no well-formed XML: {}", result.description()),
+  fail_data(fmt::format("is not well-formed XML: {}", result.description()),
             fmt::format("{}: line {}, byte {}", path(), line_of(file_.text(), byte), byte), "the file is truncated or damaged");
 }
 
@@ -91,12 +91,12 @@ void XmlFile::parse() {
   const size_t from = std::min(open_end + 1, all.size());
   const size_t underscore = all.find_first_not_of(" \t\r\n", from);
   if (underscore == std::string_view::npos || all[underscore] != '_')
-    fail_data("appended data do not begin with '_'", fmt::format("{}: byte {}", path(), std::min(underscore, all.size())),
+    fail_data("the appended data does not begin with '_'", fmt::format("{}: byte {}", path(), std::min(underscore, all.size())),
               "the file is truncated or damaged");
   const size_t close = all.rfind("</AppendedData");
   const size_t root_close = close == std::string_view::npos ? close : all.find("</VTKFile", close);
   if (close < underscore || root_close == std::string_view::npos || all.find('>', root_close) == std::string_view::npos)
-    fail_data("appended data have no end tag", fmt::format("{}: byte {}", path(), all.size()), "the file is truncated");
+    fail_data("the appended data has no end tag", fmt::format("{}: byte {}", path(), all.size()), "the file is truncated");
   appended_ = all.substr(underscore + 1, close - underscore - 1);
   have_appended_ = true;
   parse_elements(all.substr(0, open_end), all[open_end - 1] == '/' ? "></VTKFile>" : "/></VTKFile>");
@@ -109,25 +109,25 @@ void XmlFile::read_root() {
   const std::string_view order = root.attribute("byte_order").value();
   big_endian_ = order == "BigEndian";
   if (!order.empty() && !big_endian_ && order != "LittleEndian")
-    fail(fmt::format("has the byte order '{}'", order), root, "LittleEndian or BigEndian");
+    fail(fmt::format("has the byte order '{}'", order), root, "use LittleEndian or BigEndian");
   const std::string_view header = root.attribute("header_type").value();
   wide_header_ = header == "UInt64";
   if (!header.empty() && !wide_header_ && header != "UInt32")
-    fail(fmt::format("has the header type '{}'", header), root, "UInt32 or UInt64");
+    fail(fmt::format("has the header type '{}'", header), root, "use UInt32 or UInt64");
   if (const std::string_view compressor = root.attribute("compressor").value(); !compressor.empty()) {
     for (const Codec c : {Codec::zlib, Codec::lz4, Codec::lzma})
       if (compressor == codec_name(c)) codec_ = c;
     if (codec_ == Codec::none)
       fail(fmt::format("has the unknown compressor '{}'", compressor), root,
-           "vtkZLibDataCompressor, vtkLZ4DataCompressor or vtkLZMADataCompressor");
+           "supported: vtkZLibDataCompressor, vtkLZ4DataCompressor, vtkLZMADataCompressor");
   }
   dataset_ = root.child(type_.c_str());
-  if (type_.empty() || !dataset_) fail(fmt::format("has no element of its type '{}'", type_), root);
+  if (type_.empty() || !dataset_) fail(fmt::format("has no element for its type '{}'", type_), root);
   if (have_appended_) {
     const std::string_view encoding = root.child("AppendedData").attribute("encoding").value();
     appended_base64_ = encoding == "base64" || encoding.empty();  // base64 is what the format takes for granted
     if (!appended_base64_ && encoding != "raw")
-      fail(fmt::format("has the encoding '{}'", encoding), root.child("AppendedData"), "raw or base64");
+      fail(fmt::format("has the encoding '{}'", encoding), root.child("AppendedData"), "use raw or base64");
   }
 }
 
@@ -200,8 +200,8 @@ uint64_t parse_count(const XmlFile& file, pugi::xml_node element, const char* at
   uint64_t v = 0;
   const auto r = std::from_chars(w.data(), w.data() + w.size(), v);
   if (r.ec != std::errc{} || r.ptr != w.data() + w.size())
-    file.fail(fmt::format("{}=\"{}\" is no count", attribute, std::string_view(a.value()).substr(0, 80)), element,
-              "a whole number, not negative");
+    file.fail(fmt::format("{}=\"{}\" is not a valid count", attribute, std::string_view(a.value()).substr(0, 80)), element,
+              "it must be a non-negative whole number");
   return v;
 }
 

@@ -19,7 +19,7 @@
 
 namespace sg::vtk {
 
-// What the element asks for.
+// What the element requires.
 struct XmlFile::Wanted {
   pugi::xml_node element;
   ElementType type = ElementType::f32;
@@ -67,7 +67,7 @@ XmlFile::Source XmlFile::source(pugi::xml_node element) const {
     }
     return s;
   }
-  if (!have_appended_) fail("is appended but the file has no AppendedData", element);
+  if (!have_appended_) fail("is appended, but the file has no AppendedData", element);
   if (!element.attribute("offset")) fail("is appended but has no offset", element);
   const uint64_t offset = parse_count(*this, element, "offset");
   if (offset > appended_.size())
@@ -83,7 +83,7 @@ uint64_t XmlFile::bytes_to_read(const Wanted& want, uint64_t available) const {
   const uint64_t tuple = uint64_t(want.components) * element_size(want.type);
   if (!want.tuples) return want.bits ? available : available / tuple * tuple;
   uint64_t n = 0;
-  if (!multiply(*want.tuples, tuple, n)) fail(fmt::format("has {} tuples, more than any memory", *want.tuples), want.element);
+  if (!multiply(*want.tuples, tuple, n)) fail(fmt::format("has {} tuples, which exceed any memory", *want.tuples), want.element);
   if (want.bits) n = n / 8 + (n % 8 != 0);
   if (n > available)
     fail(fmt::format("needs {} bytes for {} tuples but holds {}", n, *want.tuples, available), want.element,
@@ -119,28 +119,28 @@ Array XmlFile::finished(const Wanted& want, Buffer buffer, size_t offset, size_t
 Array XmlFile::plain(const Wanted& want, const Source& s) const {
   const size_t header = word_bytes();
   if (!s.base64) {
-    if (s.bytes.size() < header) fail("has no room for its size", want.element, "the file is truncated");
+    if (s.bytes.size() < header) fail("is too short for its size", want.element, "the file is truncated");
     const auto* p = reinterpret_cast<const std::byte*>(s.bytes.data());
     const uint64_t available = word(p);
     if (available > s.bytes.size() - header)
-      fail(fmt::format("says it has {} bytes but the file has {}", available, s.bytes.size() - header), want.element,
+      fail(fmt::format("announces {} bytes, but the file has {}", available, s.bytes.size() - header), want.element,
            "the file is truncated or damaged");
     const Buffer whole{file_.owner(), file_.data(), file_.size()};
     return finished(want, whole, size_t(p + header - file_.data()), bytes_to_read(want, available));
   }
   std::byte head[8];
   const size_t used = decode_base64(s.bytes, head, header);
-  if (used == SIZE_MAX) fail("is no base64", want.element, "the file is truncated or damaged");
+  if (used == SIZE_MAX) fail("is not base64", want.element, "the file is truncated or damaged");
   const uint64_t available = word(head);
   if (available > s.bytes.size() / 4 * 3)
-    fail(fmt::format("says it has {} bytes but its text has {}", available, s.bytes.size()), want.element,
+    fail(fmt::format("announces {} bytes, but its text has {}", available, s.bytes.size()), want.element,
          "the file is truncated or damaged");
   const size_t bytes = bytes_to_read(want, available);
-  // Size and numbers are one stream; decoded so that the numbers come to lie on a cache line.
+  // Size and numbers are one stream; decoded so that the numbers start on a cache line.
   std::byte* out = nullptr;
   const Buffer b = Buffer::allocate(64 + bytes, &out);
   if (decode_base64(s.bytes, out + 64 - header, header + bytes) == SIZE_MAX)
-    fail("is no base64", want.element, "the file is truncated or damaged");
+    fail("is not base64", want.element, "the file is truncated or damaged");
   return finished(want, b, 64, bytes);
 }
 
@@ -169,13 +169,13 @@ XmlFile::BlockTable XmlFile::block_table(const Wanted& want, const Source& s) co
   };
   std::byte three[24];
   size_t used = head_bytes(three, 3 * w);
-  if (used == SIZE_MAX) damaged("has no header of its compressed blocks");
+  if (used == SIZE_MAX) damaged("has no header for its compressed blocks");
   BlockTable t;
   const uint64_t blocks = word(three), block = word(three + w), last = word(three + 2 * w);
-  if (blocks > s.bytes.size() / w) damaged(fmt::format("says it has {} compressed blocks in {} bytes", blocks, s.bytes.size()));
+  if (blocks > s.bytes.size() / w) damaged(fmt::format("announces {} compressed blocks in {} bytes", blocks, s.bytes.size()));
   std::vector<std::byte> head((3 + blocks) * w);
   used = head_bytes(head.data(), head.size());
-  if (used == SIZE_MAX) damaged(fmt::format("has no sizes of its {} compressed blocks", blocks));
+  if (used == SIZE_MAX) damaged(fmt::format("has no sizes for its {} compressed blocks", blocks));
   if (last > block || !multiply(blocks, block, t.total)) damaged(fmt::format("has {} blocks of {} and {} bytes", blocks, block, last));
   if (last > 0 && blocks > 0) t.total -= block - last;
   t.blocks = blocks, t.block = block, t.last = last > 0 ? last : block;
@@ -189,14 +189,14 @@ XmlFile::BlockTable XmlFile::block_table(const Wanted& want, const Source& s) co
     if (!add(t.starts[i], size, end) || end > most)
       damaged(fmt::format("has a compressed block {} of {} bytes in {}", i, size, most - t.starts[i]));
     if (t.bytes_of(i) > most_uncompressed(codec_, size))
-      damaged(fmt::format("says that {} bytes of block {} hold {}", size, i, t.bytes_of(i)));
+      damaged(fmt::format("announces that {} bytes of block {} hold {}", size, i, t.bytes_of(i)));
     t.starts[i + 1] = end;
   }
   t.packed = reinterpret_cast<const std::byte*>(rest.data());
   if (s.base64) {
     std::byte* to = nullptr;
     t.decoded = Buffer::allocate(t.starts.back(), &to);
-    if (decode_base64(rest, to, t.starts.back()) == SIZE_MAX) damaged("is no base64");
+    if (decode_base64(rest, to, t.starts.back()) == SIZE_MAX) damaged("is not base64");
     t.packed = to;
   }
   return t;
@@ -240,7 +240,7 @@ static bool narrow(const std::byte* from, size_t n, int32_t* to) {
   return odd == 0;
 }
 
-// Memory of the thread's own for a block on its way, which stays in the cache.
+// Thread-local memory for a block in transit, which stays in the cache.
 static std::byte* scratch(size_t bytes) {
   thread_local std::vector<std::byte> own;
   if (own.size() < bytes) own.resize(bytes);
@@ -410,7 +410,7 @@ Array XmlFile::text(const Wanted& want) const {
   if (!end.bad)
     fail(fmt::format("ends after {} of {} numbers", end.parsed, n), want.element, "the file is truncated or the count is wrong");
   const auto at = size_t(end.bad - t.data());
-  fail(fmt::format("'{}' is no {} number ({} of {})", words(t.substr(at, 40)).front(), element_name(want.type), end.parsed + 1, n),
+  fail(fmt::format("'{}' is not a valid {} number ({} of {})", words(t.substr(at, 40)).front(), element_name(want.type), end.parsed + 1, n),
        want.element);
 }
 
@@ -435,7 +435,7 @@ std::pair<ElementType, int> XmlFile::number_type(pugi::xml_node element) const {
   const std::string_view type = element.attribute("type").value();
   if (type == "Bit") t = ElementType::u8;
   else if (!parse_element_type(type, t))
-    fail(fmt::format("has the unknown type '{}'", type), element, "Int8 ... UInt64, Float32 or Float64");
+    fail(fmt::format("has the unknown type '{}'", type), element, "use Int8 ... UInt64, Float32 or Float64");
   const uint64_t components = element.attribute("NumberOfComponents") ? parse_count(*this, element, "NumberOfComponents") : 1;
   if (components > 1 << 20) fail(fmt::format("has {} components", components), element);
   return {t, int(std::max<uint64_t>(components, 1))};
@@ -450,7 +450,7 @@ XmlFile::Wanted XmlFile::wanted(pugi::xml_node element, std::optional<uint64_t> 
   const std::string_view format = element.attribute("format").value();
   want.text = format.empty() || format == "ascii";
   if (!want.text && format != "binary" && format != "appended")
-    fail(fmt::format("has the format '{}'", format), element, "ascii, binary or appended");
+    fail(fmt::format("has the format '{}'", format), element, "use ascii, binary or appended");
   return want;
 }
 
@@ -475,7 +475,7 @@ Array XmlFile::block(pugi::xml_node element, const Window& w) const {
       const Source s = source(element);
       const auto* p = reinterpret_cast<const std::byte*>(s.bytes.data());
       if (s.bytes.size() < word_bytes() || word(p) > s.bytes.size() - word_bytes())
-        fail("says it has more bytes than the file", element, "the file is truncated or damaged");
+        fail("announces more bytes than the file has", element, "the file is truncated or damaged");
       bytes_to_read(want, word(p));
       return raw_window(want, p + word_bytes(), w);
     }

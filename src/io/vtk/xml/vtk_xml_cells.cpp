@@ -52,10 +52,11 @@ void read_face_lists(const XmlFile& file, pugi::xml_node cells, UnstructuredMesh
   for (size_t c = 0; c < n; ++c) {
     for (; int64_t(at) < end[c + skip]; ++at) {
       if (at >= of_cell.count() || face[at] < 0 || size_t(face[at]) >= faces.count)
-        fail_data(fmt::format("cell {} has a face that is not there", c), fmt::format("{}: DataArray 'polyhedron_to_faces'", file.path()));
-      // A face belongs to two cells; a file that hangs one face on thousands of them would fill the memory.
+        fail_data(fmt::format("cell {} has a face that does not exist", c),
+                  fmt::format("{}: DataArray 'polyhedron_to_faces'", file.path()));
+      // A face belongs to two cells; a file that attaches one face to thousands of them would fill the memory.
       if (ids.size() > 8 * all.connectivity.count() + 4096)
-        file.fail("has faces that belong to many more than two cells", cells, "the file is damaged");
+        file.fail("has faces that belong to far more than two cells", cells, "the file is damaged");
       for (size_t k = 0; k < faces.size(size_t(face[at])); ++k) ids.push_back(faces.point(size_t(face[at]), k));
       offsets.push_back(int64_t(ids.size()));
     }
@@ -69,7 +70,7 @@ void read_face_lists(const XmlFile& file, pugi::xml_node cells, UnstructuredMesh
 CellArray read_cells(const XmlFile& file, pugi::xml_node cells, uint64_t n) {
   if (n == 0) return {};
   const pugi::xml_node offsets = need_array(file, cells, "offsets"), connectivity = need_array(file, cells, "connectivity");
-  return with_context(fmt::format("taking apart the cells of {}", cells.name()), [&] {
+  return with_context(fmt::format("splitting the cells of {}", cells.name()), [&] {
     // Cells of one size: one look at the offsets where they lie, and they need not become an array.
     ElementType type{};
     if (const std::byte* p = file.in_place(offsets, n, type))
@@ -92,7 +93,7 @@ UnstructuredMesh unstructured_piece(const XmlPiece& piece, uint64_t points, uint
   mesh.cells = read_cells(file, cells, n);
   const pugi::xml_node types_element = need_array(file, cells, "types");
   const Array types = file.array(types_element, n);
-  if (is_float(types.type()) || types.components() != 1) file.fail("is no list of cell types", types_element);
+  if (is_float(types.type()) || types.components() != 1) file.fail("is not a list of cell types", types_element);
   set_types(mesh, types);
   if (!mesh.types.empty()) {
     const auto t = mesh.types.view<uint8_t>();

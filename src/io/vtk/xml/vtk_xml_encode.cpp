@@ -21,7 +21,8 @@ constexpr size_t header_bytes = 8;  // header_type UInt64
 }  // namespace
 
 std::string escaped_xml(std::string_view s) {
-  // Bytes that are no UTF-8 can only be Latin-1; controls other than tab and line ends cannot stand in XML 1.0, not even as references.
+  // Bytes that are not UTF-8 can only be Latin-1; control characters other than tab and line ends are not allowed in XML 1.0, not even as
+  // references.
   std::string from_latin1, r;
   if (!is_utf8(s)) {
     for (const char c : s) append_utf8(from_latin1, static_cast<unsigned char>(c));
@@ -69,10 +70,10 @@ XmlWriter::XmlWriter(const std::string& path, const WriteOptions& options, Conte
     case Compression::zlib: codec_ = Codec::zlib; break;
     case Compression::lz4: codec_ = Codec::lz4; break;
     case Compression::lzma: codec_ = Codec::lzma; break;
-    default: fail_usage(fmt::format("VTK XML cannot be compressed with '{}'", word_of(c)), path, "none, zlib, lz4 or lzma");
+    default: fail_usage(fmt::format("VTK XML cannot be compressed with '{}'", word_of(c)), path, "use none, zlib, lz4 or lzma");
   }
   if (encoding_ == VtkEncoding::ascii && codec_ != Codec::none)
-    fail_usage("text cannot be compressed", path, "encoding base64 or appended, or compression none");
+    fail_usage("text cannot be compressed", path, "use encoding base64 or appended, or compression none");
 }
 
 void XmlWriter::open(std::string_view element, const XmlAttributes& attributes, bool empty) {

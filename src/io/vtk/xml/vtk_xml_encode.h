@@ -15,7 +15,7 @@ namespace sg::vtk {
 /// Attributes in order; values are escaped.
 using XmlAttributes = std::vector<std::pair<std::string_view, std::string>>;
 
-/// With the characters that XML reserves written as it asks for.
+/// With the characters reserved by XML escaped.
 std::string escaped_xml(std::string_view text);
 
 /// "UInt8" ... "Float64".

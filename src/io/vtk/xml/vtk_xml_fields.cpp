@@ -57,7 +57,7 @@ std::string unit_of(pugi::xml_node array) {
   return std::string(trim(key.child_value()));
 }
 
-// Orders of cells and weights of points shape the mesh, so they are read whatever fields are asked for.
+// Orders of cells and weights of points shape the mesh, so they are read whatever fields are requested.
 bool shapes_mesh(pugi::xml_node data, std::string_view name) {
   for (const char* attribute : {"HigherOrderDegrees", "RationalWeights"})
     if (name == attribute || (data.attribute(attribute) && name == data.attribute(attribute).value())) return true;
@@ -114,8 +114,7 @@ std::vector<XmlField> list_fields(const XmlRead& read, const std::vector<XmlPiec
       const pugi::xml_node n = array_of(p, element, f.field.name);
       const bool fits = n ? p.file->number_type(n) == std::pair(f.type, f.components) : is_ghost_name(f.field.name);
       if (!fits) {
-        read.context.warn(
-            fmt::format("{} array '{}' is not the same in all pieces: left out", association_name(association), f.field.name));
+        read.context.warn(fmt::format("{} array '{}' differs between pieces and is left out", association_name(association), f.field.name));
         return true;
       }
       f.nodes.push_back(n);
@@ -137,8 +136,8 @@ void check_backed(const std::vector<XmlPiece>& pieces, const XmlField& f, size_t
     last = p.file;
   }
   if (!multiply(tuples, uint64_t(f.components) * element_size(f.type), bytes) || bytes > most)
-    pieces[0].file->fail(fmt::format("is said to hold {} tuples of {} numbers, more than the files can hold", tuples, f.components),
-                         f.nodes[0], "the file is damaged");
+    pieces[0].file->fail(fmt::format("announces {} tuples of {} numbers, more than the files can hold", tuples, f.components), f.nodes[0],
+                         "the file is damaged");
 }
 
 Array joined_field(const XmlRead& read, const std::vector<XmlPiece>& pieces, const XmlField& f, const std::vector<size_t>& tuples) {

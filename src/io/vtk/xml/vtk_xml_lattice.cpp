@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // VTK XML image data, rectilinear and structured grids. Pieces are boxes of the whole extent; they share the layer of
-// points where they touch. The grid that is read is the smallest box with all pieces, or the part of it that is asked for
-// (ReadOptions::region); of the pieces only what lies in that part is read.
+// points where they touch. The grid that is read is the smallest box with all pieces, or the requested part of it (ReadOptions::region); of
+// the pieces only what lies in that part is read.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -42,9 +42,9 @@ Extent parse_extent(const XmlFile& file, pugi::xml_node element, const char* att
     e.lo[a] = v[2 * a], e.hi[a] = v[2 * a + 1];
     constexpr long long most = 1ll << 60;
     if (e.lo[a] < -most || e.hi[a] > most || e.hi[a] < e.lo[a] - 1)
-      file.fail(fmt::format("{} runs from {} to {} along {}", attribute, e.lo[a], e.hi[a], "xyz"[a]), element);
+      file.fail(fmt::format("{} extends from {} to {} along {}", attribute, e.lo[a], e.hi[a], "xyz"[a]), element);
     if (!multiply(n, std::max<size_t>(e.points(a), 1), n) || n > uint64_t(1) << 62)
-      file.fail(fmt::format("{} has more points than can be counted", attribute), element);
+      file.fail(fmt::format("{} has too many points to count", attribute), element);
   }
   return e;
 }
@@ -83,7 +83,7 @@ struct Layout {
   std::vector<XmlPiece> pieces;
   std::vector<Extent> extents;
   Extent box;                                                   // of all pieces
-  Size3 lo{0, 0, 0};                                            // the part asked for, in points of the box
+  Size3 lo{0, 0, 0};                                            // the requested part, in points of the box
   Grid points, cells;                                           // what is made of it
   bool keep_cells = true;                                       // cells do not survive a stride
   std::vector<std::optional<Share>> point_shares, cell_shares;  // of the pieces
@@ -106,17 +106,17 @@ void choose_region(const XmlRead& read, Layout& l) {
   const LatticeRegion& r = read.options.region;
   const Size3 dims = l.box.dims();
   for (size_t a = 0; a < 3; ++a) {
-    if (r.stride[a] == 0) fail_usage("a stride of 0", read.file.path(), "1 keeps every point");
+    if (r.stride[a] == 0) fail_usage("the stride is 0", read.file.path(), "use 1 to keep every point");
     const size_t last = std::min(r.hi[a], dims[a] - 1);
     if (r.lo[a] > last)
-      fail_usage(fmt::format("points {} to {} along {} of a grid with {} points", r.lo[a], r.hi[a], "xyz"[a], dims[a]), read.file.path(),
-                 fmt::format("0 to {}", dims[a] - 1));
+      fail_usage(fmt::format("points {} to {} along {} do not exist: the grid has {} points there", r.lo[a], r.hi[a], "xyz"[a], dims[a]),
+                 read.file.path(), fmt::format("0 to {}", dims[a] - 1));
     const size_t stride = std::min(r.stride[a], dims[a]), cells = std::max<size_t>(dims[a], 2) - 1;
     l.lo[a] = r.lo[a];
     l.points.base[a] = l.box.lo[a] + static_cast<long long>(r.lo[a]);
     l.points.count[a] = (last - r.lo[a]) / stride + 1;
     l.points.stride[a] = stride;
-    l.cells.base[a] = l.box.lo[a] + static_cast<long long>(std::min(r.lo[a], cells - 1));  // the last layer takes the cells before it
+    l.cells.base[a] = l.box.lo[a] + static_cast<long long>(std::min(r.lo[a], cells - 1));  // the last layer takes the preceding cells
     l.cells.count[a] = std::max<size_t>(l.points.count[a], 2) - 1;
     l.keep_cells = l.keep_cells && (stride == 1 || dims[a] == 1);
   }
@@ -162,7 +162,7 @@ Layout lay_out(const XmlRead& read) {
   }
   for (size_t a = 0; a < 3; ++a)
     if (!multiply(n, l.box.points(a), n)) read.file.fail("has pieces too far apart", dataset);
-  if (n / 64 > sum) read.file.fail(fmt::format("has pieces of {} points in a box of {}", sum, n), dataset, "pieces that touch");
+  if (n / 64 > sum) read.file.fail(fmt::format("has pieces of {} points in a box of {}", sum, n), dataset, "the pieces must touch");
   choose_region(read, l);
   drop_idle_pieces(l);
   return l;
@@ -300,7 +300,7 @@ void put_all_fields(const XmlRead& read, const Layout& l, DatasetParts& parts) {
   std::vector<XmlField> dropped = list_fields(read, l.pieces, "CellData", Association::cell);
   std::erase_if(dropped, [](const XmlField& f) { return is_ghost_name(f.field.name); });
   if (const size_t n = dropped.size())
-    parts.notes.emplace_back("crop", fmt::format("{} cell fields were left out: cells do not survive a stride", n));
+    parts.notes.emplace_back("crop", fmt::format("{} cell fields were left out: a stride keeps points, not cells", n));
 }
 
 }  // namespace
@@ -341,7 +341,7 @@ void read_rectilinear(const XmlRead& read, DatasetParts& parts) {
     const XmlFile& file = *l.pieces[p].file;
     pugi::xml_node n = l.pieces[p].node.child("Coordinates").child("DataArray");
     for (size_t a = 0; a < 3; ++a, n = n.next_sibling("DataArray")) {
-      if (!n) file.fail("has no three arrays of Coordinates", l.pieces[p].node, "the file is truncated or not complete");
+      if (!n) file.fail("does not have three arrays of Coordinates", l.pieces[p].node, "the file is truncated or not complete");
       if (!l.point_shares[p]) continue;  // gives cells only
       const Share& s = *l.point_shares[p];
       const Window w{{l.extents[p].points(a), 1, 1}, {s.window.lo[a], 0, 0}, {s.window.count[a], 1, 1}, {s.window.stride[a], 1, 1}};

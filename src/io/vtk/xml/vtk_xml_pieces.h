@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the readers of the five VTK XML dataset kinds share. Their pieces stand in one file or in several (parallel files).
+// What the readers of the five VTK XML dataset kinds share. Their pieces are in one file or in several (parallel files).
 #pragma once
 #include "io/io.h"
 #include "io/vtk/xml/vtk_xml.h"
 
 namespace sg::vtk {
 
-/// A Piece element and the file that it stands in.
+/// A Piece element and its file.
 struct XmlPiece {
   const XmlFile* file;
   pugi::xml_node node;
@@ -20,7 +20,7 @@ struct XmlRead {
   std::vector<XmlPiece> pieces = {};
 };
 
-/// A field as it stands in all pieces: nodes[i] is its DataArray in piece i. Ghost arrays may be missing in some (an empty node).
+/// A field as stored in all pieces: nodes[i] is its DataArray in piece i. Ghost arrays may be missing in some (an empty node).
 struct XmlField {
   Field field;  ///< without its numbers
   ElementType type;
@@ -31,7 +31,7 @@ struct XmlField {
 /// The fields of PointData or CellData that all pieces have with one type and number of components and that are wanted; others
 /// are dropped with a warning.
 std::vector<XmlField> list_fields(const XmlRead& read, const std::vector<XmlPiece>& pieces, const char* element, Association association);
-/// Only names and types are wanted (ReadOptions::header_only), and it is no ghost array.
+/// Only names and types are wanted (ReadOptions::header_only), and it is not a ghost array.
 bool header_only(const XmlRead& read, const XmlField& field);
 /// Throws Error(data) when the files of the pieces cannot hold that many numbers, before memory is asked for.
 void check_backed(const std::vector<XmlPiece>& pieces, const XmlField& field, size_t tuples);

@@ -75,7 +75,7 @@ Data read_vtk_xml(const std::string& path, const ReadOptions& options, Context& 
   const vtk::KindReader* kind = vtk::kind_of(file.type());
   if (!kind)
     fail_data(fmt::format("has the type '{}'", file.type()), path,
-              "ImageData, RectilinearGrid, StructuredGrid, UnstructuredGrid or PolyData");
+              "supported: ImageData, RectilinearGrid, StructuredGrid, UnstructuredGrid, PolyData");
   vtk::XmlRead read{file, options, context};
   vtk::add_pieces(file, read.pieces);
   DatasetParts parts;
@@ -90,13 +90,13 @@ Data read_vtk_parallel(const std::string& path, const ReadOptions& options, Cont
   const vtk::KindReader* kind = file.type().starts_with("P") ? vtk::kind_of(file.type().substr(1)) : nullptr;
   if (!kind)
     fail_data(fmt::format("has the type '{}'", file.type()), path,
-              "PImageData, PRectilinearGrid, PStructuredGrid, PUnstructuredGrid or PPolyData");
+              "supported: PImageData, PRectilinearGrid, PStructuredGrid, PUnstructuredGrid, PPolyData");
   std::vector<std::string> sources;
   std::set<std::string_view> seen;
   for (const pugi::xml_node& n : file.dataset().children("Piece")) {
     const std::string_view source = n.attribute("Source").value();
-    if (source.empty()) file.fail("has no Source", n, "the name of the piece's file");
-    if (!seen.insert(source).second) file.fail(fmt::format("names '{}' a second time", source), n, "each piece once");
+    if (source.empty()) file.fail("has no Source", n, "expected the file name of the piece");
+    if (!seen.insert(source).second) file.fail(fmt::format("names '{}' a second time", source), n, "name each piece once");
     sources.emplace_back(source);
   }
   if (options.pieces < 1 || options.piece < 0 || options.piece >= options.pieces)
@@ -112,7 +112,7 @@ Data read_vtk_parallel(const std::string& path, const ReadOptions& options, Cont
                                  [&] { return std::make_unique<vtk::XmlFile>(named_file(path, sources[i])); }));
     if (files.back()->type() != kind->type)
       fail_data(fmt::format("holds {}", files.back()->type()), files.back()->path(),
-                fmt::format("{}, as the other pieces of {}", kind->type, file_name_of(path)));
+                fmt::format("expected {}, as in the other pieces of {}", kind->type, file_name_of(path)));
     vtk::add_pieces(*files.back(), read.pieces);
   }
   DatasetParts parts;

@@ -167,7 +167,7 @@ UnstructuredMesh as_unstructured(const Mesh& mesh) {
   return m;
 }
 
-// PointData or CellData, with the attributes that say what an array is for.
+// PointData or CellData, with the attributes that state an array's role.
 void write_fields(XmlWriter& xml, const Dataset& d, Association association, const Array& ghost) {
   constexpr std::pair<Role, std::string_view> roles[] = {{Role::scalars, "Scalars"}, {Role::vectors, "Vectors"},
                                                          {Role::normals, "Normals"}, {Role::tcoords, "TCoords"},

@@ -18,8 +18,8 @@ struct DiscJob {
 void draw_discs(const DiscJob& job, size_t begin, size_t end);
 void draw_discs_one_by_one(const DiscJob& job, size_t begin, size_t end);  ///< the same in plain C++
 
-/// Whether the discs at the end of the list lie nearer to the viewer than those at its beginning, by a few of both: then drawing from the
-/// end hides more of the others before they are looked at.
+/// Whether the discs at the end of the list are nearer to the viewer than those at its start, judged by a few of each: then drawing from
+/// the end hides more of the others early.
 bool last_is_nearer(const DiscJob& job, size_t count);
 
 /// Like shade(), for the pixels of a disc item; `triangle` of the batch holds the disc. Depth comes from the keys.

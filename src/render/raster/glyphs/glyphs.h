@@ -20,7 +20,7 @@ struct GlyphJob {
 void draw_glyphs(const GlyphJob& job, size_t begin, size_t end, std::vector<TriangleRecord>& large);
 void draw_glyphs_reference(const GlyphJob& job, size_t begin, size_t end, std::vector<TriangleRecord>& large);
 
-/// Twelve numbers of an instance as it is drawn from a view: sizes in pixels have become lengths. False: there is no glyph.
+/// Twelve numbers of an instance as drawn from a view, with sizes in pixels converted to lengths. False: there is no glyph.
 bool glyph_matrix(const GlyphSet& set, const EyeView& view, float pixel_scale, size_t instance, float* m);
 
 /// Like shade(), for the pixels of an item of glyphs; depth of the batch is given, `triangle` holds the primitive in the item.

@@ -8,8 +8,8 @@
 namespace sg::raster {
 
 /// Weight of the sample k steps forward (k < 0: back) at [steps + k], and for lines that end after `back` and `forward` steps the factor
-/// that brings a weighted sum of the noise to variance 1. With the factor known beforehand, the contrast of a texture does not hang on the
-/// picture, and does not flicker.
+/// that brings a weighted sum of the noise to variance 1. With the factor known beforehand, the contrast of a texture does not depend on
+/// the picture, and does not flicker.
 struct LicWeights {
   int steps = 0;
   std::vector<float> weight;  ///< 2 * steps + 1

@@ -30,7 +30,7 @@ struct LicPlanes {
   Plane<float> w;        ///< what is linear on the picture: 1/z in perspective, z in parallel
   Plane<float> wx, wy;   ///< its slope per pixel, limited to that of a surface 8 times as steep as one seen face on
   Plane<float> noise;    ///< mean 0, variance 1/12
-  Plane<float> value;    ///< result: mean 0, variance 1 for noise that knows nothing of the lines; 0 where there is no direction
+  Plane<float> value;    ///< result: mean 0, variance 1 for noise independent of the lines; 0 where there is no direction
 
   size_t at(int x, int y) const { return size_t(y + 1) * stride + size_t(x + 1); }
 };
@@ -63,7 +63,7 @@ struct VectorBatch {
   alignas(64) float w[vector_batch], wx[vector_batch], wy[vector_batch], noise[vector_batch];
 };
 void pixel_vectors(const VectorJob& job, VectorBatch& batch);
-/// The same in plain C++; agrees but for rounding, and but for noise at the borders of its grains.
+/// The same in plain C++; agrees up to rounding, and up to noise at the borders of its grains.
 void pixel_vectors_reference(const VectorJob& job, VectorBatch& batch);
 
 /// Sets the neighbour bits of the rows [first, last).

@@ -49,12 +49,13 @@ float largest_of(const Array& a) {
 }  // namespace
 
 void take_texture(const SurfaceTexture& t, PreparedItem& item) {
-  if (t.association == Association::whole) fail_usage("a texture follows vectors of points or cells, not of the whole", "lic");
+  if (t.association == Association::whole) fail_usage("a texture needs vectors on points or cells, not of the whole dataset", "lic");
   const Field& f = with_context("lic", [&]() -> const Field& { return item.data->fields().require(t.field, t.association); });
   if (f.components() != 3 && f.components() != 2)
-    fail_usage(fmt::format("field '{}' has {} component{}, no vectors to follow", f.name, f.components(), f.components() == 1 ? "" : "s"),
-               "lic", "name a field of 3 components, or 2 in the xy plane");
-  if (t.steps < 1 || t.steps > 1000) fail_usage(fmt::format("{} steps", t.steps), "lic", "give 1 to 1000 each way");
+    fail_usage(
+        fmt::format("field '{}' has {} component{}, so no vectors to follow", f.name, f.components(), f.components() == 1 ? "" : "s"),
+        "lic", "name a field of 3 components, or 2 in the xy plane");
+  if (t.steps < 1 || t.steps > 1000) fail_usage(fmt::format("{} steps", t.steps), "lic", "give 1 to 1000 in each direction");
   if (!(t.step > 0 && t.step <= 1)) fail_usage(fmt::format("steps of {} pixels", t.step), "lic", "give more than 0, at most 1");
   if (!(t.grain >= 0.5 && t.grain <= 100)) fail_usage(fmt::format("grains of {} pixels", t.grain), "lic", "give 0.5 to 100");
   struct Vectors {

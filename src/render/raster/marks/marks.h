@@ -37,7 +37,7 @@ std::vector<MarkRecord> mark_records(const PreparedItem& item, uint32_t number, 
 bool place_segment(const Projection& projection, Vec3 a, Vec3 b, MarkRecord& m);
 PixelBox mark_box(const MarkRecord& m, int width, int height);
 
-/// Coverage of a pixel whose centre is `distance` from the middle of a band `2 * half` wide: exact for bands along the pixel rows.
+/// Coverage of a pixel whose centre is `distance` from the middle of a band `2 * half` wide; exact for bands along the pixel rows.
 inline double band_coverage(double distance, double half) {
   const double c = std::min(distance + 0.5, half) - std::max(distance - 0.5, -half);
   return c < 0 ? 0 : c > 1 ? 1 : c;

@@ -82,7 +82,7 @@ HWY_INLINE void draw_small(const EyeView& view, uint64_t* keys, const Setup& s, 
   }
 }
 
-/// Pixels on their way to the keys: what lies far apart in memory is asked for together.
+/// Pixels waiting to be written to the keys, so that accesses far apart in memory are issued together.
 struct PixelQueue {
   static constexpr size_t full = 128;
   alignas(64) int32_t pixel[full + 64], primitive[full + 64];

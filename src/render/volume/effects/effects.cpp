@@ -13,7 +13,8 @@ namespace sg::volume {
 namespace {
 
 void check_share(double value, const char* name) {
-  if (!(value >= 0 && value <= 1)) fail_usage(fmt::format("{} {} is no share", name, value), "volume", "give a number from 0 to 1");
+  if (!(value >= 0 && value <= 1))
+    fail_usage(fmt::format("{} {} is not a valid share", name, value), "volume", "give a number from 0 to 1");
 }
 
 }  // namespace
@@ -27,11 +28,12 @@ void check_light(const VolumeItem& item) {
   const VolumeLight& l = item.light;
   check_share(l.shadows, "shadows"), check_share(l.occlusion, "occlusion"), check_share(l.depth_cue, "depth_cue");
   if ((l.shadows > 0 || l.occlusion > 0) && !info_of(item.mode).absorbs)
-    fail_usage("shadows and occlusion are those of emission and absorption; this ray function has none", "volume",
+    fail_usage("shadows and occlusion need emission and absorption, which this ray function does not have", "volume",
                "use mode=composite, or leave out shadows= and occlusion=");
-  if (!(l.ink >= 0 && l.ink < 1)) fail_usage(fmt::format("ink {} is no opacity", l.ink), "volume", "give a number from 0 to below 1");
+  if (!(l.ink >= 0 && l.ink < 1))
+    fail_usage(fmt::format("ink {} is not a valid opacity", l.ink), "volume", "give a number from 0 to below 1");
   if (l.ink > 0 && l.style != LightStyle::silhouette && l.style != LightStyle::hatch)
-    fail_usage("ink is that of silhouettes and strokes", "volume", "add style=silhouette or style=hatch, or leave out ink=");
+    fail_usage("ink applies only to silhouettes and hatching strokes", "volume", "add style=silhouette or style=hatch, or leave out ink=");
 }
 
 std::vector<std::shared_ptr<const LightMap>> light_maps(const VolumeItem& item, const RaySource& source, const Extinction& extinction,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// LightEffects: all that light in a volume knows beyond Blinn-Phong: shadows, occlusion, fading with depth, illustrative styles.
+// LightEffects: lighting of a volume beyond Blinn-Phong: shadows, occlusion, fading with depth, illustrative styles.
 #pragma once
 #include <memory>
 #include <span>
@@ -14,7 +14,7 @@
 
 namespace sg::volume {
 
-/// What stands between a lamp and the places of a scene: all composited volumes, and the opaque surfaces.
+/// What may shadow a scene: all composited volumes and the opaque surfaces.
 struct LampShadows {
   std::vector<std::shared_ptr<const LightMap>> volumes;
   std::shared_ptr<const SurfaceShadow> surfaces;  ///< or null
@@ -45,25 +45,25 @@ struct LightEffects {
   float open(Vec3 place, Vec3f normal, float surface) const {
     return around ? 1 - occlusion * around->hidden(place, normal, surface) : 1.0f;
   }
-  /// How far the colour has become that of the background.
+  /// Share of the background in the colour, by depth.
   float fade(Vec3 place) const {
     const double f = (dot(place - eye, forward) - near_end) * per_depth;
     return depth_cue * float(f > 0 ? f < 1 ? f : 1 : 0);
   }
 };
 
-/// Does the item ask for any of them?
+/// Whether the item uses any of them.
 bool has_effects(const VolumeItem& item);
 /// Throws Error(usage) for shares outside 0..1, and shadows or occlusion of what is not composited.
 void check_light(const VolumeItem& item);
 
 /// The light that the volume takes from each lamp. Kept with its dataset: those of one picture, at most 32 MiB per lamp (8 MiB where a
-/// second axis makes every place dear).
+/// second axis makes every sample expensive).
 std::vector<std::shared_ptr<const LightMap>> light_maps(const VolumeItem& item, const RaySource& source, const Extinction& extinction,
                                                         std::span<const Vec3> lamps, const Context* context);
 
-/// `lamps`: their shadows, not read when the item asks for none. The last two maps of occlusion are kept with the dataset. `drawn` is the
-/// box of all volumes of the scene: they fade together. Null when the item asks for nothing.
+/// `lamps`: their shadows; not read when the item has none. The last two maps of occlusion are kept with the dataset. `drawn` is the
+/// box of all volumes of the scene: they fade together. Null when the item uses no effect.
 std::shared_ptr<const LightEffects> light_effects(const VolumeItem& item, const RaySource& source, const Extinction& extinction,
                                                   const std::vector<LampShadows>& lamps, const Projection& projection, const Box3& drawn,
                                                   const Context* context);

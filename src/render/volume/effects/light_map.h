@@ -21,13 +21,13 @@ class LightMap {
  public:
   struct Plan {
     double spacing = 0;                     ///< world length; 0 = the smallest edge of a cell
-    size_t most_samples = size_t(1) << 24;  ///< 2 bytes each; the spacing grows until they are enough
+    size_t most_samples = size_t(1) << 24;  ///< 2 bytes each; the spacing grows until this many suffice
   };
   /// `towards` is the direction to the lamp. Clipped parts cast no shadow.
   LightMap(const RaySource& source, Extinction extinction, const std::vector<ClipPlane>& clip, Vec3 towards, const Plan& plan,
            const Context* context = nullptr);
 
-  /// Share of the light that arrives at a place of the world, 0..1; behind the volume what it lets through, beside it all.
+  /// Share of the light that arrives at a point in world space, 0..1: behind the volume what it transmits, outside its shadow all.
   float at(Vec3 place) const;
 
   double spacing() const { return spacing_; }

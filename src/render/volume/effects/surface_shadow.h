@@ -24,7 +24,7 @@ class SurfaceShadow {
   Projection from_lamp_;
   double hair_ = 0;
   std::vector<float> depth_;
-  std::vector<DatasetPtr> casters_;  // so that their addresses stay theirs while this is kept
+  std::vector<DatasetPtr> casters_;  // so that their addresses are not reused while this is kept
 };
 
 /// Items of the scene that hide light.

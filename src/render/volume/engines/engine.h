@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// TileEngine: a fast way to draw one volume that is alone in a picture. What no engine draws goes by single rays (rays/cast.h), which
-// draw the same within the tolerance.
+// TileEngine: a fast way to draw the only volume of a picture. What no engine can draw is drawn by single rays (rays/cast.h), which give
+// the same within the tolerance.
 #pragma once
 #include <memory>
 #include <vector>
@@ -21,7 +21,7 @@ struct EngineInput {
   const Volume* lattice;  ///< of a uniform or rectilinear grid, else null
   const Projection& projection;
   const std::vector<Lamp>& lamps;
-  bool shaded;  ///< does any light fall?
+  bool shaded;  ///< whether there is any light
   const Knobs& knobs;
   Context& context;
 
@@ -45,7 +45,7 @@ class TileEngine {
 using EngineFactory = std::unique_ptr<TileEngine> (*)(const EngineInput&);
 std::unique_ptr<TileEngine> tolerant_packets(const EngineInput& input);   ///< lattices within the tolerance
 std::unique_ptr<TileEngine> marching_packets(const EngineInput& input);   ///< lattices in fixed steps, and their maxima
-std::unique_ptr<TileEngine> brick_engine(const EngineInput& input);       ///< volumes that memory does not hold
+std::unique_ptr<TileEngine> brick_engine(const EngineInput& input);       ///< volumes larger than memory
 std::unique_ptr<TileEngine> tetrahedra_engine(const EngineInput& input);  ///< meshes of cells
 
 /// The first of all engines that can draw this volume, or null.

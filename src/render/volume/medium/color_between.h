@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours of a medium between the nodes of its table: what is as good as opaque shows that of one value alone, and the nearest node may be
-// 1/1000 off.
+// Colours of a medium between the nodes of its table: what is practically opaque shows the colour of a single value, and the nearest node
+// may be off by 1/1000.
 #pragma once
 #include "render/volume/medium/medium.h"
 

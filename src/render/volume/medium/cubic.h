@@ -5,8 +5,8 @@
 
 namespace sg::volume {
 
-/// Places f in [0,1], ascending, at which the cubic with Bernstein coefficients b passes `level`; a cubic that lies in the level
-/// altogether has none. Touching counts once. Returns their number (at most 3).
+/// Places f in [0,1], ascending, at which the cubic with Bernstein coefficients b passes `level`; a cubic that equals the level everywhere
+/// has none. Touching counts once. Returns their number (at most 3).
 int crossings(const float b[4], float level, double f[3]);
 /// The places in (0,1) where the derivative is zero, ascending (at most 2).
 int turns(const float b[4], double f[2]);

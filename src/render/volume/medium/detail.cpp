@@ -38,7 +38,7 @@ struct AxisSamples {
 
   /// A parabola through them goes an eighth of its second difference beyond them at most; other curves somewhat more.
   float beyond() const { return 0.5f * std::abs(a - 2 * m + b); }
-  /// May a line of the curve lie between two of them, or beyond them all an edge with more opacity than that?
+  /// Whether a line of the curve may lie between two of them, or an edge with more opacity than that beyond all of them.
   bool overlook(float opacity) const {
     const auto [lo, hi] = std::minmax({a, m, b});
     const float far = beyond();

@@ -11,24 +11,24 @@ struct Detail {
   const TransferFunction& transfer;
   SecondAxis axis;
   double unit;     ///< world length to which opacity refers
-  float most_tau;  ///< stands for that of opacity 1
+  float most_tau;  ///< represents the tau of opacity 1
   float ink = 0;   ///< extinction that silhouettes and strokes have of their own (Lit::ink of it)
 };
 
-/// Optical depth of what samples of such a medium may overlook in a part.
+/// Optical depth that samples of such a medium may miss in a part.
 constexpr float overlooked_depth = 1.0f / 8192;
 
-/// A place of such a medium. `sample`: its straight colour and opacity.
+/// A sample of such a medium. `sample`: its straight colour and opacity.
 struct DetailPlace {
   float tau = 0, value = 0, second = 0;
   TransferFunction::Sample sample{};
 };
-/// At t of a stretch; what it depends on is asked of the walker.
+/// At t of a stretch; what it depends on is queried from the walker.
 DetailPlace place_at(const Detail& detail, const Stretch& stretch, double t, RayField& walker);
 /// Optical depth of a stretch, by Simpson's rule on parts that are halved until it agrees with the trapezoid rule to 1e-3 (absolute, or of
-/// the depth of the part) and no line of the curves may lie between its samples, 6 times at most: an estimate, no bound.
+/// the depth of the part) and no line of the curves may lie between its samples, 6 times at most: an estimate, not a bound.
 double optical_depth(const Detail& detail, const Stretch& stretch, RayField& walker);
-/// May these places, such a length apart from the first to the last, have missed something that is drawn between them?
+/// Whether these samples, this length apart from first to last, may have missed something drawn between them.
 bool overlooks(const Detail& detail, double length, const DetailPlace& a, const DetailPlace& m, const DetailPlace& b);
 
 }  // namespace sg::volume

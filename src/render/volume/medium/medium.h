@@ -39,12 +39,12 @@ class Medium {
     double lo = 0, hi = 1;     ///< of the values in the data, absolute; knots lie within
     float base = 0;            ///< value = stored + base
     double accuracy = 0.0005;  ///< of colours (absolute) and of tau (relative to itself, or to `faint` where it is smaller)
-    double faint = 0.01;       ///< a tau that makes no difference
-    double most_tau = 1e6;     ///< stands for that of opacity 1, which has none; more of it where few values have it
+    double faint = 0.01;       ///< a tau too small to matter
+    double most_tau = 1e6;     ///< represents the tau of opacity 1, which has none; more of it where few values have it
   };
-  /// Samples -log(1 - opacity)/unit until cubics between the knots are right to the accuracy. Every point of the curve is a
-  /// knot, and so are jumps of colour and stops that stand close. Values that the scale does not draw have tau 0. Opacities below 1
-  /// keep their own tau, at most 37 / unit.
+  /// Samples -log(1 - opacity)/unit until cubics between the knots are right to the accuracy. Every point of the curve is a knot, and so
+  /// are jumps of colour and stops that are close together. Values that the scale does not draw have tau 0. Opacities below 1 keep their
+  /// own tau, at most 37 / unit.
   Medium(const ColorScale& scale, const OpacityCurve& curve, const Plan& plan);
 
   /// Lines by rising value; never empty. Line i ends where line i+1 begins.
@@ -66,17 +66,17 @@ class Medium {
   }
   float unit() const { return unit_; }  ///< world length to which opacity refers
   float per_unit() const { return per_unit_; }
-  /// What Simpson's rule has wrong, times 120, of the mean of tau per length while the value goes a parabola or a cubic: it is exact only
-  /// where tau goes straight over the value, but where opacity does the second derivative of tau is unit slope^2, the third 2 unit^2
-  /// slope^3. `slope` is that of tau, the value changes by `range`; `bend` is its half second derivative, `twist` the factor of its third
-  /// power, over the stretch. A ramp of opacity that is passed on a small part of the stretch bends no more than from 0 to 1 there.
+  /// Error of Simpson's rule, times 120, in the mean of tau per length where the value is a parabola or a cubic: it is exact only where tau
+  /// is linear over the value, but where opacity does the second derivative of tau is unit slope^2, the third 2 unit^2 slope^3. `slope` is
+  /// that of tau, the value changes by `range`; `bend` is its half second derivative, `twist` the factor of its third power, over the
+  /// stretch. A ramp of opacity that is crossed on a small part of the stretch bends no more than from 0 to 1 there.
   float leaning(float slope, float range, float bend, float twist) const {
     const float per_opacity = std::min(slope * unit_, 1e30f);
     const float y = std::min(per_opacity * range, 1.0f), u = std::min(per_opacity * bend, 1.0f), w = std::min(per_opacity * twist, 1.0f);
     return per_unit_ * (u * (0.5f * u + y * y) + w * y);
   }
   float top() const { return top_; }      ///< largest value in the data
-  float faint() const { return faint_; }  ///< a tau that makes no difference
+  float faint() const { return faint_; }  ///< a tau too small to matter
   Vec3f color(float v) const { return pieced() ? color(v, line_of(v)) : color_of_node(size_t(node(v))); }
   /// On a line, its ends included: at a knot colours may jump.
   Vec3f color(float v, int line) const {
@@ -90,25 +90,25 @@ class Medium {
     return {lines_[size_t(i)](v), color(v, i)};
   }
 
-  /// Does tau or colour jump, or change within so small a part of the values that it is as good as a jump, between two lines that meet
-  /// in (lo, hi)? Then integrals have to know where a ray meets the knots.
+  /// Whether tau or colour jumps, or changes within so small a range of values that it is practically a jump, between two lines that meet
+  /// in (lo, hi). Then integrals must know where a ray meets the knots.
   bool abrupt(float lo, float hi) const {
     return any_abrupt() && abrupt_before_[size_t(line_of(hi))] != abrupt_before_[size_t(line_of(lo))];
   }
   bool any_abrupt() const { return abrupt_before_.back() > 0; }
   /// By lines: such knots at their lower ends and below.
   const int32_t* abrupt_before() const { return abrupt_before_.data(); }
-  /// Is the lower end of a line such a knot of colour?
+  /// Whether the lower end of a line is such a knot of colour.
   bool recolors(size_t line) const { return recolors_[line] != 0; }
 
-  /// The whole of it in straight lines, over the values in the data: for those who integrate over the value itself.
+  /// All of it as straight lines, over the values in the data, for integration over the value itself.
   struct Straight {
     float lo, hi;
     Optics at, slope;  ///< at lo, and per value
   };
   std::vector<Straight> straight() const;
 
-  /// Is tau zero on all of [lo, hi]?
+  /// Whether tau is zero on all of [lo, hi].
   bool clear(float lo, float hi) const { return !(lo <= hi) || most(columns_.most_tau, lo, hi) == 0; }
   /// Largest tau and largest |d tau/d v| over [lo, hi].
   float most_tau(float lo, float hi) const { return most(columns_.most_tau, lo, hi); }
@@ -138,7 +138,7 @@ class Medium {
   struct ColorPiece {
     float lo, per, first, count;
   };
-  bool pieced() const { return !pieces_.empty(); }  ///< does each line have nodes of its own?
+  bool pieced() const { return !pieces_.empty(); }  ///< whether each line has nodes of its own
   const ColorPiece* pieces() const { return pieces_.data(); }
   bool linear() const { return kind_ == ScaleKind::linear; }
   const uint16_t* colors() const { return colors_.data(); }

@@ -38,7 +38,7 @@ inline void bernstein_from_thirds(const float v[4], float b[4]) {
 /// Values of the field that draw nothing whatever happens there: a source may leave out stretches that lie wholly in such values.
 /// Bit-compatible with "no knowledge": an empty one leaves out nothing.
 struct Invisible {
-  bool (*clear)(const void* what, float lo, float hi) = nullptr;  ///< may all values in [lo, hi] be left out?
+  bool (*clear)(const void* what, float lo, float hi) = nullptr;  ///< whether all values in [lo, hi] may be left out
   const void* what = nullptr;
   bool operator()(float lo, float hi) const { return clear && clear(what, lo, hi); }
 };

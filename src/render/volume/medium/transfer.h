@@ -53,13 +53,13 @@ class Transfer {
   LinearTable linear_table() const { return {first_, per_axis_, count_}; }
   const Step* steps() const { return steps_.data(); }
   const Medium& medium(int index) const { return media_[size_t(index)]; }
-  /// May values of this entry draw something? True also for spikes of opacity too narrow for the table.
+  /// Whether values of this entry may draw something. True also for spikes of opacity too narrow for the table.
   bool draws(int entry) const { return drawn_before_[size_t(entry) + 1] != drawn_before_[size_t(entry)]; }
-  /// Are all values in [lo, hi] (stored) among those between the ends, but for rounding errors of an entry's place?
+  /// Whether all values in [lo, hi] (stored) are between the ends, up to rounding of an entry's index.
   bool spans(float lo, float hi) const;
   /// Bit n tells whether some entry i with i / 8 % 512 = n draws, as above.
   const std::array<uint32_t, 16>& drawn_eights() const { return drawn_eights_; }
-  /// Does every value in [lo, hi] (stored) draw nothing?
+  /// Whether every value in [lo, hi] (stored) draws nothing.
   bool clear(float lo, float hi) const;
 
  private:

@@ -30,7 +30,7 @@ std::string key_of(const Stage& s, int axis) {
                      hash);
 }
 
-/// Are all cells around the voxel hidden?
+/// Whether all cells around the voxel are hidden.
 bool all_hidden(const Volume& v, const std::array<size_t, 3>& at) {
   if (v.hidden().empty()) return false;
   for (int corner = 0; corner < 8; ++corner) {

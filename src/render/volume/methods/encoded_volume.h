@@ -32,10 +32,10 @@ struct EncodedVolume {
   size_t bytes() const;
 };
 
-/// Kept with the dataset as long as what is kept there stays below four times the volume.
+/// Kept with the dataset as long as everything kept there stays below four times the volume.
 std::shared_ptr<const EncodedVolume> encoded_volume(const Stage& stage, int axis);
 
-/// Octahedral map of directions to 16 bits; opposite directions are told apart.
+/// Octahedral map of directions to 16 bits; opposite directions are distinguished.
 uint16_t direction_code(Vec3f direction);
 Vec3f direction_of(uint16_t code);
 

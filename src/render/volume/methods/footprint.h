@@ -7,10 +7,10 @@
 
 namespace sg::volume {
 
-/// The kernel in voxels: a Gaussian of this deviation, cut off at so many deviations and lowered to zero there. With 0.7 a
-/// flat field stays flat to 4e-4 (the sum over a lattice ripples by 4 exp(-2 pi^2 sigma^2)); it blurs a little more than a cubic B-spline.
+/// The kernel in voxels: a Gaussian of this deviation, cut off at this many deviations and shifted to zero there. With 0.7 a constant field
+/// stays constant to 4e-4 (the sum over a lattice ripples by 4 exp(-2 pi^2 sigma^2)); it blurs a little more than a cubic B-spline.
 constexpr double kernel_sigma = 0.7, kernel_reach = 4.3;
-/// Splats smaller than this variance in square pixels are widened to it, their sum kept: pixels cannot miss them.
+/// Splats of smaller variance in square pixels are widened to this, with their sum kept, so that pixels cannot miss them.
 constexpr double least_variance = 0.42;
 
 /// The two tables: across the ray by squared distance in deviations, and summed up along the ray by distance in deviations.
@@ -57,7 +57,7 @@ class Footprints {
   double depth(Vec3 q) const { return origin_.z + dot(depth_, q); }
   /// Largest reach of any kernel in depth.
   double reach() const { return reach_; }
-  /// Are voxels in the middle of the box larger than pixels, so that splats are not widened?
+  /// Whether voxels in the middle of the box are larger than pixels, so that splats are not widened.
   bool resolved() const { return resolved_; }
   /// q of the place at a depth on the ray through (x, y) in pixels.
   Vec3 q_at(double x, double y, double depth) const;
@@ -71,7 +71,7 @@ class Footprints {
   Vec3 eye_;                   // q of the eye
   double reach_ = 0;
   bool resolved_ = true;
-  Footprint same_;  // parallel: all but the place
+  Footprint same_;  // parallel: all except the position
 };
 
 /// Calls f(x, dx, share) for the pixels of row y under the footprint, from left to right: dx from its middle, share in world length.

@@ -147,7 +147,8 @@ XRay project(const Stage& s, const Spectrum& spectrum, bool fades) {
   x.pitch = 0.5 * edge;
   const double wanted = 2 * (reach + across) / x.pitch;
   if (wanted > 8192) {
-    fail_usage(fmt::format("method=fourier would need a slice of {:.0f} points squared", wanted), "volume", "method=ray needs none");
+    fail_usage(fmt::format("method=fourier would need a slice of {:.0f} points squared", wanted), "volume",
+               "use method=ray, which needs none");
   }
   x.size = fft_size(size_t(wanted) + 1);
   const size_t n = x.size;

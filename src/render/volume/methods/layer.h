@@ -14,7 +14,7 @@ struct Layer {
   std::vector<float> rgba;
 };
 
-/// What a classic algorithm gets to see. `opaque` holds the depth of the surfaces in front of which (only) it draws.
+/// Input of a classic algorithm. `opaque` holds the depth of the surfaces in front of which (only) it draws.
 struct LayerInput {
   const VolumeItem& item;
   const Projection& projection;

@@ -19,7 +19,7 @@ Layer layer_of(const LayerInput& input) {
     case VolumeMethod::cells: return project_cells(input);
     case VolumeMethod::ray: break;
   }
-  fail_internal("rays are no layer");
+  fail_internal("rays are not a layer");
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ Factors factorise(const Stage& s, const ShearWarpOptions& options) {
     if (best < 0 || std::abs(along[a]) > std::abs(along[best])) best = a;
   }
   if (best < 0)
-    fail_usage("method=shear_warp cannot look from inside the volume", "camera", "move the eye out of the volume, or method=ray");
+    fail_usage("method=shear_warp cannot look from inside the volume", "camera", "move the camera out of the volume, or use method=ray");
   Factors f;
   f.axes = slice_axes(best), f.parallel = s.projection.parallel;
   const Vec3 l = permuted(along, f.axes), lo = permuted(v.lo, f.axes), hi = permuted(v.hi, f.axes);
@@ -50,7 +50,7 @@ Factors factorise(const Stage& s, const ShearWarpOptions& options) {
   const double across = (u[1] - f.u0) * f.resolution + 3, down = (w[1] - f.v0) * f.resolution + 3;
   if (!(across < 30000 && down < 30000))
     fail_usage(fmt::format("method=shear_warp would need an intermediate picture of {:.0f} x {:.0f}", across, down), "volume",
-               "method=ray needs none");
+               "use method=ray, which needs none");
   f.width = int(across), f.height = int(down);
   return f;
 }

@@ -62,7 +62,7 @@ void view_stack(Stack& stack) {
   const size_t count = farthest > nearest ? size_t(std::ceil((farthest - nearest) / step)) : 0;
   if (count > most_slabs)
     fail_usage(fmt::format("a step of {} makes {} slices", step, count), "volume",
-               fmt::format("give a longer step: at most {} slices", most_slabs));
+               fmt::format("use a longer step: at most {} slices", most_slabs));
   for (size_t i = 0; i < count; ++i) {
     const double from = nearest + double(i) * step, to = std::min(from + step, farthest);
     add(stack, from, to, 0.5 * (from + to), slab_polygon(corners, from, to, s.projection));

@@ -82,7 +82,7 @@ std::shared_ptr<const Spectrum> Spectrum::of(const Stage& s, Of what) {
   const size_t bytes = bytes_of(s), limit = s.context.memory_limit;
   if (limit > 0 && bytes > limit)
     fail_usage(fmt::format("the padded spectrum needs {} MB, more than the memory limit of {} MB", bytes >> 20, limit >> 20), "volume",
-               "method=ray needs no more than the volume");
+               "use method=ray, which needs only the volume itself");
   if (limit > 0 && bytes > limit / 2) return std::make_shared<const Spectrum>(s, what);
   return memo.keep(key, Spectrum(s, what), bytes);
 }
@@ -99,7 +99,7 @@ Spectrum::Spectrum(const Stage& s, Of what) {
   transform_z(s.context);
 }
 
-/// Rows of samples, eight at a time: four in the real parts, four in the imaginary ones, told apart by their symmetry.
+/// Rows of samples, eight at a time: four in the real parts, four in the imaginary ones, distinguished by their symmetry.
 void Spectrum::transform_x(const Stage& s, Of what) {
   const Volume& v = s.volume;
   std::vector<float> weight[3];

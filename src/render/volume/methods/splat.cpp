@@ -392,8 +392,8 @@ Layer splat(const LayerInput& input, const SplatOptions& options) {
           {}};
   const Vec3 lo = stage.volume.lo, hi = stage.volume.hi;
   if (!(footprints.reach() / job.sheet < 100))
-    fail_usage(fmt::format("sheets of {} are too thin for kernels that reach {:.4g}", job.sheet, footprints.reach()), "volume",
-               "give a longer step, or 0 for one voxel");
+    fail_usage(fmt::format("sheets of {} are too thin for kernels with reach {:.4g}", job.sheet, footprints.reach()), "volume",
+               "use a longer step, or 0 for one voxel");
   for (int c = 0; c < 8; ++c) {
     const double z = footprints.depth({c & 1 ? hi.x : lo.x, c & 2 ? hi.y : lo.y, c & 4 ? hi.z : lo.z});
     job.nearest = std::min(job.nearest, z - footprints.reach()), job.farthest = std::max(job.farthest, z + footprints.reach());

@@ -12,7 +12,7 @@ namespace sg::volume {
 SplatList::SplatList(const Stage& stage, const Footprints& footprints, bool classified) : stage_(stage) {
   const Volume& v = stage.volume;
   if (v.voxels.dims[0] * v.voxels.dims[1] * v.voxels.dims[2] > 0xFFFFFFFFu)
-    fail_usage("method=splat draws at most 4 billion voxels", "volume", "method=ray can more");
+    fail_usage("method=splat draws at most 4 billion voxels", "volume", "use method=ray for more");
   for (int a = 0; a < 3; ++a)
     for (size_t i = 0; i < v.voxels.dims[size_t(a)]; ++i) {
       const double lo = std::max(v.lo[a], double(i) - 0.5), hi = std::min(v.hi[a], double(i) + 0.5);

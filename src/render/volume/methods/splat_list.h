@@ -8,7 +8,7 @@
 
 namespace sg::volume {
 
-/// What a voxel brings with it: its share of the box (half for those in a face), value and place.
+/// A voxel's share of the box (half for those in a face), value and position.
 struct Splat {
   Vec3 q;
   float value, share;
@@ -21,7 +21,7 @@ class SplatList {
   SplatList(const Stage& stage, const Footprints& footprints, bool classified);
 
   size_t size() const { return voxels_.size(); }
-  /// Places in the list of the voxels that touch a band of rows, nearest first.
+  /// List indices of the voxels that touch a band of rows, nearest first.
   const uint32_t* begin(size_t b) const { return touching_.data() + start_[b]; }
   const uint32_t* end(size_t b) const { return touching_.data() + start_[b + 1]; }
   Splat splat(uint32_t place) const { return splat_of(voxels_[place]); }

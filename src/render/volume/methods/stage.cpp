@@ -16,7 +16,7 @@ namespace sg::volume {
 namespace {
 
 [[noreturn]] void refuse(const Limits& limits, const std::string& what) {
-  fail_usage(fmt::format("method={} cannot draw {}", limits.method, what), "volume", "method=ray can");
+  fail_usage(fmt::format("method={} cannot draw {}", limits.method, what), "volume", "use method=ray");
 }
 
 void check(const LayerInput& input, const Limits& limits) {
@@ -25,16 +25,16 @@ void check(const LayerInput& input, const Limits& limits) {
     std::string can;
     for (const RayFunction f : limits.modes) can += (can.empty() ? "" : ", ") + std::string(word_of(f));
     fail_usage(fmt::format("method={} cannot draw mode={}", limits.method, word_of(item.mode)), "volume",
-               fmt::format("it draws {}; method=ray draws all", can));
+               fmt::format("it can draw {}; method=ray draws all", can));
   }
   if (item.data && !item.data->as<UniformGrid>() && !item.data->as<RectilinearGrid>())
-    fail_usage(fmt::format("method={} draws uniform{} grids, not this {} mesh", limits.method, limits.rectilinear ? " and rectilinear" : "",
+    fail_usage(fmt::format("method={} draws uniform{} grids, not a {} mesh", limits.method, limits.rectilinear ? " and rectilinear" : "",
                            item.data->kind()),
-               "volume", "method=ray and method=cells draw every mesh of solid cells; or make a grid of it: -f resample");
+               "volume", "use method=ray or method=cells for meshes of solid cells, or convert it to a grid with -f resample");
   if (!limits.rectilinear && item.data && item.data->as<RectilinearGrid>()) refuse(limits, "rectilinear grids");
   if (!limits.perspective && !input.projection.parallel)
-    fail_usage(fmt::format("method={} has parallel projections only", limits.method), "camera",
-               "--camera projection=parallel, or method=ray");
+    fail_usage(fmt::format("method={} supports parallel projection only", limits.method), "camera",
+               "use --camera projection=parallel, or method=ray");
   if (!limits.clip && !item.clip.empty()) refuse(limits, "clipped volumes");
   if (!item.detail.plain()) refuse(limits, "transfer functions of two dimensions");
   if (item.sampling.kernel != Kernel::linear) refuse(limits, fmt::format("with kernel={}", word_of(item.sampling.kernel)));
@@ -45,7 +45,7 @@ void check(const LayerInput& input, const Limits& limits) {
   if (item.light.style != LightStyle::none) refuse(limits, fmt::format("in style={}", word_of(item.light.style)));
   if (!limits.depth_cue && item.light.depth_cue > 0) refuse(limits, "a depth cue");
   if (input.opaque.width != input.projection.width || input.opaque.height != input.projection.height)
-    fail_internal("the opaque frame has another size than the projection");
+    fail_internal("the opaque frame and the projection differ in size");
 }
 
 }  // namespace

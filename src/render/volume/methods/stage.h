@@ -15,7 +15,7 @@ namespace sg::volume {
 /// A ray ends when less than this share of the light passes (as the ray caster's).
 constexpr float opaque_below = 1.0f / 4096;
 
-/// What a method can draw; the rest is a usage error that says so and names method=ray.
+/// What a method can draw; anything else is a usage error that names method=ray.
 struct Limits {
   const char* method;
   std::initializer_list<RayFunction> modes;
@@ -54,7 +54,7 @@ struct Stage {
   /// Unit direction of sight at a world place.
   Vec3 sight(Vec3 place) const { return projection.parallel ? projection.forward : normalize(place - projection.eye); }
   LitRay lit(Vec3 direction) const;
-  /// The same for another direction; only what depends on it is done again.
+  /// The same for another direction; only what depends on it is recomputed.
   void light(Vec3 direction, LitRay& lit) const;
   const Transfer& transfer() const { return volume.transfer[0]; }
 };
@@ -78,7 +78,7 @@ float value_at(const Volume& volume, size_t i, size_t j, size_t k);
 /// 1 - exp(-depth) for an optical depth >= 0, to 1e-6 of itself below 1/16 and 5e-7 beyond; the same bits on every machine.
 float alpha_of(float optical_depth);
 
-/// Turns what a pixel collected in a mode other than composite into its colour: the value's colour, opaque unless its opacity is 0.
+/// Converts what a pixel collected in a mode other than composite to its colour: the value's colour, opaque unless its opacity is 0.
 class Ink {
  public:
   explicit Ink(const VolumeItem& item);

@@ -42,7 +42,7 @@ struct Caster::Active {
         walker(std::move(field)),
         look{*v.medium, v.budget, v.id, nullptr, v.per_scale, float(v.source->edge), v.detail.get()} {}
 
-  /// Is there a stretch to draw? Reads on when all that were read ahead are drawn.
+  /// Whether there is a stretch to draw. Reads on when all that were read ahead are drawn.
   bool peek() {
     if (next < count) return true;
     next = 0, count = walker->next(ahead);

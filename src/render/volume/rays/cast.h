@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Casting rays through prepared volumes of any kind: the path that can do everything. The lattice's packets are a faster way to the same
-// picture.
+// Casting rays through prepared volumes of any kind: the reference, which supports everything. The lattice's packets are a faster way to
+// the same picture.
 #pragma once
 #include <memory>
 #include <vector>
@@ -36,12 +36,12 @@ struct CastVolume {
   Extinction extinction() const { return {*medium, item->detail.plain() ? nullptr : detail.get()}; }
 };
 
-/// What a ray of a picture knows before it meets anything.
+/// State of a ray before it meets anything.
 struct CastRay {
   Vec3 origin, direction;
   double from = 0, to = 0;         ///< limits in t: near plane and opaque depth
   const LitRay* lights = nullptr;  ///< the scene's lights along this ray
-  double jitter = 0;               ///< share of a step by which fixed steps begin earlier
+  double jitter = 0;               ///< share of a step by which fixed steps start earlier
 };
 
 /// One thread's walkers.

@@ -10,7 +10,7 @@
 
 namespace sg::volume {
 
-/// A value, where it was found, and where values begin.
+/// A value, where it was found, and where values start.
 struct Found {
   double value = 0, t = 0;
   bool found = false;

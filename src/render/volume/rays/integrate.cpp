@@ -173,7 +173,7 @@ class Pieces {
     const float widths = (medium.axis(hi) - medium.axis(lo)) / medium.color_width();
     const float colors = (medium.axis(hi) - medium.axis(lo)) * medium.color_slope(), recolor = std::min(1.0f, colors);
     const float change = recolor + (lit ? difference(lit->first, lit->last) : 0);
-    // What one piece gets wrong: colours bend on a width, and at every octave of an axis that is no straight one; in a deep piece the front
+    // What one piece gets wrong: colours bend on a width, and at every octave of an axis that is not straight; in a deep piece the front
     // shows more of its own colour than a constant tau would have it, and than the mean of a value that bends (more than a whole change of
     // colour, too, where few pieces would have it). All fall with the square of the number of pieces.
     const float first = a - 2 * s.b[1] + s.b[2], last = s.b[1] - 2 * s.b[2] + b;
@@ -349,7 +349,7 @@ class LitStretch {
     if (!look_.medium.clear(lo, hi)) part(p, lo, hi, first, last, cuts, may_be_off);
   }
 
-  /// Does the light jump, as where a surface turns over? Then between two places next to each other, which count as one.
+  /// Whether the light jumps, as where a surface turns over; then between two adjacent samples, which count as one.
   bool jumps(const Stretch& s, const LitPlace& first, const LitPlace& middle, const LitPlace& last, LitPlace& before,
              LitPlace& after) const {
     const float all = difference(first.light, last.light), front = difference(first.light, middle.light),

@@ -9,7 +9,8 @@
 
 namespace sg::volume {
 
-/// Stretches of all parts from near to far, as values of the first part (stored, its base). Where parts overlap, what began first goes on.
+/// Stretches of all parts from near to far, as values of the first part (stored, its base). Where parts overlap, the one that began first
+/// continues.
 class JoinedField final : public RayField {
  public:
   explicit JoinedField(std::span<const RaySource* const> sources);

@@ -161,7 +161,7 @@ class JointPart {
     return out;
   }
 
-  /// May a medium of more than the value have been missed?
+  /// Whether a medium that depends on more than the value may have been missed.
   bool overlook(double from, double to) const {
     return std::any_of(media_.begin(), media_.end(), [&](const Joint* j) {
       if (!j->look->detail) return false;
@@ -176,7 +176,7 @@ class JointPart {
     if (cuts < most_cuts) {
       const double taken = std::min(1.0, std::max(one.depth, both.depth));
       const double allowed = tolerance_ * (0.25 * (to - from) / joint_[0].look->budget.length + 0.25 * pass * taken);
-      // Nine places tell little of what hangs on more than the value.
+      // Nine places tell little of what depends on more than the value.
       const bool few = detailed_ && cuts < 3;
       const bool hidden = both.depth > solid && pass > 0.1 * tolerance_;
       if (few || hidden || pass * difference(one, both) > (detailed_ ? 0.3 : 1.0) * allowed || pass * taken * both.depth > deep ||

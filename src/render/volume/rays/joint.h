@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the integral of one medium (integrate.cpp) and of several at once (joint.cpp) share where media hang on more than the value.
+// What the integral of one medium (integrate.cpp) and of several at once (joint.cpp) share where media depend on more than the value.
 #pragma once
 #include "render/volume/rays/integrate.h"
 
 namespace sg::volume {
 
-/// A place of such a medium, lit.
+/// A sample of such a medium, lit.
 struct Place : DetailPlace {
   Vec3f glow;  ///< tau times colour
 };

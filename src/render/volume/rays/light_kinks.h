@@ -13,16 +13,16 @@ struct LightKinks {
   double at[most];
 };
 
-/// Does the light hang on the gradient?
+/// Whether the light depends on the gradient.
 bool has_kinks(const LitRay& lit);
 
-/// From the gradient at the ends of a stretch and at its thirds, which the walker is asked for, as if it went like a cubic: in a lattice it
-/// does, and on straight cells.
+/// From the gradient at the ends of a stretch and at its thirds, queried from the walker and taken as a cubic, which is exact in lattices
+/// and on straight cells.
 LightKinks light_kinks(const LitRay& lit, RayField& walker, const Stretch& stretch, Vec3f first, Vec3f last);
-/// The same, and the gradients at the ends are asked for, just inside of them.
+/// The same, with the gradients at the ends queried just inside them.
 LightKinks light_kinks(const LitRay& lit, RayField& walker, const Stretch& stretch);
 
-/// Of a stretch: so far beside a kink, or a face of cells, light is that of one side of it.
+/// Of a stretch: at this distance from a kink or a cell face, light is that of one side.
 constexpr double hair = 1e-6;
 
 }  // namespace sg::volume

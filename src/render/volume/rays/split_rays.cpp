@@ -232,8 +232,8 @@ std::vector<RaySlab> ray_slabs(const Scene& scene, const Projection& p) {
     whole = whole || !info_of(v->mode).in_parts;
     if (v->sampling.antialias != VolumeAntialias::split) continue;
     if (v->data->bricks())
-      fail_usage("antialias=split is for volumes in memory; this one is drawn from a file whose levels are means of cells already",
-                 "volume", "leave antialias=none, or allow more --memory");
+      fail_usage("antialias=split is for volumes in memory; this one is drawn from a file whose levels are already averages of cells",
+                 "volume", "use antialias=none, or allow more --memory");
     cell = std::min(cell, cell_size(*v->data));
     const Box3 b = v->data->bounds();
     for (int c = 0; c < 8; ++c) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// split_rays: rays of a pixel that divide where they would lie farther apart than the cells.
+// split_rays: rays of a pixel that subdivide where they would be farther apart than the cells.
 #pragma once
 #include <functional>
 #include <vector>
@@ -14,14 +14,14 @@ struct RaySlab {
   int finer;
 };
 
-/// Where the volumes of a scene with antialias=split want how many rays. In perspective rays draw apart: one ray a pixel is enough as long
-/// as a pixel covers at most a cell, behind that each divides into four, and again at twice the depth (Kreeger, Bitter, Dachille, Chen,
+/// Number of rays that the volumes of a scene with antialias=split need, by depth. In perspective rays diverge: one ray per pixel is enough
+/// while a pixel covers at most a cell; beyond that each divides into four, and again at twice the depth (Kreeger, Bitter, Dachille, Chen,
 /// Kaufman, "Adaptive perspective ray casting", IEEE Volume Visualization 1998). Slabs by rising depth, from the near to the far plane;
-/// empty when one ray a pixel does everywhere. Ray functions of whole rays (a maximum, say) take as many as the far end wants all the way,
-/// and so do parallel projections.
+/// empty when one ray per pixel suffices everywhere. Ray functions of whole rays (a maximum, say) use the number needed at the far end
+/// throughout, as do parallel projections.
 ///
 /// At most 64 x 64 rays a pixel. The size of cells: the smallest edge of uniform and rectilinear grids, of other meshes the side of a
-/// cube of their mean volume. Throws Error(usage) for volumes that memory does not hold.
+/// cube of their mean volume. Throws Error(usage) for volumes larger than memory.
 std::vector<RaySlab> ray_slabs(const Scene& scene, const Projection& projection);
 
 /// Casts the rays of a part of the picture: one ray a pixel, from its near to its far plane, before what is in the frame.

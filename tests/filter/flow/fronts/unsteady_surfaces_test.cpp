@@ -166,8 +166,8 @@ TEST_CASE("unsteady surfaces: without a curve or a surface they begin across the
   CHECK(area(sheet) == doctest::Approx(0.2 * sheet->bounds().size().y).epsilon(1e-3));
   CHECK(area(time_surface(flat, {}, {}, context)) == doctest::Approx(0.5).epsilon(0.02));
   flat.load = [](size_t) -> Data { return test::cube_flow(3, -2, 2, [](Vec3) { return Vec3(); }); };
-  CHECK(test::error_of([&] { path_surface(flat, {}, {}, context); }).find("nothing flows") != std::string::npos);
-  CHECK(test::error_of([&] { time_surface(flat, {}, {}, context); }).find("nothing flows") != std::string::npos);
+  CHECK(test::error_of([&] { path_surface(flat, {}, {}, context); }).find("there is no flow") != std::string::npos);
+  CHECK(test::error_of([&] { time_surface(flat, {}, {}, context); }).find("there is no flow") != std::string::npos);
   patch.size = {1, 1};
   CHECK(test::error_of([&] { time_surface(oscillating(), {}, patch, context); }).find("center=x,y,z") != std::string::npos);
 }

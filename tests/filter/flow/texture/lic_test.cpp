@@ -320,7 +320,7 @@ TEST_CASE("lic: bad inputs are named") {
   CHECK(error_of([&] { lic(along_x(8, 1), nullptr, p, c); }).find("one axis") != std::string::npos);
   p.image.name = "x";
   CHECK(error_of([&] { lic(along_x(8, 8), nullptr, p, c); }).find("second input") != std::string::npos);
-  CHECK(error_of([&] { lic(along_x(8, 8), along_x(8, 8), p, c); }).find("has: v") != std::string::npos);
+  CHECK(error_of([&] { lic(along_x(8, 8), along_x(8, 8), p, c); }).find("available: v") != std::string::npos);
   p = {};
   p.resolution = 100000;
   CHECK(error_of([&] { lic(along_x(8, 8), nullptr, p, c); }).find("2^31") != std::string::npos);
@@ -329,7 +329,7 @@ TEST_CASE("lic: bad inputs are named") {
   FieldSet fields;
   fields.add({"v", Association::point, Array::from_vector(std::vector<float>{1, 0, 0, 1, 0, 0}, 3), "", Role::vectors});
   p = {};
-  CHECK(error_of([&] { lic(make_dataset(cloud, fields), nullptr, p, c); }).find("no room") != std::string::npos);
+  CHECK(error_of([&] { lic(make_dataset(cloud, fields), nullptr, p, c); }).find("cannot carry a texture") != std::string::npos);
   bool warned = false;
   c.on_log = [&](LogLevel l, std::string_view) { warned = warned || l == LogLevel::warning; };
   lic(flow_2d(32, 32, [](double, double, float*) {}), nullptr, p, c);

@@ -193,9 +193,9 @@ TEST_CASE("advect: bad inputs are named") {
   const DatasetPtr d = along_x(16, 16, 1);
   CHECK(error_of([&] { advected(d, p); }).find("no scalar or colour") != std::string::npos);
   p.carry = {"w"};
-  CHECK(error_of([&] { advected(d, p); }).find("has: v") != std::string::npos);
+  CHECK(error_of([&] { advected(d, p); }).find("available: v") != std::string::npos);
   p.carry = {}, p.dye = {1, 2};
-  CHECK(error_of([&] { advected(d, p); }).find("three a place") != std::string::npos);
+  CHECK(error_of([&] { advected(d, p); }).find("three per point") != std::string::npos);
   p.dye = {1, 2, 0}, p.time = 1e9;
   CHECK(error_of([&] { advected(d, p); }).find("shorter time") != std::string::npos);
   // A flow that rests carries nothing away.

@@ -339,5 +339,5 @@ TEST_CASE("critical points: what is wrong with the input is said") {
   auto said = [&](const DatasetPtr& d, CriticalPointsParams p = {}) { return sg::test::error_of([&] { critical_points(d, p, context); }); };
   CHECK(said(uniform_box(2, 2, 2)).find("no vector field") != std::string::npos);
   CHECK(said(uniform_box(2, 2, 2), {{"f"}}).find("1 component") != std::string::npos);
-  CHECK(said(with_velocity(uniform_box(4, 0, 0), [](Vec3 x) { return x; })).find("no cells of area") != std::string::npos);
+  CHECK(said(with_velocity(uniform_box(4, 0, 0), [](Vec3 x) { return x; })).find("no cells with area") != std::string::npos);
 }

@@ -140,7 +140,7 @@ TEST_CASE("orbits: closed lines about centres are a family, and said to be one")
   context.on_log = [&](LogLevel, std::string_view t) { told += t; };
   const auto stream = [](Vec3 x) { return Vec3(-x.y, x.x - 0.4 * x.x * x.x * x.x, 0); };
   CHECK(closed_orbits(plane_grid(41, 41, -1.4, 1.4, -1.4, 1.4, stream), {}, context)->cell_count() == 0);
-  CHECK(told.find("families about centres") != std::string::npos);
+  CHECK(told.find("families around centres") != std::string::npos);
   told.clear();
   CHECK(closed_orbits(plane_grid(53, 53, 0.3, 6.8, 0.2, 6.9, taylor_green), {}, context)->cell_count() == 0);
   CHECK(told.find("0 attracting, 0 repelling") != std::string::npos);

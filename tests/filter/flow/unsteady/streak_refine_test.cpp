@@ -145,6 +145,6 @@ TEST_CASE("unsteady: times that do not grow, and steps without the field, are na
     return make_dataset(std::move(parts));
   };
   const std::string message = test::error_of([&] { pathlines(s, {}, p, context); });
-  CHECK(message.find("looking at 'flow_2.vtu'") != std::string::npos);
-  CHECK(message.find("taking time step 2 (time 2)") != std::string::npos);
+  CHECK(message.find("inspecting 'flow_2.vtu'") != std::string::npos);
+  CHECK(message.find("loading time step 2 (time 2)") != std::string::npos);
 }

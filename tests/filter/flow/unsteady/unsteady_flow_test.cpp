@@ -176,11 +176,11 @@ TEST_CASE("unsteady flow: bad series are refused with their reason") {
   };
   CHECK(make({3}).find("1 time step; two at least; streamlines") != std::string::npos);
   CHECK(make({0, 2, 1}).find("step 1 has 2, step 2 has 1") != std::string::npos);
-  CHECK(make({0, 2, 2}).find("do not grow") != std::string::npos);
+  CHECK(make({0, 2, 2}).find("do not increase") != std::string::npos);
   CHECK(make({0, NAN}).find("step 1") != std::string::npos);
   UnsteadyFlow flow(series_of({0, 1}, box, wave), "speed", TimeInterpolation::linear, context);
   const std::string text = test::error_of([&] { flow.open(0, context); });
-  CHECK(text.find("taking time step 0 (time 0)") != std::string::npos);
+  CHECK(text.find("loading time step 0 (time 0)") != std::string::npos);
   UnsteadyFlow scalar(series_of({0, 1}, box, wave), "height", TimeInterpolation::linear, context);
   CHECK(test::error_of([&] { scalar.open(0, context); }).find("1 component") != std::string::npos);
 }

@@ -207,7 +207,7 @@ TEST_CASE("unsteady: particles that leave end at the border, those in NaN do not
   const std::string none = test::error_of([&] {
     pathlines(series_of({0, 1}, big_box, v), {}, seeded_at<PathlinesParams>({9, 9, 9}), context);
   });
-  CHECK(none.find("none of 1 seeds lies in the flow; the mesh lies in x -2 to 2") != std::string::npos);
+  CHECK(none.find("none of 1 seeds lies in the flow; the mesh extends over x -2 to 2") != std::string::npos);
 }
 
 TEST_CASE("unsteady: bad requests say what is wrong") {
@@ -225,14 +225,14 @@ TEST_CASE("unsteady: bad requests say what is wrong") {
   CHECK(message(path, oscillating_series(3)).find("start=5 lies outside the series; it goes from 0 to 2") != std::string::npos);
   auto streak = seeded_at<StreaklinesParams>({0, 0, 0});
   streak.start = 1, streak.time = 0.5;
-  CHECK(message(streak, oscillating_series(3)).find("pathlines go backwards") != std::string::npos);
+  CHECK(message(streak, oscillating_series(3)).find("use pathlines to go backwards") != std::string::npos);
   streak = seeded_at<StreaklinesParams>({0, 0, 0});
   streak.every = 1e-12;
   CHECK(message(streak, oscillating_series(3)).find("releases") != std::string::npos);
   TimelinesParams time;
   time.seeds.points = {0, 0, 0};
-  CHECK(message(time, oscillating_series(3)).find("makes no line") != std::string::npos);
-  CHECK(message(TimelinesParams{}, oscillating_series(3)).find("random seeds make no line") != std::string::npos);
+  CHECK(message(time, oscillating_series(3)).find("does not make a line") != std::string::npos);
+  CHECK(message(TimelinesParams{}, oscillating_series(3)).find("random seeds do not make a line") != std::string::npos);
 }
 
 TEST_CASE("unsteady: 1,000 steps, two in memory") {

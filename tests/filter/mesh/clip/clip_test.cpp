@@ -311,8 +311,8 @@ TEST_CASE("clip: mistakes say what would be right") {
   says([](ClipParams& p) { p.quadric = {1, NAN, 0, 0, 0, 0, 0, 0, 0, 0}; }, "not finite");
   says([](ClipParams& p) { p.function = "x +* 2"; }, "function");
   says([](ClipParams& p) { p.sphere = {0, 0, 0, 1}, p.function = "x"; }, "both given");
-  says([](ClipParams& p) { p.sphere = {0, 0, 0, 1}, p.value = 1; }, "both given");
-  says([](ClipParams& p) { p.field = {"c"}; }, "not on the points");
+  says([](ClipParams& p) { p.sphere = {0, 0, 0, 1}, p.value = 1; }, "both a shape and a field");
+  says([](ClipParams& p) { p.field = {"c"}; }, "not a point field");
   says([](ClipParams& p) { p.field = {"g"}; }, "g");
   says([](ClipParams& p) { p.value = INFINITY; }, "not finite");
   IsovolumeParams p;

@@ -161,10 +161,10 @@ TEST_CASE("contour: lines on a 2D grid stop at NaN and ghost cells") {
 }
 
 TEST_CASE("contour: nothing to see gives an empty mesh with its fields and a note") {
-  for (const auto& [d, value, note] : {std::tuple{cube(6, 1, sphere), 9.0, "the field runs from"},
-                                       {cube(6, 1, [](Vec3) { return 3.0; }), 3.5, "runs from 3 to 3"},
+  for (const auto& [d, value, note] : {std::tuple{cube(6, 1, sphere), 9.0, "the field ranges from"},
+                                       {cube(6, 1, [](Vec3) { return 3.0; }), 3.5, "ranges from 3 to 3"},
                                        {cube(6, 1, [](Vec3) { return double(NAN); }), 0.0, "has no values"},
-                                       {solid_mesh("tetra", 3, 1, sphere), 9.0, "the field runs from"}}) {
+                                       {solid_mesh("tetra", 3, 1, sphere), 9.0, "the field ranges from"}}) {
     std::string log;
     ContourParams p;
     p.values = {value};
@@ -237,7 +237,7 @@ TEST_CASE("contour: refuses what it cannot do and says what would be right") {
   CHECK(error_of([&] { run(d, p); }).find("did you mean 'f'") != std::string::npos);
   const auto cells = with(d, {{"c", Association::cell, Array::from_vector(std::vector<float>(64)), "", Role::none}});
   p.field.name = "c";
-  CHECK(error_of([&] { run(cells, p); }).find("lies on the cells") != std::string::npos);
+  CHECK(error_of([&] { run(cells, p); }).find("is a cell field") != std::string::npos);
   p.field.name = "f";
   p.values = {NAN};
   CHECK(error_of([&] { run(d, p); }).find("finite") != std::string::npos);

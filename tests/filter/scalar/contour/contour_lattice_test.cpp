@@ -300,7 +300,7 @@ TEST_CASE("contour: takes cell fields, averaged to the points, when asked") {
   CHECK(s.area() == doctest::Approx(4 * M_PI).epsilon(0.02));
   CHECK(c->fields().require("radius", Association::cell).array.count() == s.triangles.size());
   p.field.name = "f";
-  CHECK(error_of([&] { run(d, p); }).find("lies on the points") != std::string::npos);
+  CHECK(error_of([&] { run(d, p); }).find("is defined on the points") != std::string::npos);
   p.field.name = "";
   DatasetParts only = d->parts();
   only.fields.remove("f", Association::point);

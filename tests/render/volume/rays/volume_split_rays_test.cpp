@@ -192,5 +192,5 @@ TEST_CASE("volume split rays: refused for volumes that memory does not hold") {
   VolumeItem v = item(data, grey(0, 1), spikes());
   v.sampling.antialias = VolumeAntialias::split;
   CHECK_THROWS_WITH_AS(volume::ray_slabs(scene_of({v}), perspective_view(8, 8, 10, {0, 0, 9}, {0, 0, 0})),
-                       doctest::Contains("means of cells already"), Error);
+                       doctest::Contains("already averages of cells"), Error);
 }

@@ -51,7 +51,7 @@ Array convolve_surface(const RefinedSurface& r, const Walk& walk, const SurfaceC
   const double step = step_length(r, p.step);
   if (step > most_edges_a_step * r.edge_length)
     fail_usage(fmt::format("step={:.4g} is {:.3g} edges of the split triangles long", step, step / r.edge_length), "step",
-               fmt::format("at most {:.4g}, {:g} edges: lines see nothing of what lies between", most_edges_a_step * r.edge_length,
+               fmt::format("use at most {:.4g}, {:g} edges: longer steps skip what lies between", most_edges_a_step * r.edge_length,
                            most_edges_a_step));
   const Kernel kernel(p.steps, p.kernel == LineFade::hann, r.edge_length / std::max(step, 1e-300));
   const double whole = kernel.whole();
@@ -64,7 +64,7 @@ Array convolve_surface(const RefinedSurface& r, const Walk& walk, const SurfaceC
   for (size_t t = 0; t < r.triangles.size(); ++t)
     for (const uint32_t q : r.triangles[t])
       if (home[q] == UINT32_MAX) home[q] = uint32_t(t), order.push_back(q);
-  std::vector<double> noises(n);  // asked for often: each line passes many points
+  std::vector<double> noises(n);  // queried often: each line passes many points
   parallel_for(n, 1 << 15, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) noises[i] = random_unit(uint64_t(p.seed), i);
   });

@@ -18,17 +18,16 @@ struct SurfaceLicParams {
   int64_t seed = 1;
 };
 inline void describe(Schema& s, SurfaceLicParams& p) {
-  s("field", p.field, "Vector field to follow, on points or cells; default: the active vectors.").takes(fields::vectors);
+  s("field", p.field, "Vector field on points or cells to follow; default: the active vectors.").takes(fields::vectors);
   s("density", p.density,
-    "Samples along the diagonal of the data's box: triangles are split until their edges are no longer than the diagonal divided by this; "
-    "0 keeps the triangles of the mesh. Default: 400, or fewer where that would make more than 150 000 to 300 000 triangles.")
+    "Samples along the diagonal of the bounding box: triangles are split until their edges are no longer than the diagonal divided by "
+    "this; 0 keeps the triangles of the mesh. Default: 400, or fewer if that would make more than 150 000 to 300 000 triangles.")
       .range(0, 100000);
-  s("steps", p.steps, "Steps of each line each way.").range(1, 10000);
+  s("steps", p.steps, "Steps of each line in each direction.").range(1, 10000);
   s("step", p.step, "Length of a step; 0: half the mean edge of the split triangles.").unit("length").at_least(0);
-  s("kernel", p.kernel, "Weights along a line: hann fades out, box is even.");
-  s("stretch", p.stretch,
-    "Spreads the means over 0 to 1 by what is known of their variance (to be shown with map=gray); false leaves the means of the noise.");
-  s("seed", p.seed, "Number of the noise.");
+  s("kernel", p.kernel, "Weights along a line: hann fades out, box is uniform.");
+  s("stretch", p.stretch, "Spread the means over 0 to 1 by their known variance (for map=gray); false keeps the means of the noise.");
+  s("seed", p.seed, "Random seed of the noise.");
 }
 
 /// Line integral convolution (Cabral, Leedom 1993) in object space: every point of the surface, whose triangles are first split to be

@@ -14,7 +14,7 @@ constexpr int most_idle = 64;       ///< triangles passed without going anywhere
 constexpr int most_passed = 20000;  ///< triangles of one step, as where slivers lead around a point
 
 // Which of three edges a line meets first, by what is so in bits: 1, 2, 4: it goes towards edge 0, 1, 2; 8: 1 comes before 0, 16: 2 before
-// 0, 32: 2 before 1. 3: none. A table, because nobody can foresee the edge and a wrong guess costs more than all the rest.
+// 0, 32: 2 before 1. 3: none. A table, because the edge is unpredictable and a branch misprediction costs more than all the rest.
 constexpr std::array<uint8_t, 64> first_edges = [] {
   std::array<uint8_t, 64> t{};
   for (unsigned bits = 0; bits < 64; ++bits) {

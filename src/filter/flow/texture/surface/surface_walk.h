@@ -12,9 +12,9 @@
 namespace sg {
 
 /// Walks a surface with vectors (tensors) on its points, linear in each triangle, or its triangles; keeps a reference to the surface. Only
-/// their part along the triangle counts. Crossing an edge, a line goes on by the neighbour's own directions: what unfolding both triangles
-/// would give for a field that is continuous along the surface. Directions without a sign take the one nearer to the way the line goes,
-/// which is carried across edges by unfolding them.
+/// their part along the triangle counts. Crossing an edge, a line continues with the neighbour's own directions: what unfolding both
+/// triangles would give for a field that is continuous along the surface. Directions without a sign take the one nearer to the way the line
+/// goes, which is carried across edges by unfolding them.
 template <class Directions>
 class SurfaceWalker {
  public:

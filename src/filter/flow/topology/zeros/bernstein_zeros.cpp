@@ -219,7 +219,7 @@ Mat3 BernsteinZeros::gradient(Vec3 u) const {
   return g;
 }
 
-// Newton's method; false when it does not come to rest near where it began.
+// Newton's method; false when it does not converge near its start.
 bool BernsteinZeros::polish(Vec3& u) const {
   const Vec3 start = u;
   for (int round = 0; round < 20; ++round) {

@@ -52,7 +52,7 @@ CellZeros::Result CellZeros::find(size_t cell, std::vector<CellZero>& out) {
   return result;
 }
 
-// In the open cell; `some`: of its points stand still.
+// In the open cell; `some`: of its points are at rest.
 CellZeros::Result CellZeros::find_open(bool some, std::vector<CellZero>& out) {
   const size_t n = v_.size();
   known_.clear();
@@ -66,7 +66,7 @@ CellZeros::Result CellZeros::find_open(bool some, std::vector<CellZero>& out) {
   return find_sampled(out);
 }
 
-// Edges whose ends both are zero: of a linear cell they are lines of zeros. True when no isolated zero is to be expected beside them.
+// Edges whose ends both are zero: of a linear cell they are lines of zeros. True when no isolated zero is to be expected next to them.
 bool CellZeros::zero_edges(Result& result) {
   const CellType type = map_.reader().type();
   const LinearTopology* t = linear_topology(linear_type(type));

@@ -34,7 +34,7 @@ class CellZeros {
   enum class Result : uint8_t {
     none,      ///< no zero, hidden, or without values
     isolated,  ///< what was appended is all
-    spread     ///< lines or areas of zeros: isolated ones beside them may be missing
+    spread     ///< lines or areas of zeros: isolated ones next to them may be missing
   };
   Result find(size_t cell, std::vector<CellZero>& out);
   /// Points of exactly zero velocity that share an edge with another such point in some cell that was searched.

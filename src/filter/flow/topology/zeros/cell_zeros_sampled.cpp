@@ -84,7 +84,7 @@ bool CellZeros::newton_from(Vec3 x, Vec3& found, Mat3& gradient) {
   return false;
 }
 
-// Simplices between the middle and the sides: a ray from there to any place of the cell goes on to a side, so that they cover it.
+// Simplices between the middle and the sides: a ray from there to any point of the cell continues to a side, so that they cover it.
 void CellZeros::fan_of_cell(Vec3 middle, std::vector<Vec3>& out) {
   CellReader reader = map_.reader();
   const auto at = reader.at();

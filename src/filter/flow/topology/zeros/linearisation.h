@@ -12,7 +12,7 @@ namespace sg {
 /// "in" counts directions along which the flow comes (negative real parts), "out" those along which it leaves. Saddles of planes are
 /// `saddle`; the others of that name are solid. Numbers are those of the field "type".
 enum class CriticalType : uint8_t {
-  degenerate,  ///< an eigenvalue is zero: the gradient does not tell
+  degenerate,  ///< an eigenvalue is zero: the gradient does not decide
   saddle,
   attracting_node,
   repelling_node,

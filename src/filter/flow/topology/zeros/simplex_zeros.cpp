@@ -9,7 +9,7 @@ namespace sg {
 
 namespace {
 
-constexpr int deepest = 12;             // halvings; what is left then is decided by Newton's method alone
+constexpr int deepest = 12;             // halvings; what is left then is decided only by Newton's method
 constexpr int64_t most_pieces = 40000;  // of one cell: more have only lines of zeros
 constexpr double bend = 0.03;           // of the quadratic, in its own size, below which its gradient stays invertible
 
@@ -38,7 +38,7 @@ double diameter(const Vec3* at, int corners) {
 
 }  // namespace
 
-// Newton's method from `start`; what it finds counts in the piece, or up to `slack` of its size beside it.
+// Newton's method from `start`; what it finds counts inside the piece, or up to `slack` of its size outside.
 void SimplexZeros::keep(const Piece& p, Vec3 start, double slack, std::vector<Vec3>& zeros) {
   Vec3 found;
   if (!polish_(start, found)) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All zeros of a smooth function in a triangle or tetrahedron, from its values alone: for interpolants that are no polynomials.
+// All zeros of a smooth function in a triangle or tetrahedron, from values only: for interpolants that are not polynomials.
 #pragma once
 #include <functional>
 #include <span>
@@ -16,7 +16,7 @@ namespace sg {
 class SimplexZeros {
  public:
   using Function = std::function<bool(Vec3 x, Vec3& v)>;
-  /// `polish` goes on from a place nearby to the zero itself; false where there is none.
+  /// `polish` refines a nearby point to the zero itself; false where there is none.
   using Polish = std::function<bool(Vec3 start, Vec3& zero)>;
   SimplexZeros(int dimension, Function f, Polish polish) : dimension_(dimension), f_(std::move(f)), polish_(std::move(polish)) {}
 

@@ -93,7 +93,7 @@ class Surface {
       }
     for (size_t i = 0; i < n; ++i) {
       const Vec3 m = normal_[i] = normalize(normal_[i]), v = given_[i];
-      // Kept along the surface; what is left of rounding alone counts as zero.
+      // Kept along the surface; what is only rounding error counts as zero.
       v_[i] = v - m * dot(m, v);
       if (length(v_[i]) <= 1e-12 * std::max(length(v), largest * 1e-3)) {
         zero_[i] = 1;

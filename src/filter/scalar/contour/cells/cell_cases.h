@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How an isosurface crosses a cell: triangles for every pattern of corners, made from the cell's faces alone.
+// How an isosurface crosses a cell: triangles for every pattern of corners, made only from the cell's faces.
 //
 // A corner is inside when its value is >= the isovalue. On each face the surface leaves segments between cut edges; together
 // the segments of all faces close to loops, which are filled with triangles. On a face of four corners that alternate, one bit
@@ -81,12 +81,12 @@ const CaseTable& lattice_cases();
 const CaseTable* cell_cases(CellType type);
 
 /// The cheapest triangulation of a loop of n places: triangles as places in the loop, in its direction. cost(a, b), a < b, is that of
-/// the diagonal between two places that are no neighbours.
+/// the diagonal between two places that are not neighbours.
 std::vector<std::array<uint32_t, 3>> fill_loop(size_t n, const std::function<double(size_t, size_t)>& cost);
 /// What a diagonal that lies in a face adds to its squared length (in units of the cell's size), by the rule above.
 inline double face_penalty(bool from_entry_to_entry) { return from_entry_to_entry ? 1e3 : 1e6; }
 
-/// Does the bilinear function on a face with alternating signs join its corners >= 0? Values minus the isovalue, in order around.
+/// Whether the bilinear function on a face with alternating signs joins its corners >= 0. Values minus the isovalue, in order around.
 inline bool joined_inside(double a, double b, double c, double d) { return a >= 0 ? a * c >= b * d : b * d >= a * c; }
 
 }  // namespace sg

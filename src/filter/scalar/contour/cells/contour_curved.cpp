@@ -144,7 +144,7 @@ class Surface {
   void add(const CurvedSimplices& cells, double value, bool normals) {
     Part part = find(cells, value);
     const size_t n = part.first.size() - 1, before = xyz_.size() / 3;
-    if (before + n > size_t(INT32_MAX)) fail_usage("the surface has more than 2^31 points", "contour", "choose a larger tolerance");
+    if (before + n > size_t(INT32_MAX)) fail_usage("the surface has more than 2^31 points", "contour", "use a larger tolerance");
     xyz_.resize((before + n) * 3);
     if (normals) normals_.resize((before + n) * 3);
     for (size_t i = 0; i < fields_.size(); ++i) columns_[i].resize((before + n) * size_t(fields_[i]->components()));

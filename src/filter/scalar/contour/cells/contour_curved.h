@@ -6,7 +6,7 @@
 
 namespace sg::contouring {
 
-/// Has the mesh cells with more nodes than corners?
+/// Whether the mesh has cells with more nodes than corners.
 bool has_curved_cells(const Dataset& dataset);
 
 /// The surface (and, on faces, lines) of a point field on an unstructured mesh with curved cells. The field is what the cells' shape

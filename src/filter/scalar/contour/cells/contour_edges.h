@@ -21,7 +21,7 @@ struct EdgeChunk {
   std::vector<CellPoint> inner;
   size_t first_inner = 0;
 
-  /// Takes what was found; `point_count` is that of the mesh. Edges go to the parts by their lower point.
+  /// Takes what was found; `point_count` is that of the mesh. Edges are assigned to parts by their lower point.
   void take(Found& found, size_t point_count);
 };
 

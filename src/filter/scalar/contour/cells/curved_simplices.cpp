@@ -93,7 +93,7 @@ CurvedSimplices::CurvedSimplices(const DatasetPtr& dataset, View<double> values,
     const size_t marked = mark(round);
     if (marked == 0) break;
     if (simplices_.size() + around_edge * marked > most) {
-      context.info("contour: curved cells are not divided further, since there are too many parts; choose a larger tolerance");
+      context.info("contour: curved cells are not subdivided further, since there are too many parts; use a larger tolerance");
       break;
     }
     halve();
@@ -252,7 +252,7 @@ size_t CurvedSimplices::mark(int round) {
     m.number = uint32_t(points_.size());
     points_.push_back(m.at);
   }
-  if (points_.size() > size_t(UINT32_MAX) / 2) fail_usage("the surface has too many points", "contour", "choose a larger tolerance");
+  if (points_.size() > size_t(UINT32_MAX) / 2) fail_usage("the surface has too many points", "contour", "use a larger tolerance");
   return marked.size();
 }
 
@@ -270,7 +270,7 @@ void CurvedSimplices::halve() {
   std::erase_if(middles_, [](const auto& m) { return m.second.number != UINT32_MAX; });  // those edges are gone
 }
 
-// The longest marked edge first; a tie by name. All of it is known from the edge alone.
+// The longest marked edge first; a tie by name. All of it follows from the edge alone.
 void CurvedSimplices::split(const Simplex& s, std::vector<Simplex>& out) const {
   int best = -1;
   uint32_t middle = 0;

@@ -43,7 +43,7 @@ class CellField {
 ///
 /// Each cell is cut at its corners (by the lowest point number, so that neighbours agree on diagonals) and its edges are halved as
 /// long as the field or the map bends too far along one of them, the longest first. An edge is halved in all simplices around it or
-/// in none; which child of a face remains follows from the face alone. So neighbours stay joined however differently they are
+/// in none; which child of a face remains depends only on the face. So neighbours stay joined however differently they are
 /// divided. Edges shorter than the tolerance stay whole, and nothing is divided where the field, by its bend, cannot reach the value.
 class CurvedSimplices {
  public:

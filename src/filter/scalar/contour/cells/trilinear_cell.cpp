@@ -120,7 +120,7 @@ struct Cutter {
   void tube_or_discs();
 };
 
-// The disc of a short loop: the lattice table's choice of diagonals for this loop alone.
+// The disc of a short loop: the lattice table's choice of diagonals for this loop only.
 void Cutter::fill(int l) {
   const auto all = lattice_cases().triangles(pattern, joined);
   uint32_t mine = 0;
@@ -169,7 +169,7 @@ uint8_t edge_at(int axis, int corner) {
 class Hexagon {
  public:
   Hexagon(const Cutter& cutter) : cut_(cutter), f_(cutter.f) {}
-  /// Does it lie in the cell, with two loops at its sides?
+  /// Whether it lies in the cell, with two loops at its sides.
   bool find();
   /// Its points along loop `side` (0, 1): places in the loop in its direction, growing; first point and step in `points`.
   struct Ring {

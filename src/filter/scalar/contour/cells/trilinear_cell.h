@@ -36,7 +36,7 @@ struct TrilinearCell {
 void cut_trilinear(const double f[8], TrilinearCell& out, bool places = true);
 inline constexpr std::array<uint8_t, 8> hexahedron_corner{0, 1, 3, 2, 4, 5, 7, 6};
 
-/// Can this pattern of corners (bit c: inside) have a surface other than the one that lattice_cases() lists? All patterns with an
+/// Whether this pattern of corners (bit c: inside) can have a surface other than the one that lattice_cases() lists. All patterns with an
 /// ambiguous face or two loops; for the others cut_trilinear() returns the listed triangles.
 bool needs_trilinear(uint32_t pattern);
 

@@ -90,7 +90,8 @@ void classify_known(const Array& samples, size_t nx, size_t rows, const StretchR
   });
 }
 
-// Levels are as many as bytes tell apart, spread over the middle 98 % of some stretches; the rest takes the first and the last one.
+// There are as many levels as bytes can distinguish, spread over the middle 98 % of some stretches; the rest takes the first and the last
+// one.
 void find_levels(StretchRanges& r, const Array& samples) {
   const Sample f(samples);
   const size_t n = samples.count(), step = std::max<size_t>(1, n / 4096);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Marching cubes and squares on lattices, by rows of bits. One bit per sample says inside or outside; cut edges and crossed cells
+// Marching cubes and squares on lattices, by rows of bits. One bit per sample: inside or outside; cut edges and crossed cells
 // are then exclusive ors of rows, 64 at a time, so that everything away from the surface costs next to nothing. Rows are counted,
 // the counts are summed, and all rows are written at the same time, as in the flying edges of Schroeder, Maynard, Geveci 2015.
 // contour_lattice_write.cpp writes them.
@@ -91,7 +91,7 @@ std::vector<Piece> LatticeContour::run(std::span<const double> values) {
       room.edges += c.vertices, room.inner += c.inner, room.cells += c.cells;
     }
     if (room.edges + room.inner > size_t(INT32_MAX))
-      fail_usage("the surfaces have more than 2^31 points", "contour", "contour a part of the grid at a time, or ask for fewer values");
+      fail_usage("the surfaces have more than 2^31 points", "contour", "contour a part of the grid at a time, or use fewer values");
     room.allocate(job_, frame_.axes);
     for (Cuts& c : cuts) {
       pieces.push_back(generate(c, room));
@@ -106,7 +106,7 @@ void LatticeContour::find_cuts(Cuts& cuts) const {
   if (!skip_.empty())
     for (int a = 0; a < frame_.axes; ++a) cuts.cut[a].assign(rows * words_, 0);  // rows without a cut are left out
   cuts.rows.resize(rows);                                                        // not initialised
-  // Places are sums of counts: inside each chunk first, then those of the chunks before it are added.
+  // Places are sums of counts: within each chunk first, then those of the preceding chunks are added.
   const size_t grain = std::max<size_t>(1, 512 / words_);
   std::vector<RowStart> before((rows + grain - 1) / grain, RowStart{});
   auto sum_up = [](RowStart& place, RowStart& sum) {
@@ -149,7 +149,7 @@ bool LatticeContour::may_cut(const Cuts& cuts, size_t j, size_t k) const {
   return (up && cuts.state[r + 1] != s) || (back && cuts.state[r + ny] != s) || (up && back && cuts.state[r + ny + 1] != s);
 }
 
-// Solids whose cells are all good: most by bits alone.
+// Solids whose cells are all good: most by bits only.
 void LatticeContour::count_simple_row(Cuts& cuts, size_t j, size_t k, uint64_t* odd) const {
   const size_t nx = frame_.dims[0], ny = frame_.dims[1], nz = frame_.dims[2], r = j + ny * k;
   const uint64_t* a = cuts.inside.data() + r * words_;

@@ -41,7 +41,7 @@ struct LatticeContour::Room {
   }
 };
 
-// A cell that the table alone cannot cut.
+// A cell that the table cannot cut by itself.
 struct LatticeContour::Slow {
   TrilinearCell cell;
   Slow(size_t p, double value, const LatticeFrame& frame, const Sample& f, bool places) {
@@ -60,7 +60,7 @@ struct Pair {
 };
 
 // Lines of a square: corners 0 (0,0), 1 (1,0), 2 (0,1), 3 (1,1); edges 0 below, 1 above (along x), 2 left, 3 right. Pairs of edges,
-// the inside on the left. Patterns 6 and 9 have two ways: inside corners apart, then joined.
+// the inside on the left. Patterns 6 and 9 have two ways: inside corners separated, then joined.
 struct Square {
   uint8_t lines, edge[4];
 };

@@ -67,7 +67,7 @@ struct LatticeContour::Writing {
     if (cells) *cells++ = first_cell + uint32_t(i);
   }
 
-  // A cell that the table alone cannot cut; `list` has the numbers of its edges.
+  // A cell that the table cannot cut by itself; `list` has the numbers of its edges.
   void slow(size_t i, const uint32_t* list, int32_t*& out, uint32_t*& cells) {
     uint32_t edge[TrilinearCell::first_inner + 8];
     std::copy_n(list, TrilinearCell::first_inner, edge);

@@ -17,7 +17,7 @@ namespace sg::contouring::HWY_NAMESPACE {
 // few bits: four are written without a look at how many there are.
 HWY_INLINE size_t list_bits(uint64_t bits, uint32_t first, uint32_t* HWY_RESTRICT list, size_t count) {
   const size_t n = size_t(hwy::PopCount(bits));
-  volatile uint32_t* to = list + count;  // volatile: kept apart, since gathering them in a vector takes longer than storing each
+  volatile uint32_t* to = list + count;  // volatile: kept separately, since gathering them in a vector takes longer than storing each
   for (size_t k = 0; k < 4; ++k, bits &= bits - 1) to[k] = first + uint32_t(std::countr_zero(bits));
   if (HWY_LIKELY(n <= 4)) return count + n;
 #if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86

@@ -8,14 +8,14 @@ namespace sg::contouring {
 
 /// Where the edges of a row of points are cut, and where their results go.
 struct RowStart {
-  size_t vertex, cell, inner;  ///< first of the row, after the prefix sum; before it, counts
+  size_t vertex, cell, inner;  ///< first of the row, after the prefix sum; preceding count
   uint32_t cut[3];             ///< cut edges along each axis; results lie in that order
 };
 
 /// What a pattern of corners (bit c: inside) means for the table way of cutting.
 struct CellTables {
   static constexpr uint8_t slow = 255;
-  uint8_t triangles[256];              ///< or slow: the table alone cannot cut it
+  uint8_t triangles[256];              ///< or slow: the table cannot cut it by itself
   alignas(16) uint8_t edges[256][16];  ///< the cell's edges, three per triangle in the order of writing
   uint16_t passed[256];                ///< bit per edge that moves on when the row's counters pass a cell; see triangles_of_row
   /// trilinear: ambiguous patterns are slow. flip: triangles are wound the other way.
@@ -28,7 +28,7 @@ struct RowBits {
   size_t words, points;  ///< of a row
 };
 
-/// Triangles of those cells that are no `odd` ones, and a bit for each odd one: cells with an ambiguous face or two corners alone at the
+/// Triangles of those cells that are no `odd` ones, and a bit for each odd one: cells with an ambiguous face or two isolated corners at the
 /// ends of a diagonal. `any_odd` says whether there are such.
 size_t count_triangles(const RowBits& rows, uint64_t* odd, bool& any_odd);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of bits to triangles. Counting is done with bits alone: a cell that is cut in one piece has two triangles less than cut edges.
+// Rows of bits to triangles. Counting uses only bits: a cell that is cut in one piece has two triangles less than cut edges.
 // Writing takes a vector for the numbers of a cell's edges and shuffles it into all of its triangles at once.
 #include "filter/scalar/contour/lattice/contour_rows.h"
 
@@ -49,7 +49,7 @@ size_t triangle_count(const RowBits& rows, uint64_t* HWY_RESTRICT odd, bool& any
     const uint64_t x0 = a.m ^ a.s, x2 = b.m ^ b.s, x4 = c.m ^ c.s, x6 = d.m ^ d.s;  // named by the edge's first corner
     const uint64_t y0 = a.m ^ b.m, y1 = a.s ^ b.s, y4 = c.m ^ d.m, y5 = c.s ^ d.s;
     const uint64_t z0 = a.m ^ c.m, z1 = a.s ^ c.s, z2 = b.m ^ d.m, z3 = b.s ^ d.s;
-    // On an ambiguous face all edges are cut. Corners alone at the ends of a diagonal: their three edges are all cut.
+    // On an ambiguous face all edges are cut. Isolated corners at the ends of a diagonal: their three edges are all cut.
     const uint64_t faces = (x0 & x2 & y0) | (x4 & x6 & y4) | (x0 & x4 & z0) | (x2 & x6 & z2) | (y0 & y4 & z0) | (y1 & y5 & z1);
     const uint64_t ends =
         (x0 & y0 & z0 & x6 & y5 & z3) | (x0 & y1 & z1 & x6 & y4 & z2) | (x2 & y0 & z2 & x4 & y5 & z1) | (x2 & y1 & z3 & x4 & y4 & z0);

@@ -10,7 +10,7 @@ namespace sg::contouring {
 
 struct SurfelPlaces {
   Array xyz, normals;          ///< f32, xyz relative to `origin`
-  std::vector<int64_t> cells;  ///< empty when not asked for
+  std::vector<int64_t> cells;  ///< empty when not requested
 };
 
 /// One place per cell with samples on both sides of the value, in the order of the cells: two Newton steps on the trilinear function from

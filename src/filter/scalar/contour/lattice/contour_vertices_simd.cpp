@@ -179,7 +179,7 @@ class Rows {
     const V square = gx * gx + gy * gy + gz * gz;
     const V size = -1.0 / sqrt(square);
     hn::StoreInterleaved3(hn::DemoteTo(df, gx * size), hn::DemoteTo(df, gy * size), hn::DemoteTo(df, gz * size), df, normals);
-    // At the ends of rows differences are one-sided; a gradient of zero, or beside NaN, is looked at closely too.
+    // At the ends of rows differences are one-sided; a gradient of zero, or next to NaN, is also handled separately.
     const auto good = (square > 0) & (square < HUGE_VAL) & ((i >= one) & (i < nx - 2));
     if (HWY_LIKELY(all(good))) return;
     HWY_ALIGN uint8_t bytes[8] = {};

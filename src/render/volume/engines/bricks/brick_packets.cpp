@@ -64,7 +64,7 @@ BrickPackets::BrickPackets(const BrickedSource& source, const Volume& stage, con
   }
 }
 
-// Does the shadow of the box, a convex polygon, meet the rectangle? When not, the line through some edge of one lies between them.
+// Whether the projection of the box, a convex polygon, meets the rectangle. If not, the line through some edge of one lies between them.
 bool BrickPackets::meets(const Leaf& leaf, double x0, double y0, double x1, double y1) const {
   if (!(double(leaf.x0) < x1 && double(leaf.x1) > x0 && double(leaf.y0) < y1 && double(leaf.y1) > y0)) return false;
   if (leaf.all) return true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packets of rays through the bricks of a volume that memory does not hold: brick by brick from front to back.
+// Packets of rays through the bricks of a volume larger than memory: brick by brick from front to back.
 #pragma once
 #include "data/memory/byte_cache.h"
 #include "render/volume/engines/packets/packets.h"
@@ -10,11 +10,11 @@ namespace sg::volume {
 /// What the lattices of all bricks share: all but the samples. `unit`: world length to which opacity refers.
 Volume brick_stage(const BrickedSource& source, const VolumeItem& item, uint32_t id, double unit, float per_scale);
 
-/// One volume alone. Draws what single rays through the source draw, but where two levels meet: there the levels are mixed at the samples
-/// and linear between them.
+/// One volume alone. Draws what single rays through the source draw, except where two levels meet: there the levels are mixed at the
+/// samples and linear between them.
 class BrickPackets {
  public:
-  /// May this be drawn so: as in_tolerant_packets() and in_packets(), and bricks that lattice_key() can tell apart.
+  /// Whether this can be drawn so: as in_tolerant_packets() and in_packets(), and lattice_key() can distinguish the bricks.
   static bool fits(const BrickedSource& source, const VolumeItem& item, const PacketPlan& plan, bool in_steps);
 
   /// `stage` as brick_stage() makes it; plan.volume is not read. The source must have its Invisible. All of them, and the plan's medium,

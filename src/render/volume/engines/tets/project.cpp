@@ -280,9 +280,9 @@ class Projector {
 
 Layer project_cells(const LayerInput& input) {
   if (input.item.mode != RayFunction::composite)
-    fail_usage("cell projection draws emission and absorption only", "volume", "take method=ray for other ray functions");
+    fail_usage("cell projection draws emission and absorption only", "volume", "use method=ray for other ray functions");
   if (!input.item.detail.plain())
-    fail_usage("cell projection has opacity by one value only", "volume", "take method=ray for transfer functions of two values");
+    fail_usage("cell projection supports opacity by one value only", "volume", "use method=ray for transfer functions of two values");
   return Projector(input).draw();
 }
 

@@ -12,7 +12,7 @@ struct ColumnTet {
   float z[4], f[4];
 };
 
-/// What the lines of a row of pixels meet of a tetrahedron.
+/// Intersections of a tetrahedron with the lines of a row of pixels.
 struct RowCut {
   alignas(64) float enter[ColumnTet::lanes], leave[ColumnTet::lanes];  ///< depths
   alignas(64) float front[ColumnTet::lanes], back[ColumnTet::lanes];   ///< values there
@@ -28,7 +28,7 @@ struct alignas(64) SegmentPacket {
   float front[lanes], back[lanes], length[lanes];
   float r[lanes], g[lanes], b[lanes], pass[lanes];
 };
-/// Puts each segment behind what is there, as TetRays does.
+/// Composites each segment behind what is there, as TetRays does.
 void put_segments(const TetMedium& medium, SegmentPacket& packet);
 
 }  // namespace sg::volume

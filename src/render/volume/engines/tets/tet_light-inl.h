@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light in the tetrahedra that the lanes of a packet cross: the gradient is linear in each, so that the normal turns in one plane and one
-// way, and where the surface turns over is known.
+// Light in the tetrahedra that the lanes of a packet cross: the gradient is linear in each, so that the normal turns in one plane and in
+// one direction, and the point where the surface turns over is known.
 #if defined(SG_TET_LIGHT_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef SG_TET_LIGHT_INL
 #undef SG_TET_LIGHT_INL
@@ -84,7 +84,7 @@ class Lighting {
 
   /// light_at, on the side of the surface that is seen where the product with the direction is `along`.
   HWY_ATTR void shine(Surface& s, F along) const { shine<false>(s, along, s); }
-  /// The limit of the light from the side of another place, which is lit already: at a kink, where rounding does not tell.
+  /// The one-sided limit of the light, from the side of another point that is lit already: at a kink, where rounding cannot decide.
   HWY_ATTR void shine_beside(Surface& s, const Surface& other) const { shine<true>(s, other.along, other); }
 
   /// `like` tells which lamps it faces.
@@ -111,7 +111,7 @@ class Lighting {
       F c = side * dot(s.gradient, to);
       const F intensity = set(d, l.intensity);
       if constexpr (beside) {
-        // A lamp that reaches the other place shines here, too, at its limit.
+        // A lamp that reaches the other point shines here too, in the limit.
         const M faces = side_there * dot(like.gradient, to) > zero;
         c = select(faces, max(c, 1e-30f), zero);
       }
@@ -130,8 +130,8 @@ class Lighting {
     s.shine = {one + s.weight * factor, s.weight * (m.specular * specular)};
   }
 
-  /// What a straight line between the light at two places may have wrong in between, no lamp beginning or ceasing to shine and the surface
-  /// not turning over; and what a parabola through the middle may. Estimates.
+  /// Error of a straight line between the light at two points, if no lamp begins or ceases to shine and the surface does not turn over; and
+  /// of a parabola through the middle. Estimates.
   struct Bend {
     F line, parabola;
   };
@@ -139,7 +139,7 @@ class Lighting {
     const D d;
     const F zero = set(d, 0), one = set(d, 1.0f);
     const F cosine = dot(a.gradient, b.gradient) * a.per_size * b.per_size;
-    // None at one end: there all of it counts.
+    // No surface at one end: there all of it counts.
     const F turn = only(max(a.per_size, b.per_size) > zero, max(zero, one - cosine));
     // The second derivative of a highlight at this angle beside its middle (see integrate.cpp), from above without an exponential.
     const F away = sqrt(max(zero, one - max(a.nearest, b.nearest)));
@@ -148,7 +148,7 @@ class Lighting {
     const F lobe = power * (1.5f / (one + 0.25f * (x * x)));
     const F second = light.material.diffuse + light.material.specular * lobe;
     const F bend = turn * second * (all_ / 12);
-    // The amount of surface turns sharply where it becomes whole.
+    // The amount of surface has a kink where it reaches 1.
     const F fades = 0.25f * abs(a.weight - b.weight);
     // The sum of a short gradient and a long one turns with the long one: where it is, light has changed by the share s r / (1 - s + s r)
     // at the share s of the way, r = (1 + f) / (1 - f) the ratio of their lengths. In the mean that is off the line by f (1/3 + f^2 / 6) at
@@ -195,12 +195,12 @@ class Lighting {
   }
 
   shading::HWY_NAMESPACE::Power power_;  ///< of highlights
-  static constexpr size_t ready = 4;     ///< lamps whose half_ is kept; others are asked for each time
+  static constexpr size_t ready = 4;     ///< lamps whose half_ is stored; others are computed each time
   F direction_[3], half_[ready][3];
   float all_ = 0;
 };
 
-/// A segment: what it is lit by at its ends, the value there, and its length.
+/// A segment: the light at its ends, the values there, and its length.
 struct LitWay {
   Surface first, last;
   F front, back, length;
@@ -213,8 +213,8 @@ HWY_ATTR inline void behind_lit(const LinePart& p, F length, M on, const Shine& 
   const F depth = p.tau * length;
   const M lit = on & (depth > zero);
   const Faded f = fade(only(lit, depth));
-  // Where the light that is seen comes from, on the way: its mean place (the front hides what is behind), and how far it spreads where tau
-  // is even (near 1/12 - 1/240 D^2 for thin parts, 1 / D^2 for deep ones).
+  // Where on the segment the light that is seen comes from: its mean position (the front hides what is behind), and its spread where tau is
+  // constant (near 1/12 - 1/240 D^2 for thin parts, 1 / D^2 for deep ones).
   const F alpha = select(lit, f.alpha, one);
   const F centre = p.moment / select(lit, p.tau, one) - f.hidden / alpha;
   const F spread = (one - p.uneven) / (12.0f + 0.65f * (depth * depth));
@@ -239,12 +239,12 @@ HWY_ATTR inline Shine half_way(const Shine& a, const Shine& b) {
   return {half * (a.diffuse + b.diffuse), half * (a.specular + b.specular)};
 }
 
-/// May a part be drawn as one?
+/// Whether a part may be drawn as one.
 struct Fair {
   const TetMedium& medium;
   const Lighting& lighting;
 
-  /// With light that is so far off at most.
+  /// With light whose error is at most this.
   HWY_ATTR M operator()(const LinePart& p, F length, F pass, F off, F differ) const {
     const D d;
     const F one = set(d, 1.0f);
@@ -252,7 +252,7 @@ struct Fair {
     const F share = set(d, 0.4f * lighting.light.tolerance);
     const F allowed = share * (weight + length * lighting.light.per_ray);
     // Colour and light that both change have a product that is not straight; and the front hides what is behind, exactly so where tau is
-    // even.
+    // constant.
     const F product = change * differ, order = (change + differ) * p.uneven * min(depth, 6.0f);
     const F wrong = off + (product + order) * (1.0f / 12);
     return weight * wrong <= allowed;
@@ -265,7 +265,7 @@ struct Fair {
   }
 };
 
-/// Puts a lit segment behind what is there: in parts, each as long as it may be.
+/// Composites a lit segment behind what is there, in parts as long as the tolerance allows.
 HWY_ATTR inline void gather_lit(const TetMedium& medium, const Lighting& lighting, const LitWay& way, const Slice& slice, M on,
                                 float stop_below, Colors& sum) {
   const D d;
@@ -274,7 +274,7 @@ HWY_ATTR inline void gather_lit(const TetMedium& medium, const Lighting& lightin
   const LinePart all = means<Ask::moment>(medium, way.front, way.back, slice(way.front), slice(way.back), on);
   on = on & (all.tau * way.length > zero);
   const Surface &first = way.first, &last = way.last;
-  // Where it turns over, at an end too, or meets another lamp, its ends do not tell.
+  // If it turns over (also at an end) or meets another lamp, its ends are not representative.
   const M smooth = (first.facing == last.facing) & (first.along * last.along > zero);
   const M straight = fair(all, way.length, sum.pass, lighting.may_bend(first, last).line, apart(first.shine, last.shine));
   M as_one = on & (smooth & straight);
@@ -282,7 +282,7 @@ HWY_ATTR inline void gather_lit(const TetMedium& medium, const Lighting& lightin
   if (any(on & smooth & !straight)) {
     const Surface m = lighting.between(first, last, half);
     as_one = as_one | (on & smooth & fair(all, way.length, sum.pass, first, m, last));
-    middle = chosen(straight, middle, m.shine);  // whatever the lanes beside ask for
+    middle = chosen(straight, middle, m.shine);  // whatever the neighbouring lanes need
   }
   behind_lit(all, way.length, as_one, first.shine, middle, last.shine, sum);
   M more = on & !as_one;
@@ -299,7 +299,7 @@ HWY_ATTR inline void gather_lit(const TetMedium& medium, const Lighting& lightin
     const bool any_fine = any(fine);
     const F share = any_fine ? end_at_knot(medium, at, from, slice, fine, end, to) : end - at;
     const Surface m = lighting.between(first, last, half * (at + end));
-    // Its ends are lit as what lies between them: kinks lie in no part.
+    // Its ends are lit as the limit from inside: no part contains a kink.
     const M side = m.along > zero;
     if (any(more & ((side ^ turned) | (m.facing != facing)))) {
       a = lighting.straight(first, last, at);

@@ -32,7 +32,7 @@ struct Faded {
 /// Of an optical depth x >= 0: alpha = 1 - exp(-x), alpha / x, and hidden = alpha / 2 - alpha / x + exp(-x).
 HWY_ATTR inline Faded fade(F x) {
   const D d;
-  // Below 1/2 by their series, which lose nothing for small x; else by exp.
+  // Below 1/2 by their series, which lose no digits for small x; else by exp.
   const auto term = [&](F sum, float c) HWY_ATTR { return c - sum * x; };
   F ratio = set(d, 1.0f / 5040);
   ratio = term(ratio, 1.0f / 720), ratio = term(ratio, 1.0f / 120), ratio = term(ratio, 1.0f / 24), ratio = term(ratio, 1.0f / 6);
@@ -56,12 +56,12 @@ struct Colors {
 /// The means of tau and of tau times colour over part of one line of the medium, and the colours at its ends.
 struct LinePart {
   F tau, r, g, b, front[3], back[3];
-  F beside;  ///< over several lines: by how much the mean colour lies beside those at the ends, at most; else 0
+  F beside;  ///< over several lines: largest distance of the mean colour from those at the ends; else 0
   F uneven;  ///< if asked for: how far tau departs from its mean, relative; 1 over several lines
   F moment;  ///< if asked for: the mean of tau times the share of the way
 };
 
-/// What is asked for beside the means.
+/// What to compute besides the means.
 enum class Ask { means, uneven, moment };
 
 HWY_ATTR inline F column(const TetMedium& m, I line, int k) {
@@ -108,7 +108,7 @@ struct Slice {
     const I last = set(di, int32_t(m.first.size()) - 1);
     return min(select(to_int(at < 0), 0, s), last);
   }
-  /// Is there anything to see between two slices?
+  /// Whether anything is visible between two slices.
   HWY_ATTR M lit(I a, I b) const {
     const DI di;
     const I seen = hn::GatherIndex(di, m.seen.data() + 1, max(a, b)) - hn::GatherIndex(di, m.seen.data(), min(a, b));
@@ -116,7 +116,8 @@ struct Slice {
   }
 };
 
-/// The line that a value belongs to when the field comes from (or goes to) higher values: a knot belongs to the side of the field.
+/// The line that a value belongs to when the field comes from (or goes to) higher values: a knot belongs to the side that the field comes
+/// from or goes to.
 HWY_ATTR inline I line_of(const TetMedium& m, F f, I slice, M above, M on, F& lo, F& hi) {
   const DI di;
   I at = hn::GatherIndex(di, m.first.data(), slice);
@@ -143,14 +144,14 @@ HWY_ATTR inline LinePart means(const TetMedium& m, F f0, F f1, I slice0, I slice
   const M same = !on | !(up | down) | to_float(line0 == line1);
   if (all(same)) return part_of_line<ask>(m, line0, lo0, f0, f1);
 
-  // To the end of the first line, over whole lines, and from the beginning of the last one.
+  // To the end of the first line, over whole lines, and from the start of the last one.
   const F leave = select(same, f1, select(up, hi0, lo0)), enter = select(up, lo1, hi1);
   const LinePart a = part_of_line<ask>(m, line0, lo0, f0, leave);
   const LinePart b = part_of_line<ask>(m, line1, lo1, enter, f1);
   const F per = one / select(same, one, change);
   const F share0 = select(same, one, (leave - f0) * per);
   const F share1 = only(!same, (f1 - enter) * per);
-  // Sums stand for the lines before a line: up they are those before line1 less those before line0 + 1, down the other way round.
+  // Sums cover the lines before a line: up they are those before line1 less those before line0 + 1, down the other way round.
   const I first = select(to_int(up), line0 + 1, line0);
   const I last = select(to_int(up), line1, line1 + 1);
   const M more = to_float(first != last) & !same;
@@ -190,9 +191,9 @@ HWY_ATTR inline LinePart means(const TetMedium& m, F f0, F f1, I slice0, I slice
   return r;
 }
 
-/// The finest parts end where lines do: what is as good as opaque hides what lies a millionth of an edge behind. Moves the end of parts in
-/// the lanes of `fine`, and the value `to` there. Returns the share of the way that the parts take, which the value tells where places are
-/// too near to each other for that.
+/// The finest parts end where lines do: what is practically opaque hides what lies a millionth of an edge behind. Moves the end of parts in
+/// the lanes of `fine`, and the value `to` there. Returns the share of the segment that the parts take, computed from the values where
+/// positions are too close together.
 HWY_NOINLINE HWY_ATTR F end_at_knot(const TetMedium& m, F at, F from, const Slice& slice, M fine, F& end, F& to) {
   const D d;
   const F change = to - from, zero = set(d, 0), hair = set(d, 0x1p-22f), whole = end - at;
@@ -206,16 +207,16 @@ HWY_NOINLINE HWY_ATTR F end_at_knot(const TetMedium& m, F at, F from, const Slic
   return select(ends, share, whole);
 }
 
-/// Parts that are not cut any more.
+/// Parts that are not cut further.
 HWY_ATTR inline M finest(F share) { return share <= 1.0f / TetMedium::most_parts; }
 
-/// A part of several lines that is as short as may be has no order of colours.
+/// A part of several lines of minimal length has no order of colours.
 HWY_ATTR inline void without_order(M fine, LinePart& p) {
   const M several = fine & (p.uneven >= 1.0f);
   for (int k = 0; k < 3; ++k) p.front[k] = select(several, p.back[k], p.front[k]);
 }
 
-/// Puts one segment behind what is there: C = mean alpha - change hidden, exact for constant tau.
+/// Composites one segment behind what is there: C = mean alpha - change hidden, exact for constant tau.
 HWY_ATTR inline void behind(const LinePart& p, F length, M on, Colors& sum) {
   const F depth = p.tau * length;
   const M lit = on & (depth > 0);

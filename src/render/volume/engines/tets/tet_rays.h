@@ -4,9 +4,9 @@
 // All pixels of a block walk at the same time, one lane each, as TetWalk does it, in floats relative to the eye and the middle depth of
 // the mesh. In a tetrahedron the value is linear; its optical depth D and its light without attenuation come exactly from integrals of
 // the medium over the value, in constant time. Attenuation within a segment is exact for colours that change evenly with the depth;
-// deep segments are cut into parts (1024 at most) until what else there may be, by the change of colour where tau is not even, is small
-// against the light that they take. Light comes from gradients at the vertices, linear in each tetrahedron; segments are cut until it is as
-// good as a straight line within its parts, and where the surface turns over.
+// deep segments are cut into parts (at most 1024) until the remaining error, from the change of colour where tau is not constant, is small
+// against the light that they absorb. Light comes from gradients at the vertices, linear in each tetrahedron; segments are cut where the
+// surface turns over, and until the light is nearly linear within the parts.
 #pragma once
 #include <vector>
 
@@ -23,22 +23,22 @@ struct TetMedium {
   struct alignas(64) Interval {
     float lo, hi, at[4], slope[4], before[4], moment, unused;
   };
-  /// What the floats of these sums leave out: beside what is as good as opaque, and where lines are narrow, differences of sums need it.
+  /// Rounding remainders of these sums: next to practically opaque lines, and for narrow lines, differences of sums need them.
   struct alignas(32) Rest {
     float before[4], moment, unused[3];
   };
   static constexpr int most_parts = 1024;
   std::vector<Interval> intervals;
   std::vector<Rest> rests;
-  bool long_sums = false;      ///< are the rests of `before` needed?
-  bool long_moments = false;   ///< and those for moments?
+  bool long_sums = false;      ///< whether the remainders of `before` are needed
+  bool long_moments = false;   ///< and those of moments
   std::vector<int32_t> first;  ///< per slice of the value: the interval of the slice before
   std::vector<int32_t> seen;   ///< slices before this one in which tau is not zero
   float slice_lo = 0, per_slice = 0;
 
   float fine = 24;  ///< segments deeper than 1 by this times the root of their change of colour are cut
-  /// `range`: of the values there are. Straight lines are right to a quarter of `tolerance` (of colours, and of tau relative to itself or
-  /// to a fifth of what makes no difference to the medium), parts of deep segments to a sixth of it.
+  /// `range`: that of the data. Straight lines are accurate to a quarter of `tolerance` (of colours, and of tau relative to itself or to a
+  /// fifth of the medium's faintest visible tau), parts of deep segments to a sixth of it.
   TetMedium(const Medium& medium, const Range& range, float tolerance = 1.0f / 512);
 };
 
@@ -87,7 +87,7 @@ class TetRays {
     float half = NAN;                              ///< depth at which half of the light was gone; NaN: nowhere
   };
 
-  /// Is this picture that of the field, and not only one of straight pieces in its place?
+  /// Whether this picture is of the field itself rather than of linear pieces that approximate it.
   static bool fits(const CellVolume& volume);
   /// Values are stored ones. Keeps references to `volume`.
   TetRays(const CellVolume& volume, const Projection& projection, const Medium& medium, Context& context, float stop_below = 1.0f / 4096,

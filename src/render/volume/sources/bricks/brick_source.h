@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The source behind bricked_source(): the tree of a view, and the bricks that it asks for.
+// The source behind bricked_source(): the tree of a view, and the bricks that it needs.
 #pragma once
 #include <mutex>
 
@@ -26,7 +26,7 @@ class BrickedSource final : public RaySource {
   const BrickTree& tree() const;
   const BrickedVolume& volume() const { return *volume_; }
   const BrickPlaces& places() const { return places_; }
-  /// How many bricks a walker may hold beside the cache.
+  /// How many bricks a walker may hold besides the cache.
   size_t pins() const { return pins_; }
 
   std::shared_ptr<const BrickData> brick(size_t level, const std::array<uint32_t, 3>& at) const;

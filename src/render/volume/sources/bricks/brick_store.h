@@ -33,7 +33,7 @@ struct BrickData {
   size_t bytes() const { return values.bytes() + cube.size() * sizeof(Cube); }
 };
 
-/// Which brick, as one number.
+/// Identifies a brick by one number.
 inline uint64_t brick_key(size_t level, const std::array<uint32_t, 3>& at) {
   return uint64_t(level) << 57 | uint64_t(at[2]) << 38 | uint64_t(at[1]) << 19 | at[0];
 }
@@ -52,7 +52,7 @@ Array read_samples(const BrickedVolume& volume, size_t level, const SampleBox& b
 /// Reads the brick that covers the box lo..hi (fine coordinates) at a level. Starts no parallel loop.
 std::shared_ptr<const BrickData> load_brick(const BrickedVolume& volume, size_t level, Vec3 lo, Vec3 hi);
 
-/// What stays with the dataset for the next picture.
+/// What is kept with the dataset for the next picture.
 struct BrickCaches {
   ByteCache<BrickData> bricks{0};
   ByteCache<BrickLattice> lattices{0};

@@ -30,19 +30,19 @@ struct BrickNode {
 
 class BrickTree {
  public:
-  /// Leaves have voxels of at most `pixels` pixels. `most_bytes` of the leaves that are seen are allowed: with more, coarser ones are
-  /// taken until they are fewer.
+  /// Leaves have voxels of at most `pixels` pixels. The visible leaves may take `most_bytes`: above that, coarser ones are chosen until
+  /// they fit.
   BrickTree(const BrickedVolume& volume, const Projection& projection, double pixels, uint64_t most_bytes, const Invisible& invisible);
 
   /// The leaf at a place inside the grid.
   int find(Vec3 u) const;
   const BrickNode& node(int i) const { return nodes_[size_t(i)]; }
   size_t size() const { return nodes_.size(); }
-  /// Where it lies in fine coordinates, cut off at the outermost samples.
+  /// Its box in fine coordinates, cut off at the outermost samples.
   void box(const BrickNode& node, Vec3& lo, Vec3& hi) const;
   /// The brick of the next coarser level that it lies in.
   std::array<uint32_t, 3> parent(const BrickNode& node) const;
-  /// Leaves that are seen, in an order in which none hides one before it.
+  /// Visible leaves, in an order in which none hides an earlier one.
   std::vector<int> front_to_back() const;
   double pixels() const { return pixels_; }
   uint64_t bytes() const { return bytes_; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays through volumes that memory does not hold: bricks of the level that the picture can show, read when a ray needs them.
+// Rays through volumes larger than memory: bricks of the level that the picture can show, read when a ray needs them.
 #pragma once
 #include <memory>
 
@@ -10,9 +10,9 @@
 
 namespace sg::volume {
 
-/// What a bricked picture is drawn from.
+/// Levels and bricks of a picture.
 struct BrickedUse {
-  std::vector<size_t> bricks;  ///< of each level, that may be seen: in the view and not invisible
+  std::vector<size_t> bricks;  ///< of each level, potentially visible: in the view and not transparent
   double voxel_pixels = 1;     ///< how many pixels a voxel may cover: 1 unless the budget asked for more
   uint64_t bytes = 0;          ///< of these bricks
 };
@@ -21,11 +21,10 @@ struct BrickedUse {
 ///
 /// Each place is drawn from the coarsest level whose voxels cover at most `coarser` pixels there, or a coarser one where all bricks that
 /// may be seen would have more than four times the bytes of the cache; so what is drawn depends on the view, the invisible values and
-/// `memory`, never on threads or time. The field is continuous: next to a coarser brick a finer one goes over to the coarser level
-/// linearly, across its whole width. Stretches are exact cubics where one level is drawn; in the transition the cubic through four
-/// points (off by less than 1/100 of the difference of the levels). Gradients: central differences of the level drawn.
-/// `memory`: bytes for bricks in memory, 0 = 1 GiB; they stay with the dataset for the next picture. `coarser` = 8 gives a first
-/// picture at once, 1 the final one.
+/// `memory`, never on threads or time. The field is continuous: next to a coarser brick a finer one blends linearly into the coarser level,
+/// across its whole width. Stretches are exact cubics where one level is drawn; in the transition the cubic through four points (off by
+/// less than 1/100 of the difference of the levels). Gradients: central differences of the level drawn. `memory`: bytes for bricks in
+/// memory, 0 = 1 GiB; they stay with the dataset for the next picture. `coarser` = 8 gives a first picture at once, 1 the final one.
 std::unique_ptr<RaySource> bricked_source(const VolumeItem& item, const Projection& projection, size_t memory, Context& context,
                                           double coarser = 1);
 /// Of a source that bricked_source() gave, with its Invisible set.

@@ -136,14 +136,14 @@ bool is_mip_source(const RaySource& source) { return dynamic_cast<const MipSourc
 
 std::unique_ptr<RaySource> mip_source(const VolumeItem& item, const Volume* lattice, const Projection& projection, Context& context) {
   const auto* g = item.data->as<UniformGrid>();
-  const char* instead = "leave antialias=none; --picture samples=4 takes more rays a pixel for any mesh";
+  const char* instead = "use antialias=none; --picture samples=4 takes more rays per pixel for any mesh";
   if (!g || !lattice)
-    fail_usage(fmt::format("antialias=mip is for uniform grids; this is a {} mesh", item.data->kind()), "volume", instead);
-  if (lattice->dual) fail_usage("antialias=mip needs a point field", "volume", "-f cell_to_point makes one");
-  if (!lattice->hidden().empty()) fail_usage("antialias=mip does not know blanked cells", "volume", instead);
+    fail_usage(fmt::format("antialias=mip needs a uniform grid; this is a {} mesh", item.data->kind()), "volume", instead);
+  if (lattice->dual) fail_usage("antialias=mip needs a point field", "volume", "-f cell_to_point converts");
+  if (!lattice->hidden().empty()) fail_usage("antialias=mip does not support blanked cells", "volume", instead);
   if (wants_reconstruction(item.sampling))
-    fail_usage("antialias=mip goes with the linear kernel and central gradients only", "volume", "leave kernel and gradient as they are");
-  if (item.detail.second == SecondAxis::field) fail_usage("antialias=mip has no second field", "volume", instead);
+    fail_usage("antialias=mip supports only the linear kernel and central gradients", "volume", "leave out kernel and gradient");
+  if (item.detail.second == SecondAxis::field) fail_usage("antialias=mip does not support a second field", "volume", instead);
   const Dims& dims = lattice->voxels.dims;
   if (lattice->nearest || std::min({dims[0], dims[1], dims[2]}) < 2) return nullptr;
   double farthest = projection.near_plane;

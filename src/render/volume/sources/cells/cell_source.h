@@ -11,10 +11,10 @@ namespace sg::volume {
 
 struct CellVolume;
 
-/// A source for every mesh that is no uniform or rectilinear grid. Throws Error(usage) for what has no volume (surfaces, points).
+/// A source for every mesh that is not a uniform or rectilinear grid. Throws Error(usage) for what has no volume (surfaces, points).
 std::unique_ptr<RaySource> cell_source(const VolumeItem& item, Context& context);
 
-/// What such a source is made of.
+/// Data behind such a source.
 const CellVolume& cell_volume_of(const RaySource& source);
 
 }  // namespace sg::volume

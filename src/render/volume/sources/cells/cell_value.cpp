@@ -86,7 +86,7 @@ void CellCurve::open(uint32_t cell, float& lowest, float& highest) {
   lowest = lowest_, highest = highest_;
 }
 
-/// Is every node where an affine map of the reference element puts it? Then there is nothing to search.
+/// Whether every node is where an affine map of the reference element puts it; then there is nothing to search.
 bool CellCurve::open_affine() {
   cubic_ = false;
   const size_t n = at_.size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CellCurve: the field of one cell that is no tetrahedron, along a ray, as cubics.
+// CellCurve: the field of one cell that is not a tetrahedron, along a ray, as cubics.
 #pragma once
 #include <memory>
 #include <vector>

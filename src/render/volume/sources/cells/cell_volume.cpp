@@ -63,7 +63,7 @@ DatasetPtr divided(const DatasetPtr& data, const Parts& parts, Context& context)
 DatasetPtr straightened(const DatasetPtr& data, const Field*& field, int& component, Context& context) {
   if (data->as<AmrGrid>()) {
     if (data->as<AmrGrid>()->dimension < 3)
-      fail_usage("an AMR grid of two dimensions has no volume", "volume", "show its surface: --show surface");
+      fail_usage("an AMR grid of two dimensions has no volume", "volume", "show its surface instead: --show surface");
     const std::string key = fmt::format("volume/leaves/{}/{}/{}", field->name, association_name(field->association), component);
     auto kept = data->memo().find<DatasetPtr>(key);
     if (!kept) {
@@ -109,7 +109,7 @@ Plane<float> stored_values(const Field& field, int component, bool shift, float&
   return out;
 }
 
-/// Does each point have a finite value and place?
+/// Whether each point has a finite value and position.
 std::vector<uint8_t> missing_points(const DatasetPtr& data, std::span<const float> values, bool& any) {
   const size_t n = data->point_count();
   std::vector<uint8_t> missing(n);
@@ -343,7 +343,7 @@ CellVolume make_cell_volume(const VolumeItem& item, Context& context) {
   if (!item.data) fail_usage("a volume item has no dataset", "volume");
   const Dataset& d = *item.data;
   if (d.as<SurfaceMesh>() || d.as<PointCloud>())
-    fail_usage(fmt::format("a {} mesh cannot be looked through as a volume", d.kind()), "volume", "show its surface: --show surface");
+    fail_usage(fmt::format("a {} mesh cannot be shown as a volume", d.kind()), "volume", "show its surface instead: --show surface");
   const Field* field = &field_of(item);
   int component = item.component;
   CellVolume v;

@@ -65,7 +65,7 @@ void bin_boxes(const std::vector<TileBox>& boxes, int across, int down, std::vec
   };
   each([&](size_t t, size_t) { ++count[t]; });
   const size_t total = exclusive_scan(count);
-  if (total >= (size_t(1) << 32)) fail_usage("too many cells lie over too many tiles of the picture", "volume", "draw it smaller");
+  if (total >= (size_t(1) << 32)) fail_usage("too many cells overlap too many tiles of the picture", "volume", "make the picture smaller");
   places.resize(total);
   first.assign(count.begin(), count.end());
   each([&](size_t t, size_t k) { places[count[t]++] = uint32_t(k); });

@@ -34,7 +34,7 @@ class EyeSpace {
     const float x = columns.dx[column], y = rows.dy[row];
     return projection_.parallel ? 1.0f : std::sqrt(1 + x * x + y * y);
   }
-  /// Tiles of so many pixels that the shadow of the vertices may touch; all when it is cut by the plane of the eye.
+  /// Tiles of this many pixels that the projection of the vertices may touch; all when it is cut by the plane of the eye.
   template <size_t N>
   TileBox tiles(const std::array<uint32_t, N>& vertices, int size, int across, int down) const;
 

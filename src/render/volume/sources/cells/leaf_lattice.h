@@ -10,15 +10,15 @@
 
 namespace sg::volume {
 
-/// A leaf of an AMR grid beside finer ones. On a piece of a face the field is bilinear between its corners, or follows the nodes on the
-/// piece's sides (Coons 1967); so it is continuous to neighbours of any level, as both read the same nodes. Inside it blends the faces
-/// (Gordon, Hall 1973). Linear fields stay linear.
+/// A leaf of an AMR grid next to finer ones. On a piece of a face the field is bilinear between its corners, or follows the nodes on the
+/// piece's sides (Coons 1967); so it is continuous across neighbours of any level, since both read the same nodes. Inside it blends the
+/// faces (Gordon, Hall 1973). Linear fields stay linear.
 class LeafLattice {
  public:
   static constexpr int most = 8;  ///< little boxes along an axis
 
   /// The nodes of the leaf: its corners and those that neighbours add. `faces`: pieces of the faces, rectangles with places in the
-  /// nodes. False when they are no such box, or the smallest neighbour is more than `most` times smaller.
+  /// nodes. False when they do not form such a box, or the smallest neighbour is more than `most` times smaller.
   bool open(std::span<const Vec3> at, std::span<const double> values, const std::function<size_t()>& face_count,
             const std::function<std::span<const uint32_t>(size_t)>& face);
   double value(Vec3 x) const;

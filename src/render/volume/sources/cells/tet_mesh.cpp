@@ -79,7 +79,7 @@ class Cutter {
     if (reader_.type() == CellType::tetra) return add(uint32_t(ids[0]), uint32_t(ids[1]), uint32_t(ids[2]), uint32_t(ids[3]));
     part_.all_tets = false;
     if (is_high_order(reader_.type()))
-      fail_usage("curved cells cannot be cut as they are", "volume", "make linear cells of them: -f tessellate");
+      fail_usage("curved cells cannot be clipped directly", "volume", "convert them to linear cells: -f tessellate");
     if (const LinearTopology* shape = linear_topology(reader_.type())) {
       const int64_t lowest = *std::min_element(ids.begin(), ids.end());
       for (size_t f = 0; f < shape->face_count(); ++f) {
@@ -175,7 +175,7 @@ void join(std::vector<Part>& parts, const Array& positions, TetMesh& mesh, Conte
   const size_t total = exclusive_scan(tets), more = exclusive_scan(middles);
   mesh.points = positions.count();
   if (total > most_tets || mesh.points + more > most_points)
-    fail_usage(fmt::format("{} tetrahedra with {} vertices are too many to look through", total, mesh.points + more), "volume",
+    fail_usage(fmt::format("{} tetrahedra with {} vertices are too many to show as a volume", total, mesh.points + more), "volume",
                "crop the mesh, or resample it to a grid");
   mesh.all_tets = std::all_of(parts.begin(), parts.end(), [](const Part& p) { return p.all_tets; });
   mesh.corners.resize(total);
@@ -295,11 +295,11 @@ size_t TetMesh::bytes() const {
 
 TetMesh make_tet_mesh(const DatasetPtr& dataset, const std::function<bool(const CellReader&)>& draws, Context& context) {
   if (dataset->point_count() > most_points || dataset->cell_count() > most_tets)
-    fail_usage("the mesh is too large to look through", "volume", "crop it, or resample it to a grid");
+    fail_usage("the mesh is too large to show as a volume", "volume", "crop it, or resample it to a grid");
   std::vector<Part> parts = cut_cells(dataset, draws, context);
   if (std::all_of(parts.begin(), parts.end(), [](const Part& p) { return p.solid == 0; }))
-    fail_usage(fmt::format("the {} mesh has no solid cells to look through", dataset->kind()), "volume",
-               "show its surface: --show surface");
+    fail_usage(fmt::format("the {} mesh has no solid cells to show as a volume", dataset->kind()), "volume",
+               "show its surface instead: --show surface");
   TetMesh mesh;
   const Box3& box = dataset->bounds();
   if (!box.empty()) mesh.origin = box.center();

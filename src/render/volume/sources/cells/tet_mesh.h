@@ -3,8 +3,8 @@
 //
 // Faces of more than three corners are cut by fans from their lowest point id, so that both cells of a face cut it alike: there are
 // neither gaps nor overlaps. Where a fan is folded or has flat triangles (corners amid a straight side) faces of polyhedra are cut so that
-// their worst triangle is best. Cells of fixed shape become tetrahedra from their lowest corner to the faces that do not have it (a
-// hexahedron 6, a wedge 3, a pyramid 2); a polyhedron those from the middle of its points to all faces.
+// their worst triangle is as good as possible. Cells of fixed shape become tetrahedra from their lowest corner to the faces that do not
+// have it (a hexahedron 6, a wedge 3, a pyramid 2); a polyhedron those from the middle of its points to all faces.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -50,8 +50,8 @@ struct TetMesh {
 };
 
 /// Of the solid cells for which `draws` is true (called from several threads) and that are not ghosts or blanked. Flat tetrahedra stay
-/// (they have no length); those with a corner twice go. Works on linear cells and polyhedra of any mesh. O(n), parallel, the same for any
-/// number of threads. Throws Error(usage) for meshes without solid cells, for curved cells and for more than 2^29 tetrahedra.
+/// (they have no length); those with a repeated corner are dropped. Works on linear cells and polyhedra of any mesh. O(n), parallel, the
+/// same for any number of threads. Throws Error(usage) for meshes without solid cells, for curved cells and for more than 2^29 tetrahedra.
 TetMesh make_tet_mesh(const DatasetPtr& dataset, const std::function<bool(const CellReader& open)>& draws, Context& context);
 
 }  // namespace sg::volume

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // TetWalk: one line through a TetMesh, tetrahedron by tetrahedron, that never gets lost.
 //
-// The line is a point in the plane across it. It crosses a face when it lies in the face's shadow there. On which side of an edge it lies
-// is told exactly (rounded products that differ are in the right order; equal ones are compared by their rounding errors), from
-// coordinates that belong to the vertex alone, and a line through an edge or a vertex counts as moved by (e, e^2) for an infinitely
-// small e (Edelsbrunner, Muecke 1990). So of the four faces of a tetrahedron the line crosses none or two, and a path that begins in a
-// face of the boundary ends in another one, whatever the shape of the tetrahedra: flat, turned inside out or folded.
+// The line is a point in the plane across it. It crosses a face when it lies in the face's shadow there. The side of an edge on which it
+// lies is decided exactly (rounded products that differ are in the right order; equal ones are compared by their rounding errors), from
+// coordinates that depend only on the vertex, and a line through an edge or a vertex counts as moved by (e, e^2) for an infinitely small e
+// (Edelsbrunner, Muecke 1990). So of the four faces of a tetrahedron the line crosses none or two, and a path that begins in a face of the
+// boundary ends in another one, whatever the shape of the tetrahedra: flat, turned inside out or folded.
 #pragma once
 #include <vector>
 
@@ -13,7 +13,7 @@
 
 namespace sg::volume {
 
-/// Is the turn from a to b, seen from the point (0, 0), to the left? Never the same for (a, b) and (b, a), unless a = b.
+/// Whether the turn from a to b, seen from the point (0, 0), is to the left. Never the same for (a, b) and (b, a), unless a = b.
 inline bool turns_left(double ax, double ay, double bx, double by) {
   const double p = ax * by, q = ay * bx;
   if (p != q) return p > q;
@@ -23,13 +23,13 @@ inline bool turns_left(double ax, double ay, double bx, double by) {
   return bx > ax;
 }
 
-/// Where the point (0, 0) lies in a triangle around it, as weights of its corners: right to the last bits however flat it is. A line
+/// Where the point (0, 0) lies in a triangle around it, as weights of its corners, accurate to the last bits however flat it is. A line
 /// through a face that it sees edge-on meets it somewhere on the line, too, not somewhere on the face.
 void weights_in_face(const double corners[3][2], double weights[3]);
 
 class TetWalk {
  public:
-  /// What one tetrahedron adds.
+  /// Contribution of one tetrahedron.
   struct Piece {
     double from, to;  ///< ray lengths; to < from in parts that are folded back
     float enter, leave;
@@ -37,7 +37,7 @@ class TetWalk {
   };
 
   explicit TetWalk(const CellVolume& volume) : volume_(volume), mesh_(*volume.mesh) {}
-  /// The line through `origin` (world) along the unit vector `direction`; nothing is asked for beyond `to`.
+  /// The line through `origin` (world) along the unit vector `direction`; nothing beyond `to` is needed.
   void start(Vec3 origin, Vec3 direction, double to);
   /// The next piece, near ones first where cells do not overlap; false when there is no more before `to`.
   bool next(Piece& piece);

@@ -11,15 +11,15 @@
 
 namespace sg::volume {
 
-/// Per fine brick (FineBricks: 4^3 cells) a bound that is good for it and all bricks around it: along any line the slope of the trilinear
-/// field changes by at most `bend` per cell length. That is a sum of jumps at the faces of cells (second differences) and of what the
-/// field bends inside (mixed differences): with |H| the matrix of their largest absolute values, d^T |H| d <= its largest row sum, for
-/// every direction d. Over a length s the field leaves its chord by s^2 bend / 8 on average at most, s^2 bend / 4 anywhere.
+/// Per fine brick (FineBricks: 4^3 cells) a bound that holds for it and all bricks around it: along any line the slope of the trilinear
+/// field changes by at most `bend` per cell length. It is the sum of the jumps at cell faces (second differences) and of the bend inside
+/// cells (mixed differences): with |H| the matrix of their largest absolute values, d^T |H| d <= its largest row sum, for every direction
+/// d. Over a length s the field leaves its chord by s^2 bend / 8 on average at most, s^2 bend / 4 anywhere.
 ///
 /// Kept in eight bits, rounded up: quarters of octaves, in parts of `range`.
 struct Bends {
   static constexpr int least = -50;          ///< exponent of two of code 0
-  static constexpr uint8_t unbounded = 255;  ///< beside values that are none
+  static constexpr uint8_t unbounded = 255;  ///< next to missing values
   Plane<uint8_t> codes;                      ///< per fine brick, and three more: any of them can be read as a word
   float range = 1;                           ///< of the values
 
@@ -32,7 +32,7 @@ struct Bends {
 };
 
 /// Of packed samples of a type that floats hold exactly, with `range` their largest less their smallest value. `framed`: beyond the
-/// outermost samples the field goes on with their values, so that it bends there too.
+/// outermost samples the field continues with their values, so that it bends there too.
 Bends find_bends(const Array& values, std::array<size_t, 3> dims, float range, bool framed);
 
 }  // namespace sg::volume

@@ -16,7 +16,7 @@ inline DerivativeWeights derivative_weights(double back, double on) {
 }
 
 /// The derivative at an outermost sample, from that at the one next to it and the difference over the cell between them: that of the
-/// parabola through the three outermost samples, whose derivative goes straight and is that difference in the mean. On an axis of two
+/// parabola through the three outermost samples, whose derivative is linear and equals that difference on average. On an axis of two
 /// samples all three are the same.
 template <class T>
 T border_slope(T over_cell, T inner) {

@@ -90,7 +90,7 @@ Kernels scalar_kernels(const Voxels& voxels) {
     case ElementType::u16: return kernels_for<uint16_t>();
     case ElementType::i16: return kernels_for<int16_t>();
     case ElementType::f32: return kernels_for<float>();
-    default: fail_internal("a volume's samples were not narrowed");
+    default: fail_internal("the samples of a volume were not narrowed");
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inner loops of the ray caster, on runs of samples: a scalar reference (kernels.cpp) and vector code (kernels_simd.cpp)
-// that gives the same bits on any machine.
+// The inner loops of the ray caster, on runs of samples: a scalar reference (kernels.cpp) and vector code (kernels_simd.cpp) that gives the
+// same bits on any machine.
 #pragma once
 #include <array>
 #include <vector>
@@ -40,11 +40,11 @@ struct ShadePlan {
 struct Kernels {
   /// Trilinear values at places in u (clamped to the lattice); NaN where a corner is NaN.
   void (*sample)(const Voxels& voxels, const float* ux, const float* uy, const float* uz, float* values);
-  /// Central differences over one cell to each side, q = u: one-sided beside NaN; in the outermost cells linear between what they are at
-  /// the inner sample and border_slope().
+  /// Central differences over one cell to each side, q = u: one-sided next to NaN; in the outermost cells linear between the inner sample's
+  /// and border_slope().
   void (*gradients)(const Voxels& voxels, const float* const u[3], const float* centre, Gradients& out);
 };
-/// The scalar reference, and the best for this machine.
+/// The scalar reference, and the fastest for this machine.
 Kernels scalar_kernels(const Voxels& voxels);
 Kernels best_kernels(const Voxels& voxels);
 

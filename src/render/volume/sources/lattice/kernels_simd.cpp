@@ -38,7 +38,7 @@ struct Pair {
 };
 
 HWY_ATTR inline Pair pair_f32(const float* data, I offset) {
-  // One 64-bit load brings both; then even and odd places are told apart.
+  // One 64-bit load brings both; then even and odd places are distinguished.
   const D d;
   const hn::ScalableTag<int64_t> d64;
   const hn::Half<DI> half;

@@ -220,7 +220,7 @@ class LatticeRay final : public LatticeWalker {
       else upper = border_slope(upper, lower);
     }
   }
-  /// What stands for a slope of find_slopes() where a neighbour is no number.
+  /// What stands for a slope of find_slopes() where a neighbour is not a number.
   float one_sided(const DerivativeWeights& w, float before, float here, float after) const {
     const float back = here - before, on = after - here, whole = std::sqrt(w.back * w.on);
     const float slope = back == back ? back * (w.back + whole) : on * (w.on + whole);
@@ -417,7 +417,7 @@ std::unique_ptr<LatticeWalker> walker_of(const std::shared_ptr<const Volume>& v,
     case ElementType::u16: return std::make_unique<LatticeRay<uint16_t>>(v, invisible, std::move(second));
     case ElementType::i16: return std::make_unique<LatticeRay<int16_t>>(v, invisible, std::move(second));
     case ElementType::f32: return std::make_unique<LatticeRay<float>>(v, invisible, std::move(second));
-    default: fail_internal("a volume's samples were not narrowed");
+    default: fail_internal("the samples of a volume were not narrowed");
   }
 }
 

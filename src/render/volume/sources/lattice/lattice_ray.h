@@ -8,9 +8,9 @@
 
 namespace sg::volume {
 
-/// Point samples: cubics of the trilinear cells, exactly. Cell fields: trilinear between the middles of the cells; beside a cell
-/// without a value the mean of the corners that have one, as the cubic through four places. Labels: constant around each sample.
-/// `second`: another field of the same grid, for RayField::second; may be null.
+/// Point samples: cubics of the trilinear cells, exactly. Cell fields: trilinear between the middles of the cells; next to a cell without a
+/// value the mean of the corners that have one, as the cubic through four points. Labels: constant around each sample. `second`: another
+/// field of the same grid, for RayField::second; may be null.
 std::unique_ptr<RaySource> lattice_source(std::shared_ptr<const Volume> volume, std::shared_ptr<const Volume> second = nullptr);
 
 }  // namespace sg::volume

@@ -19,19 +19,19 @@
 
 namespace sg::volume {
 
-/// Switches for tests and benchmarks; the picture must not depend on them (but `stop_below` by less than 1/255).
+/// Switches for tests and benchmarks; the picture must not depend on them (except `stop_below`, by less than 1/255).
 struct Knobs {
-  bool skip_empty = true;                        ///< pass over empty bricks
+  bool skip_empty = true;                        ///< skip empty bricks
   float stop_below = 1.0f / 512;                 ///< a ray ends when less than this share of the light passes
   bool simd = true;                              ///< false: the scalar reference
-  bool bricks_in_packets = true;                 ///< false: single rays through volumes that memory does not hold
+  bool bricks_in_packets = true;                 ///< false: single rays through volumes larger than memory
   double coarser = 1;                            ///< RenderOptions::coarser
   const std::vector<uint8_t>* wanted = nullptr;  ///< per tile of 16 x 16 pixels, see composite_volumes; null = all
 };
 void composite_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context,
                        const Knobs& knobs);
 
-/// What a volume needs of its field, whoever looks at it: kept in the dataset's memo.
+/// What a volume needs of its field, whatever the view: kept in the dataset's memo.
 struct LatticeSamples {
   Voxels voxels;
   float base = 0;                        ///< value = stored + base
@@ -48,7 +48,7 @@ struct Volume {
   VolumeItem::Mode mode = VolumeItem::Mode::composite;
   bool shaded = false;
   bool nearest = false;  ///< labels: no value between two samples
-  bool dual = false;     ///< samples are cells: a cell without a value takes no share of its neighbours' half
+  bool dual = false;     ///< samples are cells: a cell without a value does not affect its neighbours' halves
   Voxels voxels;
   float base = 0;                  ///< value = stored + base
   double step = 1;                 ///< world length
@@ -56,7 +56,7 @@ struct Volume {
   Box3 bounds;                     ///< world
   std::vector<Transfer> transfer;  ///< one
   Kernels kernels{};
-  bool direct = false;   ///< a linear table, no holes to look after: packets may draw it
+  bool direct = false;   ///< a linear table and no holes: packets may draw it
   bool spanned = false;  ///< no value lies beyond the ends of the table
   ShadePlan shade_plan{};
 
@@ -71,15 +71,15 @@ struct Volume {
 
   std::shared_ptr<const LatticeSamples> samples;
   Distances distance;                             ///< in fine bricks to the next that draws something (composite)
-  bool any_empty = true;                          ///< is there a brick that draws nothing?
+  bool any_empty = true;                          ///< whether some brick draws nothing
   std::vector<double> border[3], fine_border[3];  ///< q of the sides of bricks, dims+1
-  Vec3 margin;                                    ///< q: rounding errors of places are smaller
+  Vec3 margin;                                    ///< q: bound on rounding errors of positions
 
   const MinMaxBricks& bricks() const { return samples->bricks; }
   const FineBricks& fine() const { return samples->fine; }
   const std::vector<uint8_t>& hidden() const { return samples->hidden; }
 
-  /// q = u, and all of the volume lies between samples; on axes on which 32-bit places on rays are off by less than a cell.
+  /// q = u, and all of the volume lies between samples; on axes where 32-bit positions along rays are off by less than a cell.
   bool within_samples() const;
   Vec3 q(Vec3 world) const { return to_q * (world - origin); }
   /// Sample index of a place in q along one axis, clamped.
@@ -89,10 +89,10 @@ struct Volume {
 };
 
 /// Reads the item, checks it, converts and indexes its field. Throws Error(usage) for what cannot be shown as a volume.
-/// Nothing to draw (a grid without extent) gives an empty box.
+/// If there is nothing to draw (a grid without extent), the box is empty.
 Volume prepare(const VolumeItem& item, uint32_t id, const Knobs& knobs);
 
-/// How far its field bends; found once for all pictures of the field.
+/// How far its field bends; computed once for all pictures of the field.
 std::shared_ptr<const Bends> bends_of(const VolumeItem& item, const Volume& volume);
 
 /// One ray in the q space of a volume: q = start + t * along, t the world length from the ray's origin.

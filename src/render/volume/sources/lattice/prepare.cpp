@@ -285,7 +285,7 @@ Volume prepare(const VolumeItem& item, uint32_t id, const Knobs& knobs) {
   const double unit = item.unit_distance > 0 ? item.unit_distance : 0.01 * diagonal;
   if (diagonal / v.step > 1e7)
     fail_usage(fmt::format("a step of {} takes {:.3g} samples through a volume of size {}", v.step, diagonal / v.step, diagonal), "volume",
-               "give a longer step");
+               "use a longer step");
 
   const double lo = v.samples->lo, hi = v.samples->hi;
   v.transfer.emplace_back(item.color, item.opacity, unit, v.step, lo + double(v.base), hi + double(v.base), double(v.base));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples of a lattice made ready for a reconstruction kernel (filter/field/sampling/reconstruction.h), and the sums over its support.
+// Samples of a lattice prepared for a reconstruction kernel (filter/field/sampling/reconstruction.h), and the sums over its support.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,12 +11,12 @@
 
 namespace sg::volume {
 
-/// What a kernel reads instead of the volume's samples.
+/// Samples that a kernel reads instead of the volume's own.
 struct Reconstruction {
   Kernel kernel = Kernel::linear;
   Array samples;                 ///< those of the volume, or f32 with holes filled and, for bspline, coefficients
   std::vector<uint8_t> missing;  ///< per sample: no value; empty when all have one
-  MinMaxBricks bricks;           ///< bounds of the values inside each brick of cells: lobes and neighbours included
+  MinMaxBricks bricks;           ///< bounds of the values inside each brick of cells: including overshoot and neighbours
   double lo = HUGE_VAL, hi = -HUGE_VAL;
   size_t bytes() const { return samples.bytes() + missing.size() + bricks.size() * sizeof(MinMaxBricks::Range); }
 };
@@ -29,8 +29,8 @@ Reconstruction reconstruct(const Volume& volume, Kernel kernel);
 /// Places along a ray at which the field is read together: ends of a piece and Chebyshev-Lobatto points between them.
 constexpr int places = 10, lanes = 12;
 
-/// The shares of a kernel as polynomials of the place in the cell, so that many places are computed at once. Exact for splines; right
-/// to 1e-6 for the others.
+/// The shares of a kernel as polynomials of the place in the cell, so that many places are computed at once. Exact for splines; accurate to
+/// 1e-6 for the others.
 class TapPolynomials {
  public:
   explicit TapPolynomials(Kernel kernel);

@@ -134,7 +134,7 @@ class ReconstructedRay final : public RayField {
     return double(shared_->along[a][size_t(i)]);
   }
 
-  /// Is nothing drawn in the brick of this box?
+  /// Whether nothing is drawn in the brick of this box.
   bool empty() {
     size_t at[3];
     for (int a = 0; a < 3; ++a) at[a] = size_t(walk_.cell(a)) >> MinMaxBricks::shift;

@@ -9,7 +9,7 @@ namespace sg::volume {
 void finish_values(const Volume& v, Run& run);
 
 /// Gradients at the samples `which` of the run, by central differences over one cell to each side; q(axis, n) is the place of
-/// sample n. Only the first `count` entries of the result mean something.
+/// sample n. Only the first `count` entries of the result are valid.
 template <class Q>
 void gradients(const Volume& v, const Run& run, const int* which, int count, Q&& q, Gradients& out);
 /// The same from places in u and, unless the grid is affine, in q.

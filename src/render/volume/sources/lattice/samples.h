@@ -17,7 +17,7 @@ decltype(auto) with_samples(const Array& a, F&& f) {
     case ElementType::u16: return f(reinterpret_cast<const uint16_t*>(a.raw()));
     case ElementType::i16: return f(reinterpret_cast<const int16_t*>(a.raw()));
     case ElementType::f32: return f(reinterpret_cast<const float*>(a.raw()));
-    default: fail_internal("a volume's samples were not narrowed");
+    default: fail_internal("the samples of a volume were not narrowed");
   }
 }
 

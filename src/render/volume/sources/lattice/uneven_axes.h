@@ -18,7 +18,7 @@ struct UnevenAxes {
   std::vector<uint32_t> slices[3];  ///< of equal width: the cell in which each begins
   float first[3], slices_per_q[3];
 
-  /// No cell is so much smaller than the whole that floats could not tell places in it.
+  /// No cell is so small relative to the whole that floats cannot resolve positions in it.
   static bool fits(const Volume& volume);
   explicit UnevenAxes(const Volume& volume);
 };

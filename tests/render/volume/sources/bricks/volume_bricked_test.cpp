@@ -357,5 +357,5 @@ TEST_CASE("bricked: kernels and second fields that bricks do not have are refuse
   item.sampling.kernel = Kernel::bspline;
   CHECK(error().find("linear kernel") != std::string::npos);
   item.sampling.kernel = Kernel::linear, item.detail.second = SecondAxis::field, item.detail.second_field = "g";
-  CHECK(error().find("no second field") != std::string::npos);
+  CHECK(error().find("not support a second field") != std::string::npos);
 }

@@ -253,7 +253,7 @@ TEST_CASE("volume: what cannot be shown is said, with what would be right") {
   PointCloud cloud;
   cloud.points.xyz = Array::from_vector<float>({0, 0, 0}, 3);
   v.data = make_dataset(cloud);
-  CHECK(error(v).find("show its surface: --show surface") != std::string::npos);
+  CHECK(error(v).find("show its surface instead: --show surface") != std::string::npos);
   v.data = make_dataset(cube(2, 0, 1)), v.field = "";
   CHECK(error(v).find("no scalar field") != std::string::npos);
   FieldSet whole;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Little bricks of 4^3 cells: which draw something, and how far it is to them. The ranges stay with the data; the distances are made again
-// whenever a transfer function changes, so that must be quick.
+// Little bricks of 4^3 cells: which draw something, and how far it is to them. The ranges stay with the data; the distances are recomputed
+// whenever a transfer function changes, so that must be fast.
 #pragma once
 #include "base/huge_allocator.h"
 #include "index/minmax_bricks.h"
@@ -23,11 +23,11 @@ FineBricks fine_bricks(const Array& values, std::array<size_t, 3> dims);
 /// The same as minmax_bricks() of the samples, without reading them again.
 MinMaxBricks coarse_bricks(const FineBricks& fine);
 
-/// One byte per fine brick; the block is used again for the next transfer function.
+/// One byte per fine brick; the block is reused for the next transfer function.
 using Distances = Plane<uint8_t>;
 
 /// For each fine brick the Chebyshev distance in bricks to the nearest one that may draw something: 0 for those themselves; d > 0 says
-/// that all bricks nearer than d are empty. At most 15. Three bytes follow the last one, so that any of them can be read as a word.
+/// that all bricks nearer than d are empty. At most 15. Three bytes follow the last one, so that each can be read as a word.
 Distances distance_to_drawn(const FineBricks& bricks, const Transfer& transfer, bool& any_empty);
 
 }  // namespace sg::volume

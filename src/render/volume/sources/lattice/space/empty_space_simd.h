@@ -19,14 +19,14 @@ struct DrawnRuns {
 /// Bit i of `bits` says whether ranges[i] meets a run; a range without values does not. Whole words are written.
 void find_drawn(const MinMaxBricks::Range* ranges, size_t n, const DrawnRuns& runs, uint64_t* bits);
 
-/// Rows of bricks as bits, the next row `row` words on, the next layer `layer` words: between any two there is a zero at least.
+/// Rows of bricks as bits, the next row `row` words on, the next layer `layer` words on, with at least one zero between any two rows.
 struct BitLattice {
   size_t row, layer;
   const uint64_t* used;  ///< the bits that are bricks
 };
-/// Words at once of widen(): `begin` and `end` are multiples of it, and as many may be read to each side beside a row and a layer.
+/// Words at once of widen(): `begin` and `end` are multiples of it, and as many words may be read beyond each side of a row and a layer.
 constexpr size_t widen_words = 8;
-/// For the words begin .. end: to = every bit of `from` and its 26 neighbours. What is new is set in the `planes` too. Returns whether
+/// For the words begin .. end: to = every bit of `from` and its 26 neighbours. New bits are set in the `planes` too. Returns whether
 /// there is anything new.
 bool widen(const BitLattice& lattice, const uint64_t* from, size_t begin, size_t end, uint64_t* to, uint64_t* const* planes,
            int plane_count);

@@ -91,7 +91,7 @@ size_t Ways::octants() const {
 
 SpaceAhead::SpaceAhead(const Distances& distance, const std::array<size_t, 3>& dims, const Ways& ways) : octants(ways.octants()) {
   const size_t n = dims[0] * dims[1] * dims[2];
-  if (distance.size() != n + 3) fail_internal("space ahead: the distances of all bricks were expected");
+  if (distance.size() != n + 3) fail_internal("space ahead: expected the distances of all bricks");
   if (octants * n >= size_t(1) << 31) fail_internal("space ahead: too many bricks");
   bricks.resize(octants * n + 3);
   std::fill(bricks.end() - 3, bricks.end(), farthest);

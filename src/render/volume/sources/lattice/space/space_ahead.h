@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far there is nothing before a ray, by the octant that it goes to: what lies behind it does not shorten its leaps.
+// How far a ray can leap through empty space, by the octant of its direction: what lies behind it does not shorten its leaps.
 #pragma once
 #include "base/vec.h"
 #include "render/volume/sources/lattice/space/empty_space.h"
@@ -7,7 +7,7 @@
 
 namespace sg::volume {
 
-/// The ways that the rays of a picture go along each axis of a lattice.
+/// Directions of a picture's rays along each axis of a lattice.
 struct Ways {
   std::array<bool, 3> down, up;  ///< down: or nowhere
 
@@ -17,12 +17,12 @@ struct Ways {
   size_t octants() const;
 };
 
-/// For each octant of `ways` and each fine brick a byte: 0 where it may draw something; n > 0 says that the cube of n^3 bricks that begins
-/// with it and goes on into the octant draws nothing (at most 15; beyond the lattice there is nothing). At least the distance of
+/// For each octant of `ways` and each fine brick a byte: 0 where it may draw something; n > 0: the cube of n^3 bricks that begins with it
+/// and extends into the octant draws nothing (at most 15; beyond the lattice there is nothing). At least the distance of
 /// distance_to_drawn().
 struct SpaceAhead {
   Plane<uint8_t> bricks;        ///< and three bytes more, so that any can be read as a word
-  std::array<int32_t, 3> up{};  ///< so much further are the bytes of rays that go up an axis
+  std::array<int32_t, 3> up{};  ///< offset of the bytes of rays that go up an axis
   size_t octants = 1;
 
   SpaceAhead(const Distances& distance, const std::array<size_t, 3>& dims, const Ways& ways);
