@@ -123,7 +123,7 @@ TEST_CASE("obj: bad files are refused with their line") {
   CHECK(contains(refusal("b.obj", square + "f 1 2\n"), "line 5: a face has 2 corners"));
   CHECK(contains(refusal("b.obj", square + "f 1 2 5\n"), "line 5: vertex 5 does not exist"));
   CHECK(contains(refusal("b.obj", square + "f 1 2 3\nf 1 2 -5\n"), "line 6: vertex 0 does not exist"));
-  CHECK(contains(refusal("b.obj", square + "f 0 1 2\n"), "line 5: vertex index 0"));
+  CHECK(contains(refusal("b.obj", square + "f 0 1 2\n"), "line 5: the vertex index is 0"));
   CHECK(contains(refusal("b.obj", square + "f 1 2 x\n"), "line 5: 'x' is not a valid vertex index"));
   CHECK(contains(refusal("b.obj", square + "f 1 2 3.5\n"), "'.5' follows an index"));
   CHECK(contains(refusal("b.obj", square + "f 1 2 99999999999\n"), "out of range"));
