@@ -280,7 +280,7 @@ TEST_CASE("pipeline file: every mistake of form is told with its line, all at on
                            "p.yaml:1: sightglass: '2' is not a version",
                            "p.yaml:2: unknown key 'stpes'; did you mean 'steps'?",
                            "p.yaml:4: step 'a': must be a map",
-                           "p.yaml:5: step 'b': has 'form' beside 'contour'",
+                           "p.yaml:5: step 'b': has 'form' besides 'contour'",
                            "did you mean 'from'?",
                            "p.yaml:6: step 'c': has no operation",
                            "p.yaml:7: contour: must be a map of parameters",
