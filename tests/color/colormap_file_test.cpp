@@ -169,7 +169,7 @@ TEST_CASE("colour map files: ColorBrewer's rules, and names of maps") {
   CHECK(find_colormap(path + ":YlGn").at(1) == Vec3f(1, 1, 1));
   CHECK(find_colormap(path + ":ylgn-2_r").at(1) == Vec3f(0, 0, 0));
   CHECK(find_colormap(path + ":YlGn_r").name == path + ":YlGn_r");
-  CHECK(has(test::error_of([&] { find_colormap(path); }), "holds 5 maps"));
+  CHECK(has(test::error_of([&] { find_colormap(path); }), "contains 5 maps"));
   CHECK(has(test::error_of([&] { find_colormap(path + ":YlGm"); }), "did you mean 'YlGn'"));
   CHECK(find_colormap(temp("s.cpt", slices) + "_r").at(0) == Vec3f(1, 1, 1));
   CHECK(has(test::error_of([] { find_colormap("nowhere.cpt"); }), "nowhere.cpt"));

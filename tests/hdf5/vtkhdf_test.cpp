@@ -282,7 +282,7 @@ TEST_CASE("vtkhdf: what is no VTKHDF is refused with what the file holds") {
   other.group("/Results"), other.data<int>("/counts", {1, 2});
   other.close();
   const std::string message = test::error_of([&] { test::read_any(other.path); });
-  CHECK(contains(message, "it holds Results/, counts"));
+  CHECK(contains(message, "it contains Results/, counts"));
   CHECK(contains(message, "VTKHDF"));
   H5Sample tree("tree.vtkhdf");
   tree.vtkhdf("/VTKHDF", "HyperTreeGrid");

@@ -35,7 +35,7 @@ class Check {
       case ParamType::field: return text();
       case ParamType::point: {
         auto v = numbers();
-        if (v.size() != 3) fail("three numbers such as 0,0,1");
+        if (v.size() != 3) fail("three numbers like 0,0,1");
         return v;
       }
       case ParamType::numbers: return counted(numbers());
@@ -88,7 +88,7 @@ class Check {
     const double d = double(v);
     if (d < decl_.lo || d > decl_.hi || (decl_.lo_open && d == decl_.lo) || (decl_.hi_open && d == decl_.hi))
       fail("in range: it must be " + range_text(decl_), told(v));
-    if (v < decl_.ref.least() || v > decl_.ref.most()) fail("a number of magnitude below 2^31", told(v));
+    if (v < decl_.ref.least() || v > decl_.ref.most()) fail("a number of at most 2^31", told(v));
     return v;
   }
   std::string choice(const std::string& word) const {

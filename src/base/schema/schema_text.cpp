@@ -25,7 +25,7 @@ class Parse {
       case ParamType::word: return std::string(decl_.unit_.ends_with("file") ? given_ : text_);
       case ParamType::field: return std::string(given_);  // blanks at its ends may belong to it
       case ParamType::point:
-        if (split(text_, ',').size() != 3) fail("three numbers such as 0,0,1", text_);
+        if (split(text_, ',').size() != 3) fail("three numbers like 0,0,1", text_);
         [[fallthrough]];
       case ParamType::numbers: return list<double>([&](std::string_view t) { return number(t); });
       case ParamType::integers: return list<int64_t>([&](std::string_view t) { return integer(t); });

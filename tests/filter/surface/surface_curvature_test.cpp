@@ -83,7 +83,7 @@ TEST_CASE("curvature: cylinders are flat one way; inside out turns the sign; bor
 
 TEST_CASE("curvature: bad input: no choice, clouds, triangles of no area, fins") {
   Context ctx;
-  CHECK(test::error_of([&] { curvature(sphere(1).dataset(), {.gaussian = false, .mean = false}, ctx); }).find("nothing") !=
+  CHECK(test::error_of([&] { curvature(sphere(1).dataset(), {.gaussian = false, .mean = false}, ctx); }).find("no measure is requested") !=
         std::string::npos);
   Builder fin = box();
   const int64_t p = fin.point({-1, 0, 0}), q = fin.point({-1, 1, 0});

@@ -120,7 +120,7 @@ TEST_CASE("quality: degenerate cells are bad, not a crash; types without a measu
   CHECK(value(line, "size") == doctest::Approx(5));
   Context ctx;
   CHECK(test::error_of([&] { test::params_of<QualityParams>({"measures=scaled_jacobean"}); }).find("scaled_jacobian") != std::string::npos);
-  CHECK(test::error_of([&] { quality(flat, {{}}, ctx); }).find("nothing") != std::string::npos);
+  CHECK(test::error_of([&] { quality(flat, {{}}, ctx); }).find("no measure is requested") != std::string::npos);
   PointCloud cloud;
   cloud.points.xyz = Array::from_vector(std::vector<double>{0, 0, 0}, 3);
   CHECK(test::error_of([&] { quality(make_dataset(Mesh(cloud)), {}, ctx); }).find("no cells") != std::string::npos);

@@ -387,7 +387,7 @@ TEST_CASE("ensight: errors say what is wrong and where") {
   CHECK(contains(refused("m.geo", "         9\n         3         4", "         9\n         3        44"), "a range from 3 to 44"));
   CHECK(contains(refused("m.scl", "part\n         2", "part\n         7"), "part 7 is not in the geometry"));
   CHECK(contains(refused("m.scl", "coordinates", "cordinates"), "where 'coordinates' was expected"));
-  CHECK(contains(refused("m.scl", "         6\n", "         9\n"), "place 9 of 6"));
+  CHECK(contains(refused("m.scl", "         6\n", "         9\n"), "position 9 of 6"));
   CHECK(contains(refused("m.vel", "hexa8", "nsided"), "no (further) elements 'nsided'"));
   const std::string message = refused("m.vel", "7.00000e+00", "seven");
   CHECK(contains(message, "'seven' is not a number"));

@@ -354,12 +354,12 @@ TEST_CASE("openfoam: errors say what is wrong and where") {
   CHECK(contains(refused(mesh + "points", "FoamFile", "Foam"), "FoamFile header"));
   CHECK(contains(refused(mesh + "points", "20\n(", "2147483648\n("), "does not fit"));
   CHECK(contains(refused(mesh + "points", "(1 0 0)", "(1 x 0)"), "not a list of 20 values"));
-  CHECK(contains(refused(mesh + "faces", "4(", "3("), "of a face is due"));
+  CHECK(contains(refused(mesh + "faces", "4(", "3("), "of a face was expected"));
   CHECK(contains(refused(mesh + "owner", "\n0\n", "\n99\n"), "belongs to cell 99"));
   CHECK(contains(refused(mesh + "owner", "\n0\n", "\n-7\n"), "belongs to cell -7"));
   CHECK(contains(refused(mesh + "faces", "(1 ", "(77 "), "the point 77, but there are 20"));
   CHECK(contains(refused(mesh + "boundary", "nFaces 5", "nFaces 6"), "patch 'outlet'"));
-  CHECK(contains(refused("10/p", "nonuniform List<scalar> 6", "nonuniform List<scalar> 5"), "due"));
+  CHECK(contains(refused("10/p", "nonuniform List<scalar> 6", "nonuniform List<scalar> 5"), "expected"));
   CHECK(contains(refused("10/U", "(1 2 -3)", "(1 2)"), "is not a number"));
   CHECK(contains(refused("10/p", "internalField", "internal"), "has no internalField"));
   CHECK(contains(refused("10/p", "[1 -1", "[a -1"), "dimensions must be seven numbers"));

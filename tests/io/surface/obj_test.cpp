@@ -123,14 +123,14 @@ TEST_CASE("obj: bad files are refused with their line") {
   CHECK(contains(refusal("b.obj", square + "f 1 2\n"), "line 5: a face has 2 corners"));
   CHECK(contains(refusal("b.obj", square + "f 1 2 5\n"), "line 5: vertex 5 does not exist"));
   CHECK(contains(refusal("b.obj", square + "f 1 2 3\nf 1 2 -5\n"), "line 6: vertex 0 does not exist"));
-  CHECK(contains(refusal("b.obj", square + "f 0 1 2\n"), "line 5: vertex index 0"));
+  CHECK(contains(refusal("b.obj", square + "f 0 1 2\n"), "line 5: the vertex index is 0"));
   CHECK(contains(refusal("b.obj", square + "f 1 2 x\n"), "line 5: 'x' is not a valid vertex index"));
   CHECK(contains(refusal("b.obj", square + "f 1 2 3.5\n"), "'.5' follows an index"));
   CHECK(contains(refusal("b.obj", square + "f 1 2 99999999999\n"), "out of range"));
   CHECK(contains(refusal("b.obj", square + "vt 0 0\nf 1/1 2/2 3/1\n"), "line 6: texture coordinate 2 does not exist"));
   CHECK(contains(refusal("b.obj", square + "vn 0 0 1\nf 1//1 2//1 3//9\n"), "line 6: normal 9 does not exist"));
-  CHECK(contains(refusal("b.obj", square + "l 1\n"), "a line with 1 corner"));
-  CHECK(contains(refusal("b.obj", square + "p\n"), "a point with 0 corners"));
+  CHECK(contains(refusal("b.obj", square + "l 1\n"), "a line has 1 corner"));
+  CHECK(contains(refusal("b.obj", square + "p\n"), "a point has 0 corners"));
   CHECK(contains(refusal("b.obj", "v 1 2\n"), "line 1: a vertex has 2 numbers"));
   CHECK(contains(refusal("b.obj", "v 1 2 nan\n"), "not finite"));
   CHECK(contains(refusal("b.obj", "v 1 2 1.#IND\n"), "'1.#IND' is not a number"));

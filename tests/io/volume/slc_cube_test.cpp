@@ -103,7 +103,7 @@ TEST_CASE("cube: what is wrong is said with its line") {
   CHECK(contains(refused(title + "1 0 0\n"), "line 3: 4 numbers are needed"));
   CHECK(contains(refused(title + "1 0 0 x\n"), "line 3: 'x' is not a number"));
   CHECK(contains(refused(title + "1.5 0 0 0\n" + axes), "'1.5' is not a valid count"));
-  CHECK(contains(refused(title + "0 0 0 0\n2 1 0 0\n0 0 1 0\n2 0 0 1\n1 2 3 4"), "line 5: no points"));
+  CHECK(contains(refused(title + "0 0 0 0\n2 1 0 0\n0 0 1 0\n2 0 0 1\n1 2 3 4"), "line 5: there are no points"));
   CHECK(contains(refused(title + "0 0 0 0\n2 1 0 0\n3 2 0 0\n2 0 0 1\n1 2 3 4"), "coplanar"));
   CHECK(contains(refused(title + "99999999 0 0 0\n" + axes), "99999999 atoms"));
   CHECK(contains(refused(title + "0 0 0 0\n999999999 1 0 0\n999999999 0 1 0\n999999999 0 0 1\n1 2"), "too large"));

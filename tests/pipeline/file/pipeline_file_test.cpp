@@ -280,7 +280,7 @@ TEST_CASE("pipeline file: every mistake of form is told with its line, all at on
                            "p.yaml:1: sightglass: '2' is not a version",
                            "p.yaml:2: unknown key 'stpes'; did you mean 'steps'?",
                            "p.yaml:4: step 'a': must be a map",
-                           "p.yaml:5: step 'b': has 'form' beside 'contour'",
+                           "p.yaml:5: step 'b': has 'form' besides 'contour'",
                            "did you mean 'from'?",
                            "p.yaml:6: step 'c': has no operation",
                            "p.yaml:7: contour: must be a map of parameters",
@@ -412,7 +412,7 @@ TEST_CASE("pipeline file: mistakes in operations and names are told with their l
         "/p.yaml:7: step 'e': its input 'f' comes later; move that step up", "/p.yaml:8: step 'f': its input 'f' comes from itself",
         "/p.yaml:9: step 'g': /absent.vti: no such file", "/p.yaml:9: step 'g': read takes no input",
         "/p.yaml:10: step 'h': read dims: '1,2' is not a list of 3", "/p.yaml:11: step 'i': read type: 'u7' is not a number type",
-        "/p.yaml:12: step 'j': read path: no file is named", "/p.yaml:13: step 'k': read type: a raw brick needs the type",
+        "/p.yaml:12: step 'j': read path: no file is given", "/p.yaml:13: step 'k': read type: a raw brick needs a number type",
         "/p.yaml:14: step 'l': ramp: is a source and takes no input", "/p.yaml:16: show surface: there is no step 'z'"})
     CHECK_MESSAGE(text.find(part) != std::string::npos, part << " in " << text);
   CHECK(test::all_runs() == 0);

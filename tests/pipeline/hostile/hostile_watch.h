@@ -54,8 +54,8 @@ class MemoryFence {
   rlimit before_{};
 };
 
-/// Within its life: asks the work to stop after so many seconds by the clock; says what it is and ends the program when it has not stopped
-/// after as many more.
+/// Within its life: asks the work to stop after so many seconds of wall-clock time; says what it is and ends the program when it has not
+/// stopped after as many more.
 class Watch {
  public:
   Watch(Context& context, double seconds, const std::string& what)

@@ -174,7 +174,7 @@ TEST_CASE("unsteady flow: bad series are refused with their reason") {
   const auto make = [&](std::vector<double> times) {
     return test::error_of([&] { UnsteadyFlow(series_of(times, box, wave), "", TimeInterpolation::linear, context); });
   };
-  CHECK(make({3}).find("1 time step; two at least; streamlines") != std::string::npos);
+  CHECK(make({3}).find("1 time step; at least two are needed; streamlines") != std::string::npos);
   CHECK(make({0, 2, 1}).find("step 1 has 2, step 2 has 1") != std::string::npos);
   CHECK(make({0, 2, 2}).find("do not increase") != std::string::npos);
   CHECK(make({0, NAN}).find("step 1") != std::string::npos);

@@ -222,7 +222,7 @@ TEST_CASE("unsteady: bad requests say what is wrong") {
   auto path = seeded_at<PathlinesParams>({0, 0, 0});
   CHECK(message(path, oscillating_series(1)).find("streamlines") != std::string::npos);
   path.start = 5;
-  CHECK(message(path, oscillating_series(3)).find("start=5 lies outside the series; it goes from 0 to 2") != std::string::npos);
+  CHECK(message(path, oscillating_series(3)).find("start=5 lies outside the series; the series runs from 0 to 2") != std::string::npos);
   auto streak = seeded_at<StreaklinesParams>({0, 0, 0});
   streak.start = 1, streak.time = 0.5;
   CHECK(message(streak, oscillating_series(3)).find("use pathlines to go backwards") != std::string::npos);
