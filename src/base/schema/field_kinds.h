@@ -7,6 +7,8 @@
 
 namespace sg {
 
+/// "auto" as the name of a field: the data decide.
+bool is_automatic(const FieldName& field);
 /// Whether fields of so many components are among them; a count may be a vector's and a tensor's (3: xx yy xy).
 bool takes_components(const FieldKinds& kinds, int components);
 
