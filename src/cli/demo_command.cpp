@@ -142,7 +142,7 @@ void find_files(const std::string& folder, std::vector<std::string>& found) {
 
 // Why a file of a folder is passed over: it is a table or a colour map, which no picture shows as it stands. Broken files are not.
 std::optional<std::string> why_skipped(const std::string& path) {
-  const auto* reads = reader_of_extension(extension_of(path));
+  const auto reads = reader_of_extension(extension_of(path));
   if (reads != read_csv && reads != read_json && reads != read_gml) return {};
   try {
     if (reads == read_json) return fmt::format("colour maps ({}), for --map", read_colormaps(path).size());

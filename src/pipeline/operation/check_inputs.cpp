@@ -50,7 +50,7 @@ void check_kinds(const Operation& o, std::span<const Data> inputs, size_t first)
     if (!r.kind) continue;
     const bool own = main && !o.takes_hint.empty() && *r.kind != DataKind::table;
     fail_usage(fmt::format("needs {} but got {}{}", kinds_text(takes), kind_text(*r.kind),
-                           r.part.empty() ? "" : fmt::format(" (part '{}')", r.part)),
+                           r.part.empty() ? "" : fmt::format(" in part '{}'", r.part)),
                main ? std::string(o.name) : fmt::format("{} input {}", o.name, i + first + 1),
                std::string(own ? o.takes_hint : what_would_do(takes, *r.kind)));
   }

@@ -93,7 +93,7 @@ std::string makes_text(const Operation& o) {
   else if (kept.empty()) r = kinds_text(o.makes);
   else if ((kept - o.makes).empty()) r = kinds_text(o.makes | kept);
   else r = fmt::format("of {} the same kind, else {}", kinds_text(kept), kinds_text(o.makes));
-  return o.makes_parts ? "parts, each " + r : r;
+  return o.makes_parts ? r + ", or several as parts" : r;
 }
 
 std::string kinds_help(const Operation& o) {

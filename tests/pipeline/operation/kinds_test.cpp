@@ -82,7 +82,7 @@ std::vector<Words> words_for(const Operation& o) {
       {"clip", {{}, {"keep=both"}}},
       {"transform", {{"angle=20", "axis=1,2,3"}, {"translate=1,0,0"}, {"scale=2,1,1"}}},
       {"silhouette", {{"direction=1,2,3", "smooth=false"}}},
-      {"time_surface", {{"center=0,0,0", "normal=0,0,1", "size=0.5,0.5", "spacing=0.2"}}},
+      {"time_surface", {{"center=0,0,0", "normal=0,0,1", "size=0.2,0.2", "spacing=0.2"}}},
       {"timelines", {{"from=-0.5,0,0", "to=0.5,0,0"}}},
       {"trails", {{"field=s"}}},
       {"lic", {{"resolution=16"}}},
@@ -93,7 +93,7 @@ std::vector<Words> words_for(const Operation& o) {
       {"tensor_lic", {{"density=10"}}},
       {"stream_surface", {{"spacing=0.2"}}},
       {"path_surface", {{"spacing=0.2"}}},
-      {"streak_surface", {{"spacing=0.2"}}},
+      {"streak_surface", {{"spacing=0.5"}}},
   };
   const auto found = some.find(o.name);
   std::vector<Words> r = found == some.end() ? std::vector<Words>{{}} : found->second;
@@ -149,7 +149,6 @@ TEST_CASE("kinds: every operation takes the kinds that its row states, refuses t
   for (const Operation& o : operations()) {
     if (o.kind == OperationKind::source) continue;
     CAPTURE(o.name);
-    std::fprintf(stderr, "%s %.1f\n", std::string(o.name).c_str(), double(clock()) / CLOCKS_PER_SEC);
     std::map<DataKind, Outcome> outcomes;
     std::set<DataKind> made;
     bool made_parts = false;
@@ -288,7 +287,7 @@ TEST_CASE("kinds: a collection is taken when one of its parts is, and its first 
   const Data mixed = parts({"uniform", "points", "table"}), none = parts({"points", "table"}), empty = parts({});
   CHECK_NOTHROW(check_kinds(contour, std::span(&mixed, 1)));
   CHECK_NOTHROW(check_kinds(contour, std::span(&empty, 1)));
-  CHECK(error_of([&] { check_kinds(contour, std::span(&none, 1)); }).find("but got a point cloud (part 'points')") != std::string::npos);
+  CHECK(error_of([&] { check_kinds(contour, std::span(&none, 1)); }).find("but got a point cloud in part 'points'") != std::string::npos);
 }
 
 TEST_CASE("kinds: help tells what goes in and comes out in one line") {
@@ -299,5 +298,5 @@ TEST_CASE("kinds: help tells what goes in and comes out in one line") {
   CHECK(help("threshold") == "Takes: a mesh; makes: of a surface or a point cloud the same kind, else an unstructured mesh.");
   CHECK(help("lic") == "Takes: a mesh with cells, or with a uniform grid beside it; makes: a uniform grid.");
   CHECK(help("probe") == "Takes: a mesh and another; makes: the same kind of mesh.");
-  CHECK(help("topology") == "Takes: a mesh with cells; makes: parts, each a surface or a point cloud.");
+  CHECK(help("topology") == "Takes: a mesh with cells; makes: a surface or a point cloud, or several as parts.");
 }
