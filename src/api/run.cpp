@@ -26,13 +26,13 @@ std::string absolute(const std::string& path) {
 
 // Has it other values at other times, for operations that follow time?
 bool varies(const Made& made, sg::Context& context) {
-  if (made.operation == "read") {
+  if (sg::step_kind(made.operation) == sg::StepKind::read) {
     sg::ReadParams params;
     sg::Schema schema = sg::schema_of(params);
     sg::set_params(schema, made.words, "read");
     return !params.options.time && params.options.step < 0 && sg::file_times(params.path, params.options, context).size() > 1;
   }
-  if (made.operation == sg::memory_step) return false;
+  if (sg::step_kind(made.operation) == sg::StepKind::memory) return false;
   if (made.inputs.empty()) {
     const sg::ParamSet params = sg::make_params(sg::find_operation(made.operation), made.words);
     const sg::ParamDecl* time = params.schema.find("time");
@@ -44,7 +44,7 @@ bool varies(const Made& made, sg::Context& context) {
 // The numbers of memory steps by the names of the steps.
 void add_memory(const std::shared_ptr<const Made>& made, StepsOf& steps, sg::StepResults& results) {
   for (const auto& input : made->inputs) add_memory(input, steps, results);
-  if (made->operation != sg::memory_step) return;
+  if (sg::step_kind(made->operation) != sg::StepKind::memory) return;
   const auto held = made->memory.lock();
   if (!held)
     sg::fail_usage("follows time, and of what lies above it numbers from memory are gone (" + made->words.at(0) + ")", "run()",

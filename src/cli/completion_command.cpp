@@ -124,8 +124,9 @@ Candidates flag_candidates(const FlagDoc& flag, const std::string& text) {
 }
 
 Candidates input_candidates(const CommandDoc& command) {
-  if (command.name == "colormap") return colormap_candidates();
-  if (command.name != "ops") return command.words;
+  const std::optional<Command> known = value_of_word<Command>(command.name);
+  if (known == Command::colormap) return colormap_candidates();
+  if (known != Command::ops) return command.words;
   Candidates all;
   for (const CatalogEntry& e : catalog()) all.push_back(e.name);
   return all;

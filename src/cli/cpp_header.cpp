@@ -104,7 +104,8 @@ std::string cpp_header() {
       "//   scene.show(data, sg::shows::Surface{.opacity = 0.5});\n"
       "// Values are checked when they are used. A member that is a list, a word or a field and empty: the operation chooses.\n"
       "#pragma once\n#include <limits>\n#include <optional>\n\n#include \"sightglass.h\"\n\nnamespace sightglass {\n\nnamespace ops {\n\n";
-  for (const Operation& o : operations()) r += struct_of(o.name, o.sentence, "operation_name", o.make_params().schema);
+  for (const Operation& o : operations())
+    r += struct_of(o.name, fmt::format("{}\n/// {}", o.sentence, kinds_help(o)), "operation_name", o.make_params().schema);
   r += "}  // namespace ops\n\nnamespace shows {\n\n";
   for (const ShowKind& k : show_kinds()) r += struct_of(k.name, k.sentence, "way_name", k.make_params().schema);
   return r + "}  // namespace shows\n\n}  // namespace sightglass\n";

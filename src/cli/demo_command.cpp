@@ -28,6 +28,7 @@ struct Demo {
   const char *name, *sentence, *source;
   std::vector<const char*> filters, shows;
   const char* camera = "";
+  bool with_surface = false;  ///< a second branch: the surface 0 of the source
 };
 
 std::vector<Demo> demos() {
@@ -78,7 +79,9 @@ std::vector<Demo> demos() {
        "an opaque torus inside the volume of its own distance field",
        "torus size=80",
        {},
-       {"volume opacity=0:0,0.35:0,0.5:0.015,1:0.03"}},
+       {"volume opacity=0:0,0.35:0,0.5:0.015,1:0.03"},
+       "",
+       true},
   };
 }
 
@@ -90,7 +93,7 @@ PipelineFile pipeline_of_demo(const Demo& d) {
   for (const char* s : d.shows) o.shows.emplace_back(s);
   o.camera = d.camera;
   PipelineFile file = pipeline_of(o);
-  if (std::string(d.name) == "torus_in_fog") {  // a second branch: the surface itself
+  if (d.with_surface) {
     file.steps.push_back({"skin", "contour", {"values=0"}, {"source"}, 0});
     file.show.push_back({"surface", {"color=tomato"}, "skin", 0});
   }
@@ -104,6 +107,14 @@ void make_folders(const std::string& path) {
     struct stat st {};
     if (!part.empty() && ::stat(part.c_str(), &st) != 0 && ::mkdir(part.c_str(), 0777) != 0) fail_data("cannot create the folder", part);
   }
+}
+
+// The first reader of files of this extension; null: none.
+auto reader_of_extension(std::string_view extension) -> decltype(Format::read) {
+  for (const Format& f : formats())
+    for (const std::string_view e : words(f.extensions))
+      if (e == extension && f.read && f.read != read_raw) return f.read;
+  return nullptr;
 }
 
 // Files below a folder with an extension that some reader knows, sorted.
@@ -125,20 +136,16 @@ void find_files(const std::string& folder, std::vector<std::string>& found) {
       find_files(path, found);
       continue;
     }
-    const std::string ext = extension_of(path);
-    bool known = false;
-    for (const Format& f : formats())
-      for (std::string_view e : words(f.extensions)) known = known || (e == ext && f.read != read_raw);
-    if (known) found.push_back(path);
+    if (reader_of_extension(extension_of(path))) found.push_back(path);
   }
 }
 
 // Why a file of a folder is passed over: it is a table or a colour map, which cannot be drawn directly. Broken files are not.
 std::optional<std::string> why_skipped(const std::string& path) {
-  const std::string ext = extension_of(path);
-  if (ext != "csv" && ext != "tsv" && ext != "txt" && ext != "json" && ext != "gml") return {};
+  const auto reads = reader_of_extension(extension_of(path));
+  if (reads != read_csv && reads != read_json && reads != read_gml) return {};
   try {
-    if (ext == "json") return fmt::format("colour maps ({}), for --map", read_colormaps(path).size());
+    if (reads == read_json) return fmt::format("colour maps ({}), for --map", read_colormaps(path).size());
   } catch (const Error&) {  // none of those
   }
   try {

@@ -42,8 +42,8 @@ std::string overview(const std::vector<CatalogEntry>& all) {
 
 std::string explained(const CatalogEntry& e) {
   const std::string params = params_help(e.schema);
-  return fmt::format("{}: {}\n{}{}", e.name, e.sentence, params.empty() ? "  No parameters.\n" : params,
-                     e.operation ? words_help(*e.operation) : "");
+  return fmt::format("{}: {}\n{}{}{}", e.name, e.sentence, e.operation ? "  " + kinds_help(*e.operation) + "\n" : "",
+                     params.empty() ? "  No parameters.\n" : params, e.operation ? words_help(*e.operation) : "");
 }
 
 }  // namespace

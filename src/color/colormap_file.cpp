@@ -125,8 +125,12 @@ std::vector<FileColormap> read_colormaps(const std::string& path) {
   if (file.size() > largest_file) fail_data(fmt::format("has {}; a colour map has fewer", human_bytes(file.size())), path);
   const std::string ext = extension_of(path);
   std::vector<FileColormap> maps;
-  if (ext == "json") maps = parse_json_maps(file.text(), path);
-  else if (ext == "css") maps = parse_css_maps(file.text(), path);
+  constexpr struct {
+    std::string_view extension;
+    std::vector<FileColormap> (*parse)(std::string_view text, const std::string& path);
+  } of_several[] = {{"json", parse_json_maps}, {"css", parse_css_maps}};
+  const auto* several = std::find_if(std::begin(of_several), std::end(of_several), [&](const auto& f) { return f.extension == ext; });
+  if (several != std::end(of_several)) maps = several->parse(file.text(), path);
   else maps.push_back(parse_cpt(file.text(), path));
   const std::string stem = file_name_of(path).substr(0, file_name_of(path).size() - ext.size() - (ext.empty() ? 0 : 1));
   for (size_t i = 0; i < maps.size(); ++i) {

@@ -82,26 +82,40 @@ std::string webp_bytes(const Image& image, const std::string& path) {
   return bytes;
 }
 
+void write_png(const std::string& path, const Image& image) {
+  const std::vector<uint8_t> bytes = encode_png(image);
+  write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+void write_jpeg(const std::string& path, const Image& image) { write_file(path, jpeg_bytes(image, path)); }
+void write_webp(const std::string& path, const Image& image) { write_file(path, webp_bytes(image, path)); }
+
+struct ImageFormat {
+  std::string_view extension;
+  void (*write)(const std::string& path, const Image& image);
+};
+constexpr ImageFormat image_formats[] = {{"png", write_png}, {"jpg", write_jpeg}, {"jpeg", write_jpeg}, {"webp", write_webp}};
+
 }  // namespace
 
 const std::vector<std::string>& image_extensions() {
-  static const std::vector<std::string> extensions{"png", "jpg", "jpeg", "webp"};
+  static const std::vector<std::string> extensions = [] {
+    std::vector<std::string> all;
+    for (const ImageFormat& f : image_formats) all.emplace_back(f.extension);
+    return all;
+  }();
   return extensions;
 }
 
 void write_image(const std::string& path, const Image& image) {
   const std::string extension = extension_of(path);
-  const auto& known = image_extensions();
-  if (std::find(known.begin(), known.end(), extension) == known.end())
-    fail_usage(extension.empty() ? "the picture's name has no extension" : fmt::format("cannot write pictures as '.{}'", extension), path,
-               "use .png, .jpg or .webp");
+  const ImageFormat* format = nullptr;
+  for (const ImageFormat& f : image_formats)
+    if (f.extension == extension) format = &f;
+  if (!format)
+    fail_usage(extension.empty() ? "the picture's name has no extension" : fmt::format("cannot write pictures as '.{}'", extension),
+               path, "use .png, .jpg or .webp");
   if (image.width < 1 || image.height < 1) fail_usage("the picture has no pixels", path);
-  if (extension == "png") {
-    const std::vector<uint8_t> bytes = encode_png(image);
-    write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-  } else {
-    write_file(path, extension == "webp" ? webp_bytes(image, path) : jpeg_bytes(image, path));
-  }
+  format->write(path, image);
 }
 
 ImageDifference compare(const Image& a, const Image& b) {

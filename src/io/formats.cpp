@@ -17,6 +17,7 @@
 #include "io/options.h"
 #include "io/plugin.h"
 #include "io/reading_budget.h"
+#include "io/y_up.h"
 
 namespace sg {
 
@@ -39,6 +40,13 @@ std::span<const Format> formats() {
 #include "io/formats.def"
   };
   return table;
+}
+
+bool y_points_up(std::string_view extension) {
+  for (const Format& f : formats())
+    for (const std::string_view e : words(f.extensions))
+      if (e == extension) return f.honours & y_is_up;
+  return false;
 }
 
 namespace {

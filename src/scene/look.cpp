@@ -6,6 +6,7 @@
 #include "base/text/text.h"
 #include "data/cells/mesh_dimension.h"
 #include "data/lattice.h"
+#include "io/y_up.h"
 #include "scene/choose/scale.h"
 #include "scene/choose/shown_range.h"
 #include "scene/choose/volume_look.h"
@@ -101,7 +102,7 @@ void choose_view(const Box3& b, const std::string& extension, Look& look) {
   if (b.empty()) return;
   const Vec3 s = b.size();
   const double most = std::max({s.x, s.y, s.z});
-  const bool graphics = extension == "obj" || extension == "ply" || extension == "glb" || extension == "gltf";
+  const bool graphics = y_points_up(extension);
   const double flat = 1e-6 * most;
   if (s.z <= flat) {
     look.direction = {0, 0, 1}, look.up = {0, 1, 0}, look.parallel = true;

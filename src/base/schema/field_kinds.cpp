@@ -7,6 +7,8 @@
 
 namespace sg {
 
+bool is_automatic(const FieldName& field) { return field.name == "auto"; }
+
 bool takes_components(const FieldKinds& k, int n) {
   const bool vector = n == 2 || n == 3, tensor = n == 3 || n == 4 || n == 6 || n == 7 || n == 9;
   if (n == 1) return k.scalars;

@@ -7,6 +7,8 @@
 
 namespace sg {
 
+/// Whether the field is "auto": the data decide.
+bool is_automatic(const FieldName& field);
 /// Whether fields of that many components are accepted; a count may be a vector's and a tensor's (3: xx yy xy).
 bool takes_components(const FieldKinds& kinds, int components);
 

@@ -67,7 +67,7 @@ DatasetPtr barb(int knots, double side) {
 
 // Unit of the speeds as knots.
 double factor_of(const Field& v, const BarbParams& p, Context& context) {
-  if (p.unit != "auto") return knots_per(p.unit);
+  if (p.unit) return knots_per(*p.unit);
   if (!v.unit.empty()) {
     try {
       return knots_per(v.unit);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Wind barbs: speed as strokes on a staff that points to where the wind comes from.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,7 @@ constexpr auto enum_words(BarbHemisphere) {
 }
 
 struct BarbParams {
-  std::string unit = "auto";
+  std::optional<std::string> unit;
   BarbHemisphere hemisphere = BarbHemisphere::latitude;
   FieldName latitude = {};
 };
@@ -43,7 +44,7 @@ int barb_shape(double knots, bool southern);
 double knots_per(const std::string& unit);
 
 /// The dataset with two more point fields: i32 'barb' (number of the shape, -1 where the wind is not finite) and f64 x 9 'barb frame' (the
-/// turn in the x-y plane). Unit "auto": the field's own, else m/s with a note. Hemisphere: 'latitude' takes the sign of a point field of
+/// turn in the x-y plane). No unit: the field's own, else m/s with a note. Hemisphere: 'latitude' takes the sign of a point field of
 /// degrees, or, where none is named, of y when the data lies within -90..90 and looks like degrees (x within -360..360, at least 10 wide);
 /// else north.
 DatasetPtr barb_places(const DatasetPtr& data, const std::string& vectors, const BarbParams& p, Context& context);

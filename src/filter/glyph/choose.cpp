@@ -30,18 +30,31 @@ const Field* automatic_vectors(const Dataset& d) {
 
 namespace {
 
-bool needs_direction(const std::string& shape) {
-  for (const char* name : {"auto", "arrow", "cone", "needle", "line", "arrow2d", "barbs"})
-    if (shape == name) return true;
+bool needs_direction(const GlyphShapeParams& p) {
+  const std::optional<GlyphShape> shape = known_shape(p);
+  if (!shape) return !p.shape;
+  switch (*shape) {
+    case GlyphShape::arrow:
+    case GlyphShape::cone:
+    case GlyphShape::needle:
+    case GlyphShape::line:
+    case GlyphShape::arrow2d:
+    case GlyphShape::barbs: return true;
+    case GlyphShape::cylinder:
+    case GlyphShape::disc:
+    case GlyphShape::sphere:
+    case GlyphShape::cube:
+    case GlyphShape::superquadric: return false;
+  }
   return false;
 }
 
 const Field* wanted_vectors(const Dataset& d, const GlyphParams& p) {
   if (!p.frames.empty()) return nullptr;
-  if (p.vectors.name == "none") return nullptr;
+  if (p.vectors.none()) return nullptr;
   if (p.vectors.empty()) {
     const Field* f = automatic_vectors(d);
-    if (!f && needs_direction(p.shape.shape)) {
+    if (!f && needs_direction(p.shape)) {
       std::string has;
       for (const std::string& n : d.fields().names()) has += (has.empty() ? "" : ", ") + n;
       fail_usage("there is no vector field to show", "glyphs",
@@ -104,22 +117,23 @@ std::vector<double> size_factors(const Dataset& d, const std::string& name) {
 
 void choose_scale_rule(const GlyphParams& p, const Field* vectors, bool barbs, ChosenGlyphs& out) {
   GlyphRule& r = out.rule;
-  std::string by = p.size_by;
-  if (by == "auto") by = vectors && !barbs ? "length" : "constant";
-  if (by == "constant") return;
-  if (by == "length") {
+  const std::optional<GlyphSize> by = p.size_by           ? value_of_word<GlyphSize>(*p.size_by)
+                                      : vectors && !barbs ? GlyphSize::length
+                                                          : GlyphSize::constant;
+  if (by == GlyphSize::constant) return;
+  if (by == GlyphSize::length) {
     if (!vectors)
       fail_usage("there are no vectors whose length could be the size", "glyphs: size_by", "size_by=constant, or the name of a field");
     r.size = GlyphRule::Size::length;
     return;
   }
-  const Field* f = out.data->fields().find(by, Association::point);
-  if (!f) {
+  const std::string& name = *p.size_by;
+  if (!out.data->fields().find(name, Association::point)) {
     std::vector<std::string> names{"auto", "constant", "length"};
     for (const std::string& n : out.data->fields().names()) names.push_back(n);
-    fail_usage(fmt::format("'{}' is neither 'length', 'constant' nor a field", by), "glyphs: size_by", unknown_name_hint(by, names));
+    fail_usage(fmt::format("'{}' is neither 'length', 'constant' nor a field", name), "glyphs: size_by", unknown_name_hint(name, names));
   }
-  r.size = GlyphRule::Size::field, r.size_field = by;
+  r.size = GlyphRule::Size::field, r.size_field = name;
 }
 
 constexpr double faint = 0.02;  // of the largest: hardly seen
@@ -179,7 +193,7 @@ void choose_size(const Dataset& input, const GlyphParams& p, bool in_pixels, int
     r.scale = p.factor;
   } else {
     const double apart = p.spacing > 0 ? p.spacing : distance_of_places(input, *out.data);
-    const bool round = !needs_direction(p.shape.shape);
+    const bool round = !needs_direction(p.shape);
     double size = p.size > 0  ? p.size
                   : in_pixels ? (out.barbs ? 34 : 40)
                               : apart * (out.barbs        ? 0.8
@@ -227,10 +241,11 @@ ChosenGlyphs choose_glyphs(const DatasetPtr& data, const GlyphParams& given, boo
   ChosenGlyphs out;
   const Field* vectors = wanted_vectors(*data, p);
   const int flat_axis = plane_of(*data, vectors);
-  out.barbs = p.shape.shape == "barbs";
+  out.barbs = known_shape(p.shape) == GlyphShape::barbs;
   if (out.barbs && !vectors) fail_usage("barbs need a wind", "glyphs", "name a vector field with vectors=");
-  if (p.shape.shape == "auto") p.shape.shape = p.frames.empty() ? flat_axis >= 0 ? "arrow2d" : "arrow" : "superquadric";
-  out.flat = out.barbs || p.shape.shape == "arrow2d";
+  if (!p.shape.shape)
+    p.shape.shape = word_of(!p.frames.empty() ? GlyphShape::superquadric : flat_axis >= 0 ? GlyphShape::arrow2d : GlyphShape::arrow);
+  out.flat = out.barbs || known_shape(p.shape) == GlyphShape::arrow2d;
   std::string how;
   GlyphPointsParams places = placement(*data, p, vectors, flat_axis, out.barbs, how);
   const double size_given = p.size > 0 ? p.size : 0;
@@ -250,10 +265,9 @@ ChosenGlyphs choose_glyphs(const DatasetPtr& data, const GlyphParams& given, boo
   } else {
     out.shapes = {glyph_shape_mesh(p.shape, context)};
   }
-  const std::string shape = out.barbs ? "barbs" : p.shape.shape;
   const std::string of = out.vectors.empty() ? "" : fmt::format(" of '{}'", out.vectors);
   std::string note = fmt::format("{} {}{} {}", glyph_instances(out.data, out.rule, out.shapes.size())->standing,
-                                 shape == "barbs" ? "barbs" : "glyphs (" + shape + ")", of, how);
+                                 out.barbs ? "barbs" : "glyphs (" + *p.shape.shape + ")", of, how);
   if (out.of > 0) {
     const Field* unit = out.data->fields().find(out.rule.size == GlyphRule::Size::length ? out.rule.vectors : out.rule.size_field);
     note += fmt::format("; one of {}{} is {}{} long", short_number(out.of, 3), unit && !unit->unit.empty() ? " " + unit->unit : "",

@@ -8,16 +8,23 @@
 
 namespace sg {
 
+/// What the size of a glyph shows, where that is no field.
+enum class GlyphSize { constant, length };
+constexpr auto enum_words(GlyphSize) {
+  using enum GlyphSize;
+  return std::array{Word{"constant", constant}, Word{"length", length}};
+}
+
 struct GlyphParams {
   FieldName vectors, frames;
   GlyphShapeParams shape;
-  std::string size_by = "auto";
+  std::optional<std::string> size_by;  ///< a word of GlyphSize, or a field
   double size = 0, factor = 0;
   std::optional<GlyphPlaces> place;
   int64_t count = 0, every = 10, seed = 1;
   double spacing = 0;
   BarbParams barbs;
-  GlyphParams() { shape.shape = "auto"; }
+  GlyphParams() { shape.shape.reset(); }
 };
 void describe(Schema& s, GlyphParams& p);
 

@@ -19,7 +19,6 @@ namespace sg {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr std::string_view names[] = {"arrow", "cone", "needle", "line", "arrow2d", "cylinder", "disc", "sphere", "cube", "superquadric"};
 
 constexpr double plate = 0.012;  // half the thickness of flat shapes
 
@@ -122,26 +121,31 @@ void flat_arrow(ShapeBuilder& b, const GlyphShapeParams& p) {
   }
 }
 
-bool build(ShapeBuilder& b, const GlyphShapeParams& p) {
-  const std::string& name = p.shape;
-  if (name == "arrow") arrow(b, p);
-  else if (name == "arrow2d") flat_arrow(b, p);
-  else if (name == "cone") revolve(b, std::array<Profile, 3>{{{0, 0}, {0, 0.16}, {1, 0}}}, p.sides);
-  else if (name == "needle") revolve(b, std::array<Profile, 3>{{{0, 0}, {0.35, 0.04}, {1, 0}}}, p.sides);
-  else if (name == "cylinder") revolve(b, std::array<Profile, 4>{{{-0.5, 0}, {-0.5, 0.5}, {0.5, 0.5}, {0.5, 0}}}, p.sides);
-  else if (name == "disc") {
-    const int32_t middle = b.point({0, 0, 0});
-    for (int k = 0; k < p.sides; ++k) {
-      const double t = 2 * pi * k / p.sides;
-      b.point({0, 0.5 * std::cos(t), 0.5 * std::sin(t)});
-    }
-    for (int k = 0; k < p.sides; ++k) b.triangle(middle, 1 + k, 1 + (k + 1) % p.sides);
-  } else if (name == "sphere") superquadric(b, 1, 1, p.sides);
-  else if (name == "superquadric") superquadric(b, p.alpha, p.beta, std::max(p.sides, 24));
-  else if (name == "cube") cube(b);
-  else if (name == "line") b.point({0, 0, 0}), b.point({1, 0, 0}), b.line(0, 1);
-  else return false;
-  return true;
+void disc(ShapeBuilder& b, int sides) {
+  const int32_t middle = b.point({0, 0, 0});
+  for (int k = 0; k < sides; ++k) {
+    const double t = 2 * pi * k / sides;
+    b.point({0, 0.5 * std::cos(t), 0.5 * std::sin(t)});
+  }
+  for (int k = 0; k < sides; ++k) b.triangle(middle, 1 + k, 1 + (k + 1) % sides);
+}
+
+// False for barbs, which are no single shape.
+bool build(ShapeBuilder& b, GlyphShape shape, const GlyphShapeParams& p) {
+  switch (shape) {
+    case GlyphShape::arrow: arrow(b, p); return true;
+    case GlyphShape::arrow2d: flat_arrow(b, p); return true;
+    case GlyphShape::cone: revolve(b, std::array<Profile, 3>{{{0, 0}, {0, 0.16}, {1, 0}}}, p.sides); return true;
+    case GlyphShape::needle: revolve(b, std::array<Profile, 3>{{{0, 0}, {0.35, 0.04}, {1, 0}}}, p.sides); return true;
+    case GlyphShape::cylinder: revolve(b, std::array<Profile, 4>{{{-0.5, 0}, {-0.5, 0.5}, {0.5, 0.5}, {0.5, 0}}}, p.sides); return true;
+    case GlyphShape::disc: disc(b, p.sides); return true;
+    case GlyphShape::sphere: superquadric(b, 1, 1, p.sides); return true;
+    case GlyphShape::superquadric: superquadric(b, p.alpha, p.beta, std::max(p.sides, 24)); return true;
+    case GlyphShape::cube: cube(b); return true;
+    case GlyphShape::line: b.point({0, 0, 0}), b.point({1, 0, 0}), b.line(0, 1); return true;
+    case GlyphShape::barbs: return false;
+  }
+  return false;
 }
 
 std::atomic<ShapeReader> shape_reader = nullptr;
@@ -183,7 +187,7 @@ void describe(Schema& s, GlyphShapeParams& p) {
 
 void set_shape_reader(ShapeReader reader) { shape_reader = reader; }
 
-std::span<const std::string_view> glyph_shape_names() { return names; }
+std::optional<GlyphShape> known_shape(const GlyphShapeParams& p) { return p.shape ? value_of_word<GlyphShape>(*p.shape) : std::nullopt; }
 
 DatasetPtr ShapeBuilder::made() && {
   SurfaceMesh mesh;
@@ -207,15 +211,16 @@ DatasetPtr shifted_shape(const DatasetPtr& shape, double by) {
 DatasetPtr glyph_shape_mesh(const GlyphShapeParams& p, Context& context) {
   ShapeBuilder b;
   DatasetPtr shape;
-  if (build(b, p)) {
+  const std::optional<GlyphShape> one = p.shape ? known_shape(p) : GlyphShape::arrow;
+  if (one && build(b, *one, p)) {
     shape = std::move(b).made();
   } else {
-    if (!file_exists(p.shape)) {
-      std::vector<std::string> known(std::begin(names), std::end(names));
-      known.emplace_back("barbs");
-      fail_usage(fmt::format("there is neither a shape nor a file '{}'", p.shape), "glyphs: shape", unknown_name_hint(p.shape, known));
+    if (!file_exists(*p.shape)) {
+      std::vector<std::string> known;
+      for (const Word<GlyphShape>& w : enum_words(GlyphShape())) known.emplace_back(w.word);
+      fail_usage(fmt::format("there is neither a shape nor a file '{}'", *p.shape), "glyphs: shape", unknown_name_hint(*p.shape, known));
     }
-    shape = from_file(p.shape, context);
+    shape = from_file(*p.shape, context);
   }
   if (!p.anchor) return shape;
   const Box3& box = shape->bounds();

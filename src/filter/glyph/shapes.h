@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The shapes of glyphs: small surface meshes of unit size along +x.
 #pragma once
-#include <span>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +10,16 @@
 #include "data/dataset.h"
 
 namespace sg {
+
+/// Wind barbs have a table of shapes (glyph/barbs.h).
+enum class GlyphShape { arrow, cone, needle, line, arrow2d, cylinder, disc, sphere, cube, superquadric, barbs };
+constexpr auto enum_words(GlyphShape) {
+  using enum GlyphShape;
+  return std::array{
+      Word{"arrow", arrow},       Word{"cone", cone}, Word{"needle", needle}, Word{"line", line}, Word{"arrow2d", arrow2d},
+      Word{"cylinder", cylinder}, Word{"disc", disc}, Word{"sphere", sphere}, Word{"cube", cube}, Word{"superquadric", superquadric},
+      Word{"barbs", barbs}};
+}
 
 /// Which part of a shape is at the point.
 enum class GlyphAnchor { tail, middle, tip };
@@ -20,7 +30,7 @@ constexpr auto enum_words(GlyphAnchor) {
 
 /// Which shape, and how finely it is made.
 struct GlyphShapeParams {
-  std::string shape = "arrow";
+  std::optional<std::string> shape = "arrow";  ///< a word of GlyphShape, or a file; none: by the data (choose.h)
   int sides = 12;
   std::optional<GlyphAnchor> anchor;
   double tip_length = 0.35, tip_radius = 0.14, shaft_radius = 0.05;
@@ -28,8 +38,8 @@ struct GlyphShapeParams {
 };
 void describe(Schema& s, GlyphShapeParams& p);
 
-/// arrow, cone, needle, line, arrow2d, cylinder, disc, sphere, cube, superquadric; wind barbs have a table of shapes (glyph/barbs.h).
-std::span<const std::string_view> glyph_shape_names();
+/// None for a file, and where the data decide.
+std::optional<GlyphShape> known_shape(const GlyphShapeParams& p);
 
 /// A shape by name, or the surface of a file. Extents:
 ///   arrow, cone, needle, line, arrow2d   from 0 to 1 along x; arrow2d is a thin plate in the x-y plane, needle a thin double cone, line

@@ -57,6 +57,8 @@ DatasetPtr to_unstructured(const DatasetPtr& in) {
     parts.mesh = cells_of(*s);
   } else if (auto* c = in->as<PointCloud>()) {
     parts.mesh = cells_of(*c);
+    for (const Field& f : in->fields())  // of the cells that it did not have
+      if (f.association == Association::cell) parts.fields.remove(f.name, Association::cell);
   } else {
     std::vector<int64_t> all(in->cell_count());
     std::iota(all.begin(), all.end(), 0);

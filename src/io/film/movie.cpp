@@ -10,12 +10,20 @@
 
 namespace sg {
 
-bool is_movie(const std::string& path) {
-  const std::string ext = extension_of(path);
-  return ext == "webm" || ext == "mp4";
-}
-
 namespace {
+
+struct MovieFormat {
+  std::string_view extension;
+  bool in_plugin;  // encoded here; else by ffmpeg
+};
+constexpr MovieFormat movie_formats[] = {{"webm", true}, {"mp4", false}};
+
+const MovieFormat* movie_format(const std::string& path) {
+  const std::string extension = extension_of(path);
+  for (const MovieFormat& f : movie_formats)
+    if (f.extension == extension) return &f;
+  return nullptr;
+}
 
 // Transparent pixels over white.
 Image in_rgb(const Image& image) {
@@ -32,10 +40,12 @@ Image in_rgb(const Image& image) {
 
 }  // namespace
 
+bool is_movie(const std::string& path) { return movie_format(path) != nullptr; }
+
 MovieWriter::MovieWriter(std::string path, MovieSettings settings) : path_(std::move(path)), settings_(settings) {
   if (!is_movie(path_)) fail_usage(fmt::format("'{}' is not a film format", extension_of(path_)), path_, "supported: .webm .mp4");
   AtomicFile probe(path_);  // detects a film that cannot be written before it is drawn
-  if (extension_of(path_) == "webm") plugin_format("vpx", "webm");
+  if (movie_format(path_)->in_plugin) plugin_format("vpx", "webm");
 }
 
 MovieWriter::~MovieWriter() = default;
@@ -44,7 +54,7 @@ void MovieWriter::add(const Image& picture) {
   if (width_ == 0) {
     width_ = picture.width, height_ = picture.height;
     settings_.width = (width_ + 1) / 2 * 2, settings_.height = (height_ + 1) / 2 * 2;
-    if (extension_of(path_) == "webm") encoder_ = plugin_format("vpx", "webm").movie(settings_);
+    if (movie_format(path_)->in_plugin) encoder_ = plugin_format("vpx", "webm").movie(settings_);
     else other_ = std::make_unique<FfmpegPipe>(path_, settings_.width, settings_.height, settings_.fps);
   }
   if (picture.width != width_ || picture.height != height_)

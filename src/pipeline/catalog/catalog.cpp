@@ -63,6 +63,22 @@ std::string words_json(const Operation& operation) {
   return "[" + r + "]";
 }
 
+std::string kinds_json(KindSet kinds) {
+  std::string r;
+  for (const Word<DataKind>& w : enum_words(DataKind()))
+    if (kinds.has(w.value)) r += fmt::format("{}\"{}\"", r.empty() ? "" : ",", w.word);
+  return "[" + r + "]";
+}
+
+// What goes in and comes out.
+std::string kinds_json(const Operation& o) {
+  std::string takes;
+  if (o.kind == OperationKind::filter) takes = kinds_json(o.takes);
+  if (o.max_inputs != 1 && !takes.empty()) takes += "," + kinds_json(o.takes_further);
+  return fmt::format("\"takes\":[{}],\"makes\":{{\"same\":{},\"else\":{},\"parts\":{}}}", takes, kinds_json(o.keeps & o.takes),
+                     kinds_json(o.makes), o.makes_parts);
+}
+
 // The key of a kind of which there are several; "" for the others.
 std::string_view list_of(EntryKind kind) {
   switch (kind) {
@@ -100,6 +116,7 @@ std::string entry_json(const CatalogEntry& e) {
       fmt::format("{{\"name\":{},\"kind\":\"{}\",\"sentence\":{}", json_string(e.name), word_of(e.kind), json_string(e.sentence));
   if (const Operation* o = e.operation) {
     r += fmt::format(",\"family\":{},\"version\":{},\"inputs\":[{},{}]", json_string(o->family), o->version, o->min_inputs, o->max_inputs);
+    r += "," + kinds_json(*o);
     if (o->words) r += ",\"words\":" + words_json(*o);
   }
   if (e.format) {

@@ -43,8 +43,10 @@ struct CatalogEntry {
 std::vector<CatalogEntry> catalog();
 
 /// {"name","kind","sentence","params":<JSON Schema, draft 2020-12>}; of operations and sources "family", "version", "inputs" ([least,
-/// most], most -1: any number), and "words" ([{"group","form","sentence"}]) where they have a language; of readers and writers
-/// "extensions", of readers "times" (its files may hold several).
+/// most], most -1: any number), "takes" (of the first input and of each further one a list of DataKind; a collection: its parts), "makes"
+/// ({"same","else","parts"}: a first input of a kind in "same" gives the same kind, any other and none at all one in "else"; with "parts"
+/// as a collection of several) and "words" ([{"group","form","sentence"}]) where they have a language; of readers and writers "extensions",
+/// of readers "times" (its files may hold several).
 std::string entry_json(const CatalogEntry& entry);
 /// {"sightglass":VERSION,"sources":[...],"operations":[...],"show":[...],"readers":[...],"writers":[...],"read":{...},"camera":{...},
 /// "picture":{...},"film":{...}}.

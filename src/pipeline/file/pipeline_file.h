@@ -20,6 +20,14 @@
 
 namespace sg {
 
+/// What a step does, by the word in `operation`: an operation where it is none of these.
+enum class StepKind { operation, read, memory };
+constexpr auto enum_words(StepKind) { return std::array{Word{"read", StepKind::read}, Word{"memory", StepKind::memory}}; }
+inline StepKind step_kind(std::string_view operation) { return value_of_word<StepKind>(operation).value_or(StepKind::operation); }
+/// The operation of a step whose numbers came from the memory of a program that used the library: a recipe names it, and only with its
+/// result at hand is it good for anything.
+inline constexpr std::string_view memory_step = word_of(StepKind::memory);
+
 /// The file as plain data. Words are "key=value" as on the command line; lists become "1,2,3", a key without a value the bare
 /// word. Equality leaves out `origin` and the lines.
 struct PipelineFile {
@@ -29,7 +37,7 @@ struct PipelineFile {
     std::vector<std::string> words;  ///< of read: those of ReadParams in io/options.h ("path=FullHead.mhd")
     std::vector<std::string> from;   ///< names of steps further up; empty = the step before (sources: none)
     int line = 0;
-    bool reads() const { return operation == "read"; }
+    bool reads() const { return step_kind(operation) == StepKind::read; }
     friend bool operator==(const Step& a, const Step& b) {
       return a.name == b.name && a.operation == b.operation && a.words == b.words && a.from == b.from;
     }
@@ -81,9 +89,6 @@ struct PipelineGraph {
 };
 /// Results at hand by the names of their steps, which then do not run; a null dataset: it is above others at hand and not requested.
 using StepResults = std::map<std::string, Data>;
-/// The operation of a step whose numbers came from the memory of a program that used the library: a recipe names it, and only with its
-/// result at hand is it good for anything.
-inline constexpr std::string_view memory_step = "memory";
 /// Throws one Error with all mistakes of the file and its operations, each with "origin:line".
 PipelineGraph build_graph(const PipelineFile& file, GraphOptions options = {}, const StepResults& results = {});
 

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/file/file.h"
+#include "base/schema/file_params.h"
 #include "base/text/text.h"
 #include "io/file_series.h"
 #include "io/options.h"
@@ -52,10 +53,10 @@ class GraphBuilder {
 
   void add(const PipelineFile::Step& step) {
     const auto result = results_.find(step.name);
-    const NodeId node = result != results_.end()        ? built_.graph.add_data(result->second, {}, step.name)
-                        : step.operation == memory_step ? add_memory(step)
-                        : step.reads()                  ? add_read(step)
-                                                        : add_operation(step);
+    const NodeId node = result != results_.end()                        ? built_.graph.add_data(result->second, {}, step.name)
+                        : step_kind(step.operation) == StepKind::memory ? add_memory(step)
+                        : step.reads()                                  ? add_read(step)
+                                                                        : add_operation(step);
     line_of_.push_back(step.line);
     if (!nodes_.emplace(step.name, node).second) mistake(step.line, fmt::format("there are two steps '{}'", step.name));
     built_.nodes.emplace_back(step.name, node);
@@ -112,8 +113,7 @@ class GraphBuilder {
     for (std::string& word : words) {
       const size_t sign = word.find('=');
       const ParamDecl* d = sign == word.npos ? nullptr : params.schema.find(word.substr(0, sign));
-      if (d && d->unit_ == "file" && sign + 1 < word.size())
-        word = word.substr(0, sign + 1) + path_beside(file_.origin, word.substr(sign + 1));
+      if (d && names_file(*d) && sign + 1 < word.size()) word = word.substr(0, sign + 1) + path_beside(file_.origin, word.substr(sign + 1));
     }
     return words;
   }

@@ -7,6 +7,7 @@
 
 #include "base/file/file.h"
 #include "base/file/file_fence.h"
+#include "base/schema/file_params.h"
 #include "base/text/text.h"
 #include "io/file_series.h"
 #include "io/options.h"
@@ -18,36 +19,40 @@ namespace sg {
 
 namespace {
 
-using Units = std::map<std::string, std::string, std::less<>>;  // of the parameters, by name
+enum class FileUse { read, written };
+using FileParams = std::map<std::string, FileUse, std::less<>>;  // the parameters that name files
 
-Units units_of(const Schema& schema) {
-  Units units;
-  for (const ParamDecl& d : schema.decls()) units[d.name] = d.unit_;
-  return units;
+FileParams files_of(const Schema& schema) {
+  FileParams files;
+  for (const ParamDecl& d : schema.decls())
+    if (names_file(d)) files[d.name] = FileUse::read;
+    else if (names_new_file(d)) files[d.name] = FileUse::written;
+  return files;
 }
 
-Units units_of_step(const PipelineFile::Step& step) {
+FileParams files_of_step(const PipelineFile::Step& step) {
   if (step.reads()) {
     ReadParams params;
-    return units_of(schema_of(params));
+    return files_of(schema_of(params));
   }
   const Operation* op = known_operation(step.operation);
-  return op ? units_of(op->make_params().schema) : Units{};  // an unknown one is reported later, with "did you mean"
+  return op ? files_of(op->make_params().schema) : FileParams{};  // an unknown one is reported later, with "did you mean"
 }
 
 class Rules {
  public:
   explicit Rules(const std::string& picture) : picture_(picture) {}
 
-  void look(const std::string& who, int line, const Units& units, const std::vector<std::string>& words) {
+  void look(const std::string& who, int line, const FileParams& files, const std::vector<std::string>& words) {
     for (const std::string& word : words) {
       const size_t sign = word.find('=');
-      const auto unit = units.find(trim(std::string_view(word).substr(0, sign)));
-      if (unit == units.end()) continue;
+      const auto file = files.find(trim(std::string_view(word).substr(0, sign)));
+      if (file == files.end()) continue;
       const std::string value = sign == word.npos ? "" : word.substr(sign + 1);
-      if (unit->second == "new file")
-        mistake(line, fmt::format("{}: {}={} would write a file, but a recipe may write only its picture", who, unit->first, value));
-      if (unit->second != "file") continue;
+      if (file->second == FileUse::written) {
+        mistake(line, fmt::format("{}: {}={} would write a file, but a recipe may write only its picture", who, file->first, value));
+        continue;
+      }
       bool good = true;  // of a long list one is enough
       map_series(value, [&](const std::string& part) {
         good = good && check_path(who, line, part);
@@ -83,11 +88,11 @@ class Rules {
 
 void check_recipe(const PipelineFile& recipe, const std::string& picture_path) {
   Rules rules(picture_path);
-  for (const auto& step : recipe.steps) rules.look(fmt::format("step '{}'", step.name), step.line, units_of_step(step), step.words);
+  for (const auto& step : recipe.steps) rules.look(fmt::format("step '{}'", step.name), step.line, files_of_step(step), step.words);
   for (const auto& show : recipe.show) {
     ColoringParams coloring;
     rules.look(fmt::format("show {}", show.kind), show.line,
-               units_of(show.kind == auto_show ? schema_of(coloring) : find_show(show.kind).make_params().schema), show.words);
+               files_of(show.kind == auto_show ? schema_of(coloring) : find_show(show.kind).make_params().schema), show.words);
   }
   rules.finish();
 }

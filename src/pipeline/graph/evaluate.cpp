@@ -7,7 +7,7 @@
 #include "pipeline/file/read_part.h"
 #include "pipeline/graph/graph_state.h"
 #include "pipeline/graph/series_input.h"
-#include "pipeline/operation/check_fields.h"
+#include "pipeline/operation/check_inputs.h"
 
 namespace sg {
 
@@ -91,13 +91,14 @@ class Evaluation {
       if (auto* read = std::get_if<ReadNode>(&node.what)) return read_file(*read, s, part);
       const Operation& operation = *std::get<OperationNode>(node.what).found;
       if (s.series < 0) {
-        check_fields(operation.name, s.params.schema, inputs);
+        check_inputs(operation, s.params.schema, inputs);
         return operation.run(inputs, s.params, part);
       }
+      check_kinds(operation, inputs, 1);
       Series series = SeriesInput::open(graph_, node, plan_.steps[size_t(s.series)].request, s.params, part);
       series.load = [&, load = std::move(series.load)](size_t step) {
         Data data = load(step);
-        check_fields(operation.name, s.params.schema, std::span(&data, 1));
+        check_inputs(operation, s.params.schema, std::span(&data, 1));
         return data;
       };
       return operation.run_series(series, inputs, s.params, part);

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/text/text.h"
-#include "pipeline/operation/check_fields.h"
+#include "pipeline/operation/check_inputs.h"
 #include "pipeline/operation/operation_table.h"
 
 namespace sg {
@@ -39,7 +39,7 @@ Data run_operation(const Operation& operation, const std::vector<Data>& inputs, 
     fail_usage(fmt::format("takes {} input{}, not {}", operation.min_inputs, operation.min_inputs == 1 ? "" : "s", n),
                std::string(operation.name));
   const ParamSet params = make_params(operation, words);
-  check_fields(operation.name, params.schema, inputs);
+  check_inputs(operation, params.schema, inputs);
   return operation.run(inputs, params, context);
 }
 
@@ -86,6 +86,28 @@ Request detail::request_named(const ParamSet& params, const Request& wanted) {
   return named_or_all(params, Request::only({}), wanted.time);
 }
 
+std::string makes_text(const Operation& o) {
+  const KindSet kept = o.keeps & o.takes;
+  std::string r;
+  if (kept == o.takes && o.makes.empty()) r = o.takes == kinds::table ? "a table" : "the same kind of mesh";
+  else if (kept.empty()) r = kinds_text(o.makes);
+  else if ((kept - o.makes).empty()) r = kinds_text(o.makes | kept);
+  else r = fmt::format("of {} the same kind, else {}", kinds_text(kept), kinds_text(o.makes));
+  return o.makes_parts ? r + ", or several as parts" : r;
+}
+
+std::string kinds_help(const Operation& o) {
+  if (o.kind == OperationKind::source) return fmt::format("Makes: {}.", makes_text(o));
+  std::string further;
+  if (o.max_inputs != 1) {
+    const bool alike = o.takes_further == o.takes;
+    further = o.min_inputs > 1 ? " and " : ", or with ";
+    if (o.max_inputs < 0) further += alike ? "more of them" : "more: each " + kinds_text(o.takes_further);
+    else further += alike ? "another" : kinds_text(o.takes_further) + " beside it";
+  }
+  return fmt::format("Takes: {}{}; makes: {}.", kinds_text(o.takes), further, makes_text(o));
+}
+
 std::string ops_help(std::string_view name, std::span<const Operation> table) {
   if (!name.empty()) {
     const Operation& o = find_operation(name, table);
@@ -93,6 +115,7 @@ std::string ops_help(std::string_view name, std::span<const Operation> table) {
     std::string r = fmt::format("{} ({}{})\n  {}\n", o.name, o.family, o.kind == OperationKind::filter ? " filter" : "", o.sentence);
     if (o.min_inputs > 1) r += fmt::format("  Takes {} inputs.\n", o.min_inputs);
     else if (o.max_inputs < 0) r += "  Takes any number of inputs.\n";
+    r += "  " + kinds_help(o) + "\n";
     const std::string help = params_help(params.schema);
     return r + (help.empty() ? "\nIt has no parameters.\n" : "\nParameters (key=value):\n" + help) + words_help(o);
   }

@@ -16,6 +16,7 @@
 #include "base/text/help_word.h"
 #include "data/dataset.h"
 #include "pipeline/graph/request.h"
+#include "pipeline/operation/data_kinds.h"
 
 namespace sg {
 
@@ -46,6 +47,14 @@ struct Operation {
   bool shows_moment = false;
   /// The language of its parameters, for help: operators and functions of expressions; null: none.
   std::vector<HelpWord> (*words)() = nullptr;
+  /// What its first input and each further one may be; a collection: each of its parts (check_inputs.h).
+  KindSet takes = kinds::meshes, takes_further = kinds::meshes;
+  /// What would be right in place of a kind that `takes` leaves out; "": by the kind alone.
+  std::string_view takes_hint = {};
+  /// What comes out: a first input of a kind in `keeps` gives the same kind, any other, and no input at all, one of `makes`; a collection,
+  /// where it is taken part by part, one of such parts.
+  KindSet keeps = kinds::meshes, makes = {};
+  bool makes_parts = false;  ///< one input may give a collection of named parts of these kinds
 };
 
 /// All operations of this build, in the order of operations.def.
@@ -62,7 +71,11 @@ Data run_operation(const Operation& operation, const std::vector<Data>& inputs, 
 /// The request that goes up to the inputs of `operation`.
 Request upstream_request(const Operation& operation, const ParamSet& params, const Request& wanted);
 
-/// One operation for people: sentence and parameters. "" = all operations by family.
+/// "the same kind of mesh"; "of a surface or a point cloud the same kind, else an unstructured mesh".
+std::string makes_text(const Operation& operation);
+/// "Takes: a mesh with cells; makes: a surface."
+std::string kinds_help(const Operation& operation);
+/// One operation for people: sentence, kinds and parameters. "" = all operations by family.
 std::string ops_help(std::string_view name = {}, std::span<const Operation> table = operations());
 /// Its words, each with its sentence, by group; "" when it has none.
 std::string words_help(const Operation& operation);

@@ -11,8 +11,9 @@
 //   R f(const std::vector<Data>&, const P&, Context&)              any number of inputs
 //   R f(const Series&, const P&, Context&)                         all time steps of the input, one at a time
 //   R f(const Series&, const std::vector<Data>&, const P&, Context&)  the same, and further inputs as they are
-// Behind the sentence come hooks: op_version<2>, op_inputs<1, -1>, carries_fields, needs_only_named_fields, shows_moment, or any callable
-// that changes an Operation&.
+// Behind the sentence come hooks: op_version<2>, op_inputs<1, -1>, carries_fields, needs_only_named_fields, shows_moment, takes(KINDS),
+// makes(KINDS), or any callable that changes an Operation&. Kinds stand in pipeline/operation/data_kinds.h. Without these two an operation
+// takes any mesh and gives the same kind; a source makes a uniform grid.
 #pragma once
 #include <type_traits>
 
@@ -84,6 +85,7 @@ constexpr Operation make_source(std::string_view name, std::string_view sentence
   Operation o{name, "source", sentence, OperationKind::source, 1, 0, 0};
   o.make_params = make_param_set<P>;
   o.run = run;
+  o.keeps = {}, o.makes = kinds::uniform;
   (hooks(o), ...);
   return o;
 }
@@ -107,6 +109,20 @@ constexpr auto shows_moment = [](Operation& o) { o.shows_moment = true; };
 /// Hook: how many inputs a filter over a list takes; MAX -1 = any number.
 template <int MIN, int MAX>
 constexpr auto op_inputs = [](Operation& o) { o.min_inputs = MIN, o.max_inputs = MAX; };
+/// Hook: the kinds that the first input may be; `hint`: what would be right in place of others (default: by the kind that was given).
+constexpr auto takes(KindSet kinds, std::string_view hint = {}) {
+  return [=](Operation& o) { o.takes = kinds, o.takes_hint = hint; };
+}
+/// Hook: the kinds that the second input and further ones may be.
+constexpr auto takes_further(KindSet kinds) {
+  return [=](Operation& o) { o.takes_further = kinds; };
+}
+/// Hook: the kinds that come out, but inputs of the kinds in `keeps` give the same kind.
+constexpr auto makes(KindSet kinds, KindSet keeps = {}) {
+  return [=](Operation& o) { o.makes = kinds, o.keeps = keeps; };
+}
+/// Hook: one input may give a collection of several parts.
+constexpr auto makes_parts = [](Operation& o) { o.makes_parts = true; };
 
 }  // namespace sg
 

@@ -75,6 +75,10 @@ Request request_of_extract(const ParamSet& params, const Request& wanted) {
   return p.region.function.empty() ? detail::request_carried(params, wanted) : Request{};
 }
 
+// What several rows say of the kinds that they take.
+constexpr auto takes_lines = takes(kinds::with_cells - kinds::amr, "streamlines, isolines, feature_edges or slice of a surface make lines");
+constexpr auto takes_solids = takes(kinds::solids, "in a plane and on surfaces the counterpart is a point: critical_points");
+
 }  // namespace
 
 std::span<const Operation> operations() {

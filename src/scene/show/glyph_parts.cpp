@@ -44,7 +44,7 @@ void share_count(const std::vector<DatasetPtr>& parts, bool barbs, const std::ve
 
 void share(const std::vector<DatasetPtr>& parts, const std::vector<GlyphsShow*>& params) {
   const GlyphParams g = params[0]->glyphs;
-  const bool barbs = g.shape.shape == "barbs";
+  const bool barbs = known_shape(g.shape) == GlyphShape::barbs;
   if (g.count == 0 && g.spacing == 0 && !g.place) share_count(parts, barbs, params);
   if (g.factor > 0 || params[0]->pixels || barbs) return;
   double longest = 0, most = 0;

@@ -48,12 +48,12 @@ void describe(Schema& s, GlyphsShow& p) {
 }
 
 const Field* automatic_field(const GlyphsShow& p, const Dataset& d) {
-  if (p.glyphs.shape.shape == "barbs") return nullptr;
+  if (known_shape(p.glyphs.shape) == GlyphShape::barbs) return nullptr;
   return p.glyphs.vectors.empty() ? automatic_vectors(d) : d.fields().find(p.glyphs.vectors.name);
 }
 
 std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const GlyphsShow& p, Context& context) {
-  const bool in_pixels = p.pixels || (p.glyphs.shape.shape == "barbs" && p.glyphs.factor == 0);
+  const bool in_pixels = p.pixels || (known_shape(p.glyphs.shape) == GlyphShape::barbs && p.glyphs.factor == 0);
   ChosenGlyphs c = choose_glyphs(input, p.glyphs, in_pixels, context);
   context.info(c.note);
   GlyphsItem item;

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/schema/field_kinds.h"
 
 namespace sg {
 
@@ -25,7 +26,7 @@ void describe(Schema& s, LicShow& p) {
 std::optional<SurfaceTexture> surface_texture_of(const Dataset& d, const LicShow& p) {
   if (p.lic.empty() || p.lic.none()) return {};
   const Field* f = d.fields().find(p.lic.name);
-  if (!f && p.lic.name == "auto") {
+  if (!f && is_automatic(p.lic)) {
     f = d.fields().with_role(Role::vectors);
     if (!f || f->association == Association::whole) f = d.fields().active(3);
     if (!f) f = d.fields().active(2);

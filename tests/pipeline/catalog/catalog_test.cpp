@@ -52,7 +52,8 @@ TEST_CASE("catalog: an operation as JSON has name, family, sentence, inputs and 
   const ParamSet params = op.make_params();
   const CatalogEntry e{EntryKind::operation, "scale", std::string(op.sentence), params.values, params.schema, &op, nullptr};
   CHECK(json::parse(entry_json(e)) == json::parse(R"({"name":"scale","kind":"operation","sentence":"Multiplies a field.","family":"scalar",
-    "version":3,"inputs":[1,1],"params":{"$schema":"https://json-schema.org/draft/2020-12/schema","type":"object",
+    "version":3,"inputs":[1,1],"takes":[["uniform","rectilinear","curvilinear","unstructured","surface","points","amr"]],
+    "makes":{"same":["uniform","rectilinear","curvilinear","unstructured","surface","points","amr"],"else":[],"parts":false},"params":{"$schema":"https://json-schema.org/draft/2020-12/schema","type":"object",
     "additionalProperties":false,"properties":{
       "field":{"type":"string","field":{"on":["point","cell"],"of":["scalar","vector","tensor","other"]},
                "description":"Field to scale; default: the active scalar."},

@@ -52,7 +52,7 @@ DatasetPtr alone(const Series& series, const SumParams& p, Context& context) { r
 std::span<const Operation> table() {
   static const std::vector<Operation> all = [] {
     std::vector<Operation> ops(test::operations().begin(), test::operations().end());
-    ops.push_back(SG_FILTER(sum, SumParams, sum, "flow", "Looks at every step."));
+    ops.push_back(SG_FILTER(sum, SumParams, sum, "flow", "Looks at every step.", takes_further(kinds::meshes | kinds::table)));
     ops.push_back(SG_FILTER(alone, SumParams, alone, "flow", "Looks at every step."));
     return ops;
   }();

@@ -20,12 +20,14 @@ TEST_CASE("operations: help of one operation is made from its declaration") {
   CHECK(ops_help("scale", test::operations()) ==
         "scale (scalar filter)\n"
         "  Multiplies a field.\n"
+        "  Takes: a mesh; makes: the same kind of mesh.\n"
         "\n"
         "Parameters (key=value):\n"
         "  field  Field to scale; default: the active scalar. [any field of points or cells]\n"
         "  by     Factor. [number, from -1000 to 1000, in units of 'field', default 2]\n"
         "  mode   How. [plain|fancy, default plain]\n");
-  CHECK(ops_help("whole", test::operations()) == "whole (parts filter)\n  Passes everything on.\n\nIt has no parameters.\n");
+  CHECK(ops_help("whole", test::operations()) ==
+        "whole (parts filter)\n  Passes everything on.\n  Takes: a mesh; makes: the same kind of mesh.\n\nIt has no parameters.\n");
   CHECK(ops_help("add", test::operations()).find("Takes 2 inputs.") != std::string::npos);
   CHECK(ops_help("ramp", test::operations()).starts_with("ramp (source)\n"));
 }

@@ -331,11 +331,12 @@ DatasetPtr tensor_glyphs(const DatasetPtr& in, const TensorGlyphsParams& p, Cont
   const TensorField t = read_tensors(*in, p.tensors, "tensor_glyphs", ctx);
   const TensorShape shape = p.shape;
   const bool lobes = shape == TensorShape::reynolds || shape == TensorShape::hwy, shear = shape == TensorShape::hwy;
-  std::string color = p.color;
-  const bool named = color != "auto" && color != "direction" && color != "FA" && color != "sign" && color != "none";
-  if (named) in->fields().require(color, t.field.association);
+  const std::optional<TensorColor> color = p.color ? value_of_word<TensorColor>(*p.color) : std::nullopt;
+  const bool named = p.color && !color;
+  if (named) in->fields().require(*p.color, t.field.association);
   const Chosen c = choose(in, t, p, ctx);
-  if (color == "auto") color = c.mostly_signed() || lobes ? "relative" : "direction";
+  const bool relative = !p.color && (c.mostly_signed() || lobes);
+  const bool by_direction = p.color ? color == TensorColor::direction : !relative;
   const GlyphPattern pattern(shape, p.resolution, p.gamma, p.min_ratio);
   Surface s = build(c, pattern, factors(c, shape, p, ctx), shear, ctx);
   const size_t nv = pattern.vertices();
@@ -345,19 +346,19 @@ DatasetPtr tensor_glyphs(const DatasetPtr& in, const TensorGlyphsParams& p, Cont
   auto add = [&](std::string name, Array a, Role role = Role::none, std::string unit = "") {
     parts.fields.add({std::move(name), Association::point, std::move(a), std::move(unit), role});
   };
-  const Role chosen = color == "relative" ? Role::scalars : Role::none;
+  const Role chosen = relative ? Role::scalars : Role::none;
   if (lobes) add(shear ? "relative shear stress" : "relative normal stress", s.relative, chosen);
   if (c.negative())
     add("signed share", repeated<float>(c, nv, 1, [&](size_t g, float* v) { *v = float(signed_share(c.eigen[g])); }),
         lobes ? Role::none : chosen);
-  if (c.negative() || lobes || color == "sign") add("sign", s.sign, color == "sign" ? Role::scalars : Role::none);
+  if (c.negative() || lobes || color == TensorColor::sign) add("sign", s.sign, color == TensorColor::sign ? Role::scalars : Role::none);
   const int d = t.dimension;
   add("FA", repeated<float>(c, nv, 1, [&](size_t g, float* v) { *v = float(fa_of(c.eigen[g], d)); }),
-      color == "FA" ? Role::scalars : Role::none);
+      color == TensorColor::fa ? Role::scalars : Role::none);
   for (int k = 0; k < d; ++k)
     add(fmt::format("eigenvalue {}", k + 1), repeated<float>(c, nv, 1, [&](size_t g, float* v) { *v = float(c.eigen[g].value[k]); }),
         Role::none, t.field.unit);
-  if (color == "direction")
+  if (by_direction)
     add("direction",
         repeated<uint8_t>(c, nv, 3, [&](size_t g, uint8_t* v) { paled_direction(c.eigen[g].vector[0], fa_of(c.eigen[g], d), v); }),
         Role::colors);
@@ -368,7 +369,7 @@ DatasetPtr tensor_glyphs(const DatasetPtr& in, const TensorGlyphsParams& p, Cont
     if (f.association != t.field.association || f.name == t.field.name || f.role == Role::normals ||
         parts.fields.find(f.name, Association::point))
       continue;
-    const Role role = f.name == color ? Role::scalars : f.role == Role::scalars || f.role == Role::colors ? Role::none : f.role;
+    const Role role = named && f.name == *p.color ? Role::scalars : f.role == Role::scalars || f.role == Role::colors ? Role::none : f.role;
     add(f.name, gather(f.array, ids), role, f.unit);
   }
   add(t.field.association == Association::point ? "original_point" : "original_cell", Array::from_vector(std::move(ids)), Role::global_ids);

@@ -13,6 +13,13 @@ constexpr auto enum_words(TensorScale) {
   return std::array{Word{"eigenvalues", eigenvalues}, Word{"log", log}, Word{"normalized", normalized}};
 }
 
+/// What the colours show, where that is no field.
+enum class TensorColor { direction, fa, sign, none };
+constexpr auto enum_words(TensorColor) {
+  using enum TensorColor;
+  return std::array{Word{"direction", direction}, Word{"FA", fa}, Word{"sign", sign}, Word{"none", none}};
+}
+
 struct TensorGlyphsParams {
   TensorSource tensors;
   TensorShape shape = TensorShape::superquadric;
@@ -25,7 +32,7 @@ struct TensorGlyphsParams {
   std::optional<TensorScale> scale;
   double size = 1;
   std::optional<double> factor;
-  std::string color = "auto";
+  std::optional<std::string> color;  ///< a word of TensorColor, or a field
   int resolution = 10;
 };
 void describe(Schema& s, TensorGlyphsParams& p);
