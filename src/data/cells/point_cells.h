@@ -9,7 +9,7 @@
 
 namespace sg {
 
-/// Cells of each point in ascending order; hidden, refined and duplicate cells are left out. Memory: 8 bytes a point, 4 (meshes of
+/// Cells of each point in ascending order, without hidden and refined cells; duplicates count. Memory: 8 bytes a point, 4 (meshes of
 /// 2^32 cells and more: refused) a corner.
 class PointCells {
  public:

@@ -11,6 +11,7 @@
 #include "data/cells/cell_topology.h"
 #include "data/field_ops.h"
 #include "data/fields/known_looks.h"
+#include "data/ranks/over_all.h"
 #include "filter/scalar/contour/cells/cell_cases.h"
 #include "filter/surface/polygons.h"
 
@@ -153,14 +154,12 @@ bool is_convex(std::span<const Vec3> at) {
   return true;
 }
 
-std::vector<double> borders(const Dataset& s, const Field& field, const BandsParams& p) {
+std::vector<double> borders(const Range& r, const BandsParams& p) {
   std::vector<double> v = p.values;
   for (double x : v)
     if (!std::isfinite(x)) fail_usage(fmt::format("{} is not a valid band limit", x), "bands values", "give finite numbers");
-  if (v.empty()) {
-    const Range r = s.range(field, p.component);
+  if (v.empty())
     for (int k = 1; k < p.count && !r.empty(); ++k) v.push_back(r.lo + (r.hi - r.lo) * k / p.count);
-  }
   std::sort(v.begin(), v.end());
   v.erase(std::unique(v.begin(), v.end()), v.end());
   return v;
@@ -248,7 +247,8 @@ DatasetPtr bands(const DatasetPtr& in, const BandsParams& p, Context& ctx) {
   const DatasetPtr s = surface::polygon_surface(in, "bands", ctx);
   const SurfaceMesh& mesh = *s->as<SurfaceMesh>();
   const Field& field = band_field(*s, p);
-  const std::vector<double> levels = borders(*s, field, p);
+  const Range range = range_over_all(*s, field, p.component, ctx);
+  const std::vector<double> levels = borders(range, p);
   const Array samples = scalar_of(field, field.components() > 1 ? p.component : 0, ElementType::f64);
   const std::vector<double> f(samples.view<double>().data, samples.view<double>().data + samples.count());
   const std::vector<Vec3> at = surface::positions(mesh.points);
@@ -291,7 +291,6 @@ DatasetPtr bands(const DatasetPtr& in, const BandsParams& p, Context& ctx) {
   std::vector<int64_t> cells;
   std::vector<int32_t> ids, offsets{0}, band;
   std::vector<double> low, high;
-  const Range range = s->range(field, p.component);
   each([&](std::span<const Node> ring, int32_t b, int64_t cell) {
     for (const Node& n : ring)
       ids.push_back(int32_t(n.level < 0 ? number[n.lo] : kept + (std::lower_bound(cuts.begin(), cuts.end(), n) - cuts.begin())));

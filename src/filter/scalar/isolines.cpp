@@ -7,6 +7,7 @@
 #include "data/cells/cell_reader.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
+#include "data/ranks/over_all.h"
 #include "filter/scalar/contour/contour.h"
 #include "filter/surface/polygons.h"
 
@@ -168,7 +169,7 @@ DatasetPtr isolines(const DatasetPtr& in, const IsolinesParams& p, Context& ctx)
     if (p.component.size() == 1 && p.component[0] >= 'x' && p.component[0] <= 'z') component = p.component[0] - 'x';
     else if (p.component.size() == 1 && p.component[0] >= '0' && p.component[0] <= '9') component = p.component[0] - '0';
     if (f && f->association == Association::point && component < f->components())
-      if (const Range r = s->range(*f, component); !r.empty())
+      if (const Range r = range_over_all(*s, *f, component, ctx); !r.empty())
         for (int k = 1; k <= p.count; ++k) c.values.push_back(r.lo + (r.hi - r.lo) * k / (p.count + 1));
   }
   DatasetParts lines = contour(s, c, ctx)->parts();

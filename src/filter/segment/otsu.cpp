@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/all_ranks.h"
 #include "base/parallel.h"
 #include "base/text/text.h"
+#include "data/ranks/over_all.h"
 #include "filter/segment/samples.h"
 
 namespace sg {
@@ -51,8 +53,9 @@ ValueCounts value_counts(const Array& a, const std::vector<uint8_t>& states, int
           return Span{std::min(x.lo, y.lo), std::max(x.hi, y.hi), true};
         },
         &context);
-    if (!span.any) return;
-    const double lo = double(span.lo), width = double(span.hi) - lo;
+    const Range all = over_all(span.any ? Range{double(span.lo), double(span.hi)} : Range{}, context);
+    if (all.empty()) return;
+    const double lo = all.lo, width = all.hi - lo;
     const bool exact = std::is_integral_v<T> && width < 65536;
     const size_t m = exact ? size_t(width) + 1 : size_t(bins);
     if (!std::isfinite(width)) fail_usage("the range of the values exceeds double precision", "histogram", "scale the field first");
@@ -62,7 +65,7 @@ ValueCounts value_counts(const Array& a, const std::vector<uint8_t>& states, int
       return std::min(m - 1, size_t((double(x) - lo) * per_unit));
     };
     using Counts = std::vector<uint64_t>;
-    const Counts counts = parallel_reduce(
+    Counts counts = parallel_reduce(
         n, chunk, Counts(m),
         [&](size_t begin, size_t end) {
           Counts c(m);
@@ -75,6 +78,7 @@ ValueCounts value_counts(const Array& a, const std::vector<uint8_t>& states, int
           return x;
         },
         &context);
+    all_sum(std::span(counts), context.communicator);
     for (size_t i = 0; i < m; ++i)
       if (counts[i]) {
         r.value.push_back(exact ? lo + double(i) : width > 0 ? lo + (double(i) + 0.5) / per_unit : lo);

@@ -118,6 +118,7 @@ TablePtr integrate(const Data& in, const IntegrateParams& p, Context& ctx) {
     parts.push_back(d);
     dimension = std::max(dimension, highest_dimension(d));
   });
+  dimension = all_most(dimension, ctx.communicator);
   if (dimension < 0) fail_usage("has no cells to integrate over", "integrate", "hidden and duplicate cells do not count");
   std::vector<Row> rows;
   ExactSum whole;
@@ -133,7 +134,8 @@ TablePtr integrate(const Data& in, const IntegrateParams& p, Context& ctx) {
       if (asked && f.association != Association::whole)
         for (int c = 0; c < f.components(); ++c) columns.push_back({&f, c});
     }
-    const std::vector<ExactSum> sums = sums_of(d, dimension, columns, ctx);
+    std::vector<ExactSum> sums = sums_of(d, dimension, columns, ctx);
+    over_all(sums, ctx);
     for (size_t k = 0; k < columns.size(); ++k) add_to(rows, *columns[k].field, columns[k].component, sums[k], sums.back());
     whole.add(sums.back());
   }

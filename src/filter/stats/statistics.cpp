@@ -4,10 +4,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/field_ops.h"
+#include "data/ranks/over_all.h"
 #include "filter/stats/stats_parts.h"
 
 namespace sg {
@@ -58,21 +61,28 @@ Numbers numbers_of(const Array& a, int component, const Array& ghost) {
   return r;
 }
 
-// The sum of f(v) in fixed chunks.
+// The sum of f(v) in fixed chunks, of all pieces.
 template <class F>
-double exact_sum(const std::vector<double>& v, F&& f) {
-  return parallel_reduce(
-             v.size(), grain, ExactSum{},
-             [&](size_t begin, size_t end) {
-               ExactSum p;
-               for (size_t i = begin; i < end; ++i) p.add(f(v[i]));
-               return p;
-             },
-             [](ExactSum a, const ExactSum& b) {
-               a.add(b);
-               return a;
-             })
-      .value();
+double exact_sum(const std::vector<double>& v, F&& f, const Context& ctx) {
+  std::vector<ExactSum> sum{parallel_reduce(
+      v.size(), grain, ExactSum{},
+      [&](size_t begin, size_t end) {
+        ExactSum p;
+        for (size_t i = begin; i < end; ++i) p.add(f(v[i]));
+        return p;
+      },
+      [](ExactSum a, const ExactSum& b) {
+        a.add(b);
+        return a;
+      })};
+  over_all(sum, ctx);
+  return sum[0].value();
+}
+
+// The value at a share of the way between two neighbours in order.
+double between(double lo, double hi, double t) {
+  const double apart = hi - lo;
+  return std::isfinite(apart) ? lo + t * apart : lo * (1 - t) + hi * t;
 }
 
 double quantile(std::vector<double>& v, double q) {
@@ -81,15 +91,61 @@ double quantile(std::vector<double>& v, double q) {
   const auto place = v.begin() + ptrdiff_t(i);
   std::nth_element(v.begin(), place, v.end());
   const double lo = *place;
-  const double hi = i + 1 < v.size() ? *std::min_element(place + 1, v.end()) : lo;
-  const double t = at - double(i), apart = hi - lo;
-  return std::isfinite(apart) ? lo + t * apart : lo * (1 - t) + hi * t;
+  return between(lo, i + 1 < v.size() ? *std::min_element(place + 1, v.end()) : lo, at - double(i));
+}
+
+// Bits that rise with the number, and back.
+uint64_t key_of(double x) {
+  const auto bits = std::bit_cast<uint64_t>(x);
+  return bits >> 63 ? ~bits : bits | uint64_t(1) << 63;
+}
+double number_of(uint64_t key) { return std::bit_cast<double>(key >> 63 ? key ^ uint64_t(1) << 63 : ~key); }
+
+// The numbers at these places of the order of all pieces' numbers, by halving the range of doubles; -0 counts as 0.
+std::vector<double> all_at(std::vector<double>& v, const std::vector<int64_t>& places, const Context& ctx) {
+  for (double& x : v) x += 0.0;
+  std::sort(v.begin(), v.end());
+  std::vector<uint64_t> lo(places.size(), 0), hi(places.size(), UINT64_MAX);
+  std::vector<int64_t> below(places.size());
+  for (int round = 0; round < 64; ++round) {
+    for (size_t i = 0; i < places.size(); ++i) {
+      const uint64_t middle = lo[i] + (hi[i] - lo[i]) / 2;
+      below[i] = std::partition_point(v.begin(), v.end(), [&](double x) { return key_of(x) <= middle; }) - v.begin();
+    }
+    all_sum(std::span(below), ctx.communicator);
+    for (size_t i = 0; i < places.size(); ++i) {
+      const uint64_t middle = lo[i] + (hi[i] - lo[i]) / 2;
+      if (below[i] > places[i]) hi[i] = middle;
+      else if (lo[i] < hi[i]) lo[i] = middle + 1;
+    }
+  }
+  std::vector<double> r;
+  for (const uint64_t key : lo) r.push_back(number_of(key));
+  return r;
+}
+
+// Least, quartiles and largest of all pieces' numbers, `n` of them.
+std::array<double, 5> quartiles(std::vector<double>& v, int64_t n, const Context& ctx) {
+  std::array<double, 5> r{};
+  if (!ctx.communicator) {
+    for (int k = 0; k < 5; ++k) r[size_t(k)] = quantile(v, k / 4.0);
+    return r;
+  }
+  std::vector<int64_t> places;
+  for (int k = 0; k < 5; ++k) {
+    const auto i = int64_t(k / 4.0 * double(n - 1));
+    places.push_back(i), places.push_back(std::min(i + 1, n - 1));
+  }
+  const std::vector<double> at = all_at(v, places, ctx);
+  for (size_t k = 0; k < 5; ++k) r[k] = between(at[2 * k], at[2 * k + 1], double(k) / 4.0 * double(n - 1) - double(places[2 * k]));
+  return r;
 }
 
 // The power of two below the largest absolute value, with which squares stay within doubles; 1 where they do anyway.
-double scale_of(const std::vector<double>& v) {
+double scale_of(const std::vector<double>& v, const Context& ctx) {
   double most = 0;
   for (const double x : v) most = std::max(most, std::fabs(x));
+  most = all_most(most, ctx.communicator);
   return most > 1e140 || (most > 0 && most < 1e-140) ? std::ldexp(1.0, std::ilogb(most)) : 1;
 }
 
@@ -102,7 +158,7 @@ struct Rows {
 };
 constexpr const char* number_names[9] = {"min", "quartile1", "median", "quartile3", "max", "mean", "deviation", "sum", "sum_of_squares"};
 
-void add_row(Rows& rows, const DatasetPtr& in, const Field& f, int component) {
+void add_row(Rows& rows, const DatasetPtr& in, const Field& f, int component, const Context& ctx) {
   Numbers numbers = numbers_of(f.array, component, ghosts_of(in, f));
   std::vector<double>& v = numbers.finite;
   if (rows.fields.empty() || rows.fields.back() != f.name || rows.association.back() != int32_t(f.association)) {
@@ -111,19 +167,28 @@ void add_row(Rows& rows, const DatasetPtr& in, const Field& f, int component) {
   rows.field.push_back(int32_t(std::find(rows.fields.begin(), rows.fields.end(), f.name) - rows.fields.begin()));
   rows.association.push_back(int32_t(f.association));
   rows.component.push_back(component);
-  rows.count.push_back(int64_t(v.size()));
-  rows.missing.push_back(int64_t(numbers.missing));
-  rows.infinite.push_back(int64_t(numbers.infinite));
+  int64_t counts[] = {int64_t(v.size()), int64_t(numbers.missing), int64_t(numbers.infinite)};
+  all_sum(std::span<int64_t>(counts), ctx.communicator);
+  rows.count.push_back(counts[0]), rows.missing.push_back(counts[1]), rows.infinite.push_back(counts[2]);
   double row[9];
   std::fill_n(row, 9, std::nan(""));
-  if (!v.empty()) {
-    const double n = double(v.size()), s = scale_of(v), sum = exact_sum(v, [&](double x) { return x / s; }), mean = sum / n;
+  if (counts[0] > 0) {
+    const double n = double(counts[0]), s = scale_of(v, ctx),
+                 sum = exact_sum(
+                     v, [&](double x) { return x / s; }, ctx),
+                 mean = sum / n;
     row[7] = sum * s;
     row[5] = mean * s;
-    row[8] = exact_sum(v, [&](double x) { return (x / s) * (x / s); }) * s * s;
+    row[8] = exact_sum(
+                 v, [&](double x) { return (x / s) * (x / s); }, ctx) *
+             s * s;
     // Two passes: the squares of differences from the mean do not cancel.
-    row[6] = v.size() > 1 ? s * std::sqrt(exact_sum(v, [&](double x) { return (x / s - mean) * (x / s - mean); }) / (n - 1)) : 0;
-    row[0] = quantile(v, 0), row[1] = quantile(v, 0.25), row[2] = quantile(v, 0.5), row[3] = quantile(v, 0.75), row[4] = quantile(v, 1);
+    row[6] = n > 1 ? s * std::sqrt(exact_sum(
+                                       v, [&](double x) { return (x / s - mean) * (x / s - mean); }, ctx) /
+                                   (n - 1))
+                   : 0;
+    const std::array<double, 5> q = quartiles(v, counts[0], ctx);
+    std::copy(q.begin(), q.end(), row);
   }
   for (int i = 0; i < 9; ++i) rows.number[i].push_back(row[i]);
 }
@@ -141,8 +206,8 @@ TablePtr statistics(const DatasetPtr& in, const StatisticsParams& p, Context& ct
   for (const Field& f : fields) {
     ctx.check();
     int64_t n = 0;
-    for (int c = 0; c < f.components(); ++c) add_row(rows, in, f, c), n += rows.infinite.back();
-    if (f.components() > 1) add_row(rows, in, f, -1);
+    for (int c = 0; c < f.components(); ++c) add_row(rows, in, f, c, ctx), n += rows.infinite.back();
+    if (f.components() > 1) add_row(rows, in, f, -1, ctx);
     if (n > 0) infinite += fmt::format("{}'{}' ({})", infinite.empty() ? "" : ", ", f.name, n);
   }
   if (!infinite.empty()) ctx.warn(fmt::format("statistics: infinite values are counted separately: {}", infinite));
@@ -168,9 +233,11 @@ TablePtr histogram(const DatasetPtr& in, const HistogramParams& p, Context& ctx)
   if (numbers.infinite > 0) ctx.warn(fmt::format("histogram: {} infinite values of '{}' are not in any bin", numbers.infinite, f->name));
   double lo = HUGE_VAL, hi = -HUGE_VAL;
   for (const double x : v) lo = std::min(lo, x), hi = std::max(hi, x);
-  lo = p.min.value_or(lo), hi = p.max.value_or(hi);
+  const Range all = over_all(Range{lo, hi}, ctx);
+  const int64_t numbers_in_all = all_sum(int64_t(v.size()), ctx.communicator);
+  lo = p.min.value_or(all.lo), hi = p.max.value_or(all.hi);
   if (!(lo <= hi))
-    fail_usage(v.empty() ? "has no finite numbers" : fmt::format("has the range from {} to {}", lo, hi), "histogram",
+    fail_usage(numbers_in_all == 0 ? "has no finite numbers" : fmt::format("has the range from {} to {}", lo, hi), "histogram",
                "min must not be above max");
   if (lo == hi) hi = std::nextafter(lo + std::max(std::fabs(lo), 1.0) * 1e-6, HUGE_VAL);  // one value: the first bin holds it
   const auto bins = size_t(p.bins);
@@ -189,8 +256,9 @@ TablePtr histogram(const DatasetPtr& in, const HistogramParams& p, Context& ctx)
     while (b + 1 < bins && x >= edge[b + 1]) ++b;
     ++count[b];
   }
+  all_sum(std::span(count), ctx.communicator);
   std::vector<double> fraction;
-  for (const int64_t n : count) fraction.push_back(v.empty() ? 0 : double(n) / double(v.size()));
+  for (const int64_t n : count) fraction.push_back(numbers_in_all == 0 ? 0 : double(n) / double(numbers_in_all));
   auto t = std::make_shared<Table>();
   add_column(*t, "lo", std::vector<double>(edge.begin(), edge.end() - 1));
   add_column(*t, "hi", std::vector<double>(edge.begin() + 1, edge.end()));

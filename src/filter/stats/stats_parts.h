@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "base/all_ranks.h"
+#include "base/context.h"
 #include "data/dataset.h"
 
 namespace sg {
@@ -23,6 +25,15 @@ struct ExactSum {
   }
   double value() const { return sum + rest; }
 };
+
+/// Sums of all processes that share the data, in the order of their ranks.
+inline void over_all(std::vector<ExactSum>& sums, const Context& context) {
+  if (!context.communicator) return;
+  const auto all = all_gathered(std::span<const ExactSum>(sums), context.communicator);
+  sums = all[0];
+  for (size_t rank = 1; rank < all.size(); ++rank)
+    for (size_t i = 0; i < std::min(sums.size(), all[rank].size()); ++i) sums[i].add(all[rank][i]);
+}
 
 /// A column of numbers; with labels, of words.
 template <class T>

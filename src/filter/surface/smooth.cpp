@@ -139,7 +139,7 @@ DatasetPtr smooth(const DatasetPtr& in, const SmoothParams& p, Context& ctx) {
   };
   if (mesh.points.xyz.type() == ElementType::f32) write(static_cast<float*>(nullptr));
   else write(static_cast<double*>(nullptr));
-  if (const Field* f = out.fields.with_role(Role::normals)) {
+  while (const Field* f = out.fields.with_role(Role::normals)) {
     ctx.info(fmt::format("smooth: field '{}' is no longer valid and is dropped", f->name));
     out.fields.remove(std::string(f->name), f->association);
   }

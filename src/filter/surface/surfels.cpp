@@ -11,6 +11,7 @@
 #include "base/text/text.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
+#include "data/ranks/over_all.h"
 #include "filter/scalar/contour/lattice/contour_surfels.h"
 
 namespace sg {
@@ -205,7 +206,7 @@ DatasetPtr surfels(const DatasetPtr& in, const SurfelsParams& p, Context& ctx) {
   if (std::min({n[0], n[1], n[2]}) < 2)
     fail_usage(fmt::format("a grid of {}x{}x{} points has no solid cells", n[0], n[1], n[2]), "surfels", "use isolines for flat grids");
   const Field& field = surfel_field(*in, p.field);
-  const Range range = p.value ? Range() : in->range(field);
+  const Range range = p.value ? Range() : range_over_all(*in, field, -1, ctx);
   const double value = p.value ? *p.value : range.empty() ? 0 : 0.5 * (range.lo + range.hi);
   if (!std::isfinite(value)) fail_usage(fmt::format("{} is not a valid isovalue", value), "surfels value", "give a finite number");
   const Lattice lattice(in->mesh());

@@ -2,6 +2,7 @@
 #include "pipeline/file/read_part.h"
 
 #include "data/lattice.h"
+#include "filter/mesh/select/extract.h"
 #include "filter/mesh/select/piece.h"
 
 namespace sg {
@@ -16,6 +17,12 @@ void bracket(size_t n, F&& at, double lo, double hi, size_t& first, size_t& last
   while (a < b && (up ? at(a + 1) < lo : at(a + 1) > hi)) ++a;
   while (b > a && (up ? at(b - 1) > hi : at(b - 1) < lo)) --b;
   first = a, last = b;
+}
+
+bool has_points(const Data& data) {
+  bool any = std::holds_alternative<TablePtr>(data);
+  for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { any = any || d->point_count() > 0; });
+  return any;
 }
 
 }  // namespace
@@ -49,10 +56,20 @@ Data read_part(const std::string& path, ReadOptions options, const Request& requ
     if (auto* d = std::get_if<DatasetPtr>(&header))
       if (const auto region = lattice_region((*d)->mesh(), *request.region)) options.region = *region;
   }
-  Data data = read_data(path, options, context);
-  if (options.pieces == 1 || (format.honours & honours_pieces)) return data;
-  return map_datasets(data,
-                      [&](const DatasetPtr& d) { return take_piece(d, options.piece, options.pieces, options.ghost_levels, context); });
+  // A reader takes whole pieces of a file, with no more ghosts than stand there.
+  const bool enough = options.ghost_levels == 0 || request.ghost_levels == 0;
+  const bool shared = request.pieces > 1;
+  ReadOptions whole = options;
+  whole.piece = 0, whole.pieces = 1, whole.ghost_levels = 0;
+  if (options.pieces == 1 || (enough && (format.honours & honours_pieces))) {
+    const Data data = read_data(path, options, context);
+    if (!shared || has_points(data)) return data;
+    // Nothing is left for this one, but it goes the same way as the others.
+    return map_datasets(read_data(path, whole, context), [](const DatasetPtr& d) { return extract_cells(d, {}, "piece"); });
+  }
+  return map_datasets(read_data(path, whole, context), [&](const DatasetPtr& d) {
+    return (shared ? take_share : take_piece)(d, options.piece, options.pieces, options.ghost_levels, context);
+  });
 }
 
 }  // namespace sg

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "base/all_ranks.h"
+#include "filter/mesh/select/piece.h"
 #include "pipeline/file/read_part.h"
 #include "pipeline/graph/graph_state.h"
 #include "pipeline/graph/series_input.h"
@@ -24,7 +26,7 @@ class Evaluation {
         results_(plan.steps.size()),
         done_(plan.steps.size(), 0) {
     for (const Step& s : plan.steps) left_.push_back(s.consumers);
-    for (const int t : plan.targets) count_work(t);
+    for (const int t : plan.targets) count_work(t), in_pieces_ = in_pieces_ || plan.steps[size_t(t)].request.pieces > 1;
     std::fill(done_.begin(), done_.end(), 0);
   }
 
@@ -53,8 +55,10 @@ class Evaluation {
     std::optional<Data>& result = results_[size_t(step)];
     if (result) return *result;
     context_.check();
-    if (auto* given = std::get_if<DataNode>(&g_.nodes[size_t(s.node)].what)) {
+    if (auto* given = std::get_if<DataNode>(&g_.nodes[size_t(s.node)].what); given && !s.cut) {
       result = given->data;
+    } else if (some_have(s)) {
+      result = compute(s);
     } else if (one_time_ && s.varies) {
       result = g_.cache->find(s.key);
       if (result)
@@ -73,6 +77,15 @@ class Evaluation {
     return *result;
   }
 
+  // Where pieces are asked for, steps above which everything is whole are made by each process alone.
+  const Communicator* communicator_of(const Step& s) const { return in_pieces_ && s.request.pieces == 1 ? nullptr : context_.communicator; }
+
+  // Operations that speak with those of other processes run in all of them or in none, whatever each has kept.
+  bool some_have(const Step& s) {
+    const int kept = g_.cache->peek(s.key).has_value();
+    return all_least(kept, communicator_of(s)) != all_most(kept, communicator_of(s));
+  }
+
   Data compute(const Step& s) {
     std::vector<Data> inputs;
     inputs.reserve(s.inputs.size());
@@ -86,8 +99,12 @@ class Evaluation {
     const double from = fraction();
     ++ran_;
     Context part(context_, from, fraction());
+    part.communicator = communicator_of(s);
     part.progress(0, doing);
-    return with_context(doing, [&] {
+    return with_context(doing, [&]() -> Data {
+      if (s.cut)
+        return map_datasets(
+            inputs[0], [&](const DatasetPtr& d) { return take_share(d, s.request.piece, s.request.pieces, s.request.ghost_levels, part); });
       if (auto* read = std::get_if<ReadNode>(&node.what)) return read_file(*read, s, part);
       const Operation& operation = *std::get<OperationNode>(node.what).found;
       if (s.series < 0) {
@@ -139,7 +156,7 @@ class Evaluation {
   const Graph& graph_;
   const Graph::State& g_;
   const Plan& plan_;
-  bool one_time_;
+  bool one_time_, in_pieces_ = false;
   Context& context_;
   std::vector<std::optional<Data>> results_;
   std::vector<int> left_;
@@ -148,7 +165,7 @@ class Evaluation {
 };
 
 std::vector<Data> Graph::evaluate(std::span<const Target> targets, Context& context) const {
-  const Plan plan = Planner::make(*this, targets);
+  const Plan plan = Planner::make(*this, targets, nullptr, context.communicator != nullptr);
   return Evaluation(*this, plan, false, context).run();
 }
 
@@ -156,7 +173,7 @@ Data SeriesInput::evaluate_at(const Graph& graph, NodeId node, Request request, 
                               Context& context) {
   request.time = time;
   const Target target{node, std::move(request)};
-  const Plan plan = Planner::make(graph, {&target, 1}, &constant);
+  const Plan plan = Planner::make(graph, {&target, 1}, &constant, context.communicator != nullptr);
   return Evaluation(graph, plan, true, context).run()[0];
 }
 

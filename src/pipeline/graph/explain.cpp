@@ -43,6 +43,10 @@ double share_read(const ReadNode& read, const Step& s) {
 }
 
 Estimate estimate_of(const Step& s, const Node& node, const std::vector<PlannedStep>& before) {
+  if (s.cut) {
+    const uint64_t bytes = before[size_t(s.inputs[0])].bytes / uint64_t(s.request.pieces);
+    return {bytes, double(bytes) / bytes_per_second};
+  }
   if (auto* read = std::get_if<ReadNode>(&node.what)) {
     uint64_t bytes = 0;
     for (const FileState& f : file_and_parts(read->path)) bytes += f.size;
@@ -85,7 +89,7 @@ std::vector<PlannedStep> Graph::plan(std::span<const Target> targets) const {
     const Node& node = state_->nodes[size_t(s.node)];
     PlannedStep p{s.node,
                   node.name.empty() ? std::to_string(s.node + 1) : node.name,
-                  step_does(node),
+                  step_does(node) + (s.cut ? ", a piece" : ""),
                   s.key,
                   s.request,
                   PlannedStep::State::not_needed,
@@ -98,7 +102,7 @@ std::vector<PlannedStep> Graph::plan(std::span<const Target> targets) const {
       const Estimate e = estimate_of(s, node, out);
       p.bytes = e.bytes, p.seconds = e.seconds;
     }
-    if (cached || std::holds_alternative<DataNode>(node.what)) p.state = PlannedStep::State::cached;
+    if (cached || (!s.cut && std::holds_alternative<DataNode>(node.what))) p.state = PlannedStep::State::cached;
     out.push_back(std::move(p));
   }
   // Needed are the targets and, above them, whatever is not hidden behind a cached result.

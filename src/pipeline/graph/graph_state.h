@@ -58,6 +58,7 @@ struct Step {
   std::vector<int> inputs;  ///< indices of steps, all smaller than its own
   int consumers = 0;        ///< inputs of other steps and targets that refer to it; those behind a series alone have none
   int series = -1;          ///< step of the input that is taken time by time: it is here for its key and is never run as such
+  bool cut = false;         ///< a piece of its one input, which is the whole result of the same node
   bool varies = false;      ///< its result belongs to the requested time; known in plans for one time of a series
 };
 
@@ -69,8 +70,8 @@ struct Plan {
 /// The friend of Graph that sees its state.
 class Planner {
  public:
-  /// `constant` (one per node, or null): readers that do not get the time.
-  static Plan make(const Graph& graph, std::span<const Target> targets, const std::vector<char>* constant = nullptr);
+  /// `constant` (one per node, or null): readers that do not get the time. `together`: see works_by_piece().
+  static Plan make(const Graph& graph, std::span<const Target> targets, const std::vector<char>* constant = nullptr, bool together = false);
   static const Graph::State& state(const Graph& graph) { return *graph.state_; }
 };
 

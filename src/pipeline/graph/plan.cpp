@@ -24,7 +24,7 @@ void want(std::vector<Request>& wanted, const Request& r) {
 // What the reader is given: the user's list of fields, cut to what is needed.
 ReadOptions read_for(ReadOptions options, const Request& request) {
   if (request.time && !options.time && options.step < 0) options.time = request.time;
-  if (request.pieces > 1 && options.pieces == 1) options.piece = request.piece, options.pieces = request.pieces;
+  if (request.pieces > 1) options.piece = request.piece, options.pieces = request.pieces, options.ghost_levels = request.ghost_levels;
   if (request.all_fields) return options;
   std::vector<std::string> fields;
   for (const std::string& f : request.fields)
@@ -44,6 +44,7 @@ Key read_key(const std::string& path, const ReadOptions& o, const Request& reque
   key.add(o.time ? exact_number(*o.time) : "first").add(uint64_t(o.step)).add(o.times).add(word_of(o.csv_header));
   for (size_t a = 0; a < 3; ++a) key.add(uint64_t(o.region.lo[a])).add(uint64_t(o.region.hi[a])).add(uint64_t(o.region.stride[a]));
   key.add(uint64_t(o.piece)).add(uint64_t(o.pieces)).add(uint64_t(o.ghost_levels));
+  if (request.pieces > 1) key.add("of several");
   if (request.region) key.add(request_text(request));
   Request rest = request;  // the fields are in the options
   rest.all_fields = true, rest.fields.clear();
@@ -51,14 +52,34 @@ Key read_key(const std::string& path, const ReadOptions& o, const Request& reque
   return key.key();
 }
 
-Key operation_key(const Operation& o, const ParamSet& params, const std::vector<int>& inputs, int series, const std::vector<Step>& steps) {
+Key operation_key(const Operation& o, const ParamSet& params, const std::vector<int>& inputs, int series, bool together,
+                  const std::vector<Step>& steps) {
   KeyBuilder key;
+  if (together) key.add("together");
   key.add("operation").add(o.name).add(uint64_t(o.version)).add(uint64_t(params.schema.decls().size()));
   for (const ParamDecl& d : params.schema.decls()) key.add(d.name).add(param_text(d));
   key.add(uint64_t(inputs.size()));
   for (const int i : inputs) key.add(steps[size_t(i)].key);
   if (series >= 0) key.add("all times of").add(steps[size_t(series)].key);
   return key.key();
+}
+
+Key piece_key(const Key& whole, const Request& r) {
+  KeyBuilder key;
+  return key.add("piece of").add(whole).add(uint64_t(r.piece)).add(uint64_t(r.pieces)).add(uint64_t(r.ghost_levels)).key();
+}
+
+Request whole(Request r) {
+  r.piece = 0, r.pieces = 1, r.ghost_levels = 0;
+  return r;
+}
+
+// Whether that piece has to be cut out of the node's whole result.
+bool is_cut(const Node& node, const Request& r, bool together) {
+  if (r.pieces == 1) return false;
+  if (auto* read = std::get_if<ReadNode>(&node.what)) return read->options.pieces > 1;  // the user's piece is the whole here
+  if (auto* op = std::get_if<OperationNode>(&node.what)) return !works_by_piece(*op->found, *op->params, r, together);
+  return true;
 }
 
 // The same at any time.
@@ -85,7 +106,7 @@ ParamSet params_for(const OperationNode& op, const Request& request) {
 
 }  // namespace
 
-Plan Planner::make(const Graph& graph, std::span<const Target> targets, const std::vector<char>* constant) {
+Plan Planner::make(const Graph& graph, std::span<const Target> targets, const std::vector<char>* constant, bool together) {
   const Graph::State& g = *graph.state_;
   std::vector<NodeId> sinks;
   for (const Target& t : targets) {
@@ -98,13 +119,18 @@ Plan Planner::make(const Graph& graph, std::span<const Target> targets, const st
   // Up: the request to every node. A node has a larger number than its inputs, so going down is an order.
   std::vector<std::vector<Request>> wanted(g.nodes.size());
   for (const Target& t : targets) want(wanted[size_t(t.node)], t.request);
-  for (size_t i = g.nodes.size(); i-- > 0;)
-    if (auto* op = std::get_if<OperationNode>(&g.nodes[i].what))
-      for (size_t r = 0; r < wanted[i].size(); ++r)
-        for (size_t in = 0; in < g.nodes[i].inputs.size(); ++in) {
-          const Request up = upstream_request(*op->found, *op->params, wanted[i][r]);
-          want(wanted[size_t(g.nodes[i].inputs[in])], in == 0 && op->found->run_series ? timeless(up) : up);
-        }
+  for (size_t i = g.nodes.size(); i-- > 0;) {
+    const std::vector<Request> asked = wanted[i];
+    for (const Request& r : asked)
+      if (is_cut(g.nodes[i], r, together)) want(wanted[i], whole(r));
+    auto* op = std::get_if<OperationNode>(&g.nodes[i].what);
+    if (!op) continue;
+    for (const Request& r : wanted[i])
+      for (size_t in = 0; in < g.nodes[i].inputs.size() && !is_cut(g.nodes[i], r, together); ++in) {
+        const Request up = upstream_request(*op->found, *op->params, r, in, together);
+        want(wanted[size_t(g.nodes[i].inputs[in])], in == 0 && op->found->run_series ? timeless(up) : up);
+      }
+  }
 
   // Down: steps and keys; nodes with equal keys become one step.
   Plan plan;
@@ -117,35 +143,45 @@ Plan Planner::make(const Graph& graph, std::span<const Target> targets, const st
   };
   for (size_t i = 0; i < g.nodes.size(); ++i) {
     const Node& node = g.nodes[i];
-    for (const Request& request : wanted[i]) {
-      Step s;
-      s.node = NodeId(i);
-      s.request = request;
-      if (auto* read = std::get_if<ReadNode>(&node.what)) {
-        if (constant && (*constant)[i]) s.request = timeless(request);
-        s.read = read_for(read->options, s.request);
-        s.varies = s.request.time && !read->options.time && read->options.step < 0;
-        s.key = read_key(read->path, s.read, s.request, bool(g.options.read), g.options.strict);
-      } else if (auto* op = std::get_if<OperationNode>(&node.what)) {
-        s.params = params_for(*op, request);
-        const Request up = upstream_request(*op->found, *op->params, request);
-        s.varies = op->follows_time && request.time;
-        for (size_t in = 0; in < node.inputs.size(); ++in) {
-          if (in == 0 && op->found->run_series) {
-            s.series = find_step(node.inputs[in], timeless(up));
-          } else {
-            s.inputs.push_back(find_step(node.inputs[in], up));
-            s.varies = s.varies || plan.steps[size_t(s.inputs.back())].varies;
+    step_of[i].assign(wanted[i].size(), -1);
+    for (const bool cuts : {false, true})  // what is cut stands behind what it is cut out of
+      for (size_t r = 0; r < wanted[i].size(); ++r) {
+        const Request& request = wanted[i][r];
+        if (is_cut(node, request, together) != cuts) continue;
+        Step s;
+        s.node = NodeId(i);
+        s.request = request;
+        if (cuts) {
+          s.cut = true;
+          s.inputs.push_back(find_step(s.node, whole(request)));
+          const Step& of = plan.steps[size_t(s.inputs[0])];
+          s.varies = of.varies;
+          s.key = piece_key(of.key, request);
+        } else if (auto* read = std::get_if<ReadNode>(&node.what)) {
+          if (constant && (*constant)[i]) s.request = timeless(request);
+          s.read = read_for(read->options, s.request);
+          s.varies = s.request.time && !read->options.time && read->options.step < 0;
+          s.key = read_key(read->path, s.read, s.request, bool(g.options.read), g.options.strict);
+        } else if (auto* op = std::get_if<OperationNode>(&node.what)) {
+          s.params = params_for(*op, request);
+          s.varies = op->follows_time && request.time;
+          for (size_t in = 0; in < node.inputs.size(); ++in) {
+            const Request up = upstream_request(*op->found, *op->params, request, in, together);
+            if (in == 0 && op->found->run_series) {
+              s.series = find_step(node.inputs[in], timeless(up));
+            } else {
+              s.inputs.push_back(find_step(node.inputs[in], up));
+              s.varies = s.varies || plan.steps[size_t(s.inputs.back())].varies;
+            }
           }
+          s.key = operation_key(*op->found, s.params, s.inputs, s.series, together, plan.steps);
+        } else {
+          s.key = std::get<DataNode>(node.what).key;
         }
-        s.key = operation_key(*op->found, s.params, s.inputs, s.series, plan.steps);
-      } else {
-        s.key = std::get<DataNode>(node.what).key;
+        const auto [at, fresh] = by_key.emplace(s.key, int(plan.steps.size()));
+        if (fresh) plan.steps.push_back(std::move(s));
+        step_of[i][r] = at->second;
       }
-      const auto [at, fresh] = by_key.emplace(s.key, int(plan.steps.size()));
-      if (fresh) plan.steps.push_back(std::move(s));
-      step_of[i].push_back(at->second);
-    }
   }
   for (const Target& t : targets) plan.targets.push_back(find_step(t.node, t.request));
   count_consumers(plan);

@@ -9,9 +9,10 @@
 
 namespace sg {
 
-Request Request::only(std::vector<std::string> names) {
-  Request r;
-  r.all_fields = false;
+Request Request::only(const std::vector<std::string>& names) { return only(names, {}); }
+
+Request Request::only(const std::vector<std::string>& names, Request r) {
+  r.all_fields = false, r.fields.clear();
   for (const std::string& n : names) add_field(r, n);
   return r;
 }
@@ -47,7 +48,7 @@ std::string request_text(const Request& r) {
       box += (box.empty() ? "" : ",") + exact_number(v);
     add("region=" + box);
   }
-  if (r.pieces != 1 || r.piece != 0) add(fmt::format("piece={}/{}", r.piece, r.pieces) + (r.ghost_levels ? fmt::format("/{}", r.ghost_levels) : ""));
+  if (r.pieces != 1) add(fmt::format("piece={}/{}", r.piece, r.pieces) + (r.ghost_levels ? fmt::format("/{}", r.ghost_levels) : ""));
   return text.empty() ? "everything" : text;
 }
 

@@ -18,7 +18,9 @@ struct Request {
   int piece = 0, pieces = 1;        ///< part of the work when several processes share it
   int ghost_levels = 0;             ///< layers of cells around that part, marked as ghosts
 
-  static Request only(std::vector<std::string> names);
+  static Request only(const std::vector<std::string>& names);
+  /// These fields of what `r` asks for.
+  static Request only(const std::vector<std::string>& names, Request r);
   friend bool operator==(const Request&, const Request&) = default;
 };
 

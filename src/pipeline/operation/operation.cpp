@@ -43,47 +43,9 @@ Data run_operation(const Operation& operation, const std::vector<Data>& inputs, 
   return operation.run(inputs, params, context);
 }
 
-Request upstream_request(const Operation& operation, const ParamSet& params, const Request& wanted) {
-  if (operation.request) return operation.request(params, wanted);
-  Request all;  // region and piece stop here: only a hook knows what part of the input a part of the result needs
-  all.time = wanted.time;
-  return all;
-}
-
-namespace {
-
-// Adds the fields that the parameters name; false when one is left open, so that the operation chooses among all.
-bool add_named_fields(const ParamSet& params, Request& request) {
-  for (const ParamDecl& d : params.schema.decls())
-    if (d.ref.type() == ParamType::field) {
-      const std::string name = param_text(d);
-      if (name.empty()) return false;
-      add_field(request, name);
-    }
-  return true;
-}
-
-Request named_or_all(const ParamSet& params, Request request, std::optional<double> time) {
-  request.time = time;
-  request.region.reset();
-  request.piece = 0, request.pieces = 1;
-  if (add_named_fields(params, request)) return request;
-  Request all;
-  all.time = time;
-  return all;
-}
-
-}  // namespace
-
 Series detail::one_step(const Data& data) {
   auto* d = std::get_if<DatasetPtr>(&data);
   return {{d && *d ? (*d)->time().value_or(0) : 0.0}, [data](size_t) { return data; }};
-}
-
-Request detail::request_carried(const ParamSet& params, const Request& wanted) { return named_or_all(params, wanted, wanted.time); }
-
-Request detail::request_named(const ParamSet& params, const Request& wanted) {
-  return named_or_all(params, Request::only({}), wanted.time);
 }
 
 std::string makes_text(const Operation& o) {

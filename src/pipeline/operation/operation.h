@@ -2,6 +2,7 @@
 // Operation: a source or filter as the graph, the command line and the help see it. The table is made from operations.def
 // at compile time; nothing registers itself.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -28,6 +29,36 @@ struct Estimate {
   double seconds = 0;
 };
 
+/// Which fields an operation reads of its inputs, beside those that its parameters of type field name. Names are of parameters but for
+/// `found`.
+struct FieldNeeds {
+  using Names = std::array<std::string_view, 4>;  ///< the unused ones are ""
+  enum class Result : uint8_t {
+    carries,  ///< the result has fields of the input: those wanted of it are asked for
+    own,      ///< it has none of them
+    every     ///< it depends on all fields of the input, or nobody knows beforehand on which
+  } result = Result::carries;
+  Names may_lack{};                    ///< of type field: none while left open; any other asks for every field then, since the data decide
+  Names lists{};                       ///< further parameters that hold names of fields: words or lists of words
+  Names lists_or_all{};                ///< lists that stand for every field while they are empty
+  Names found{};                       ///< fields that it takes by these names where the input has them
+  int inputs_with_fields = INT32_MAX;  ///< of those behind, the mesh alone is read
+};
+
+/// How an operation goes with one of several pieces of its input, when processes share the work.
+struct PieceWork {
+  enum class Result : uint8_t {
+    of_whole,  ///< needs the whole input; a piece is cut out of the result
+    of_piece,  ///< the result of a piece is a piece of the result
+    of_all     ///< a number of all pieces, which every process gets through the communicator
+  } result = Result::of_whole;
+  int ghost_levels = 0;                               ///< layers of cells that it needs around a piece
+  bool keeps_ghosts = true;                           ///< ghosts of the input are ghosts of the result
+  int inputs = 1;                                     ///< so many inputs, from the first, come in pieces; further ones whole
+  FieldNeeds::Names chosen{};                         ///< parameters that are chosen from all of the data while they are open ...
+  bool (*chooses)(const ParamSet& params) = nullptr;  ///< ... or whether something is: that no process does alone
+};
+
 struct Operation {
   std::string_view name, family, sentence;
   OperationKind kind = OperationKind::filter;
@@ -38,8 +69,10 @@ struct Operation {
   /// Takes the whole time series of its first input, see graph/series_input.h; null: it takes one moment. A parameter `time` that is
   /// left open follows the request, a parameter `times` (a word) says which times to take where the input has none of its own.
   Data (*run_series)(const Series& series, const std::vector<Data>& others, const ParamSet& params, Context& context) = nullptr;
-  /// What it needs of its inputs to answer `wanted`; null = everything, at the same time.
-  Request (*request)(const ParamSet& params, const Request& wanted) = nullptr;
+  FieldNeeds fields = {};
+  PieceWork pieces = {};
+  /// Changes what goes up to an input, where `fields` cannot say it: names in expressions, a region of space.
+  void (*ask)(const ParamSet& params, const Request& wanted, size_t input, Request& up) = nullptr;
   /// From the bytes of the inputs; null = each byte is touched once at 2 GB/s and the result is as large as the largest input.
   Estimate (*estimate)(const ParamSet& params, std::span<const uint64_t> input_bytes) = nullptr;
   /// Its parameter `time` chooses a moment out of what its input holds whole (lines with times, ...): a film states it there, and leaves
@@ -68,8 +101,12 @@ const Operation& find_operation(std::string_view name, std::span<const Operation
 ParamSet make_params(const Operation& operation, const std::vector<std::string>& words);
 /// Checks the number of inputs and runs.
 Data run_operation(const Operation& operation, const std::vector<Data>& inputs, const std::vector<std::string>& words, Context& context);
-/// The request that goes up to the inputs of `operation`.
-Request upstream_request(const Operation& operation, const ParamSet& params, const Request& wanted);
+/// Whether the piece that `wanted` is of can be made of pieces of the inputs; else of the whole. `together`: all pieces are asked for at
+/// the same time by processes that can speak (Context::communicator).
+bool works_by_piece(const Operation& operation, const ParamSet& params, const Request& wanted, bool together);
+/// The request that goes up to an input of `operation`.
+Request upstream_request(const Operation& operation, const ParamSet& params, const Request& wanted, size_t input = 0,
+                         bool together = false);
 
 /// "the same kind of mesh"; "of a surface or a point cloud the same kind, else an unstructured mesh".
 std::string makes_text(const Operation& operation);

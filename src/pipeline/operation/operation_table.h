@@ -2,7 +2,7 @@
 // The macros that turn one line into an Operation. For operations.cpp and for tests that bring operations of their own:
 //
 //   #include "pipeline/operation/operation_table.h"
-//   constexpr Operation table[] = { SG_FILTER(contour, ContourParams, contour, "scalar", "Surfaces of equal value.", carries_fields) };
+//   constexpr Operation table[] = { SG_FILTER(contour, ContourParams, contour, "scalar", "Surfaces of equal value.", op_version<2>) };
 //
 // `function` may have any of these shapes (R = DatasetPtr, CollectionPtr, TablePtr or Data):
 //   R f(const DatasetPtr&, const P&, Context&)                     applied to each part of a collection
@@ -11,10 +11,11 @@
 //   R f(const std::vector<Data>&, const P&, Context&)              any number of inputs
 //   R f(const Series&, const P&, Context&)                         all time steps of the input, one at a time
 //   R f(const Series&, const std::vector<Data>&, const P&, Context&)  the same, and further inputs as they are
-// Behind the sentence come hooks: op_version<2>, op_inputs<1, -1>, carries_fields, needs_only_named_fields, shows_moment, takes(KINDS),
-// makes(KINDS), or any callable that changes an Operation&. Kinds stand in pipeline/operation/data_kinds.h. Without these two an operation
+// Behind the sentence come hooks: op_version<2>, op_inputs<1, -1>, needs_only_named_fields, lists_fields("fields"), shows_moment, takes(KINDS),
+// makes(KINDS), or any callable that changes an Operation&. Kinds are in pipeline/operation/data_kinds.h: without these two an operation
 // takes any mesh and gives the same kind; a source makes a uniform grid.
 #pragma once
+#include <tuple>
 #include <type_traits>
 
 #include "pipeline/operation/operation.h"
@@ -90,20 +91,68 @@ constexpr Operation make_source(std::string_view name, std::string_view sentence
   return o;
 }
 
-/// The fields wanted of the result and those that the parameters name; everything when a field parameter is left open.
-Request request_carried(const ParamSet& params, const Request& wanted);
-/// Only the fields that the parameters name; everything when a field parameter is left open.
-Request request_named(const ParamSet& params, const Request& wanted);
+template <class... Names>
+constexpr void put_names(FieldNeeds::Names& to, Names... names) {
+  static_assert(sizeof...(names) <= std::tuple_size_v<FieldNeeds::Names>);
+  size_t i = 0;
+  ((to[i++] = names), ...);
+}
 
 }  // namespace detail
 
 /// Hook: the numbers changed N-1 times.
 template <int N>
 constexpr auto op_version = [](Operation& o) { o.version = N; };
-/// Hook: the result has the fields of the input, and beside them the operation reads only those its parameters name.
-constexpr auto carries_fields = [](Operation& o) { o.request = detail::request_carried; };
-/// Hook: the result has no field of the input; the operation reads only those its parameters name.
-constexpr auto needs_only_named_fields = [](Operation& o) { o.request = detail::request_named; };
+// What an operation reads of its inputs. Without a hook: the fields wanted of its result, which it is taken to carry, and those that its
+// parameters of type field name; everything while one of these is left open. tests/pipeline/operation/narrowed_test.cpp runs all operations
+// with nothing but that.
+
+/// Hook: the result has no field of the input.
+constexpr auto needs_only_named_fields = [](Operation& o) { o.fields.result = FieldNeeds::Result::own; };
+/// Hook: it depends on every field of the input.
+constexpr auto needs_every_field = [](Operation& o) { o.fields.result = FieldNeeds::Result::every; };
+/// Hook: parameters of type field that name none while they are left open.
+constexpr auto may_lack(auto... parameters) {
+  return [=](Operation& o) { detail::put_names(o.fields.may_lack, parameters...); };
+}
+/// Hook: words, and lists of words, that name fields.
+constexpr auto lists_fields(auto... parameters) {
+  return [=](Operation& o) { detail::put_names(o.fields.lists, parameters...); };
+}
+/// Hook: the same, where no name stands for every field.
+constexpr auto lists_fields_or_all(auto... parameters) {
+  return [=](Operation& o) { detail::put_names(o.fields.lists_or_all, parameters...); };
+}
+/// Hook: fields that it takes by name where they are there.
+constexpr auto finds_fields(auto... names) {
+  return [=](Operation& o) { detail::put_names(o.fields.found, names...); };
+}
+/// Hook: inputs behind the first N are shapes alone, without fields.
+template <int N>
+constexpr auto fields_of_first = [](Operation& o) { o.fields.inputs_with_fields = N; };
+// What it does with a piece of its input, when several processes share the work. Without a hook: it needs the whole, and a piece of the
+// result is cut out of that.
+
+/// Hook: the result of a piece is a piece of the result; of `N` layers of cells around it the operation needs to know.
+template <int N>
+constexpr auto piecewise = [](Operation& o) { o.pieces.result = PieceWork::Result::of_piece, o.pieces.ghost_levels = N; };
+/// Hook, behind piecewise: where ghosts of the result are wanted it needs the whole, since it leaves ghost cells out.
+constexpr auto drops_ghosts = [](Operation& o) { o.pieces.keeps_ghosts = false; };
+/// Hook, behind piecewise: all inputs come in pieces, not the first alone.
+constexpr auto all_in_pieces = [](Operation& o) { o.pieces.inputs = INT32_MAX; };
+/// Hook, behind piecewise: parameters that are chosen from all of the data while they are open (over_all() in data/ranks/over_all.h).
+constexpr auto chosen_from_all(auto... parameters) {
+  return [=](Operation& o) { detail::put_names(o.pieces.chosen, parameters...); };
+}
+/// Hook, behind piecewise: the same where a function of the parameters tells it; `always`: it counts through all of the data.
+template <auto F>
+constexpr auto chooses_from_all = [](Operation& o) { o.pieces.chooses = F; };
+constexpr bool always(const ParamSet&) { return true; }
+/// Hook: numbers of all pieces, which processes get together through Context::communicator.
+constexpr auto reduces = [](Operation& o) { o.pieces.result = PieceWork::Result::of_all; };
+/// Hook: what it asks for is changed by a function, see Operation::ask.
+template <auto F>
+constexpr auto asks = [](Operation& o) { o.ask = F; };
 /// Hook: `time` chooses a moment of the input, see Operation::shows_moment.
 constexpr auto shows_moment = [](Operation& o) { o.shows_moment = true; };
 /// Hook: how many inputs a filter over a list takes; MAX -1 = any number.

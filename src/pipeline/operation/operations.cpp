@@ -12,31 +12,68 @@ namespace sg {
 
 namespace {
 
-// Beside the fields wanted, those that its lists name.
-Request request_of_transform(const ParamSet& params, const Request& wanted) {
-  Request r = detail::request_carried(params, wanted);
-  const FieldLawParams& p = params.as<TransformParams>().fields;
-  for (const auto* names : {&p.turn, &p.keep, &p.gradients, &p.axial})
-    for (const std::string& name : *names) add_field(r, name);
-  return r;
+void add_names_in(const std::string& expression, Request& up) {
+  for (const std::string& name : names_in_expression(expression)) add_field(up, name);
+}
+
+// The fields that a function names; a field of the name of a coordinate goes before it.
+void ask_of_shape(const ImplicitParams& p, Request& up) {
+  if (p.function.empty()) return;
+  add_names_in(p.function, up);
+  for (const char* name : {"x", "y", "z"}) add_field(up, name);
+}
+
+// A plane whose place is not stated goes through the middle of the data.
+bool chooses_plane(const ImplicitParams& p) {
+  if (!p.sphere.empty() || !p.cylinder.empty() || !p.box.empty() || !p.quadric.empty() || !p.function.empty()) return false;
+  if (p.planes != CutPlanes::none || p.axis == CutAxis::none) return !p.origin;
+  return !p.position && p.positions.empty();
+}
+
+bool slice_chooses(const ParamSet& params) { return chooses_plane(params.as<SliceParams>()); }
+
+bool clip_chooses(const ParamSet& params) {
+  const auto& p = params.as<ClipParams>();
+  return p.field.empty() && !p.value ? chooses_plane(p) : !p.value;
+}
+
+// Of two limits one may be enough, which divides bent cells otherwise.
+bool isovolume_chooses(const ParamSet& params) {
+  const auto& p = params.as<IsovolumeParams>();
+  return p.min && p.max;
+}
+
+void ask_of_calc(const ParamSet& params, const Request&, size_t, Request& up) { add_names_in(params.as<CalcParams>().expr, up); }
+
+// What is not kept is not needed, but has to be there.
+void ask_of_select(const ParamSet& params, const Request&, size_t, Request& up) {
+  const auto& p = params.as<SelectParams>();
+  if (!p.keep.empty()) up.all_fields = false, up.fields.clear();
+  for (const auto* names : {&p.keep, &p.drop})
+    for (const std::string& name : *names) add_field(up, name);
+}
+
+// Roles in the result depend on all fields of the first.
+void ask_of_join_fields(const ParamSet& params, const Request&, size_t input, Request& up) {
+  if (const auto& p = params.as<JoinFieldsParams>(); input == 0 || p.fields.empty()) up.all_fields = true, up.fields.clear();
+  else up = Request::only(p.fields, up);
 }
 
 // A plane across an axis at a known place needs the cells around it alone.
-Request request_of_slice(const ParamSet& params, const Request& wanted) {
-  Request r = detail::request_carried(params, wanted);
+void ask_of_slice(const ParamSet& params, const Request&, size_t input, Request& up) {
   const auto& p = params.as<SliceParams>();
-  if (!p.function.empty()) return Request{};
-  if (!p.positions.empty() || p.planes != CutPlanes::none) return r;
+  if (input > 0) return;
+  ask_of_shape(p, up);
+  if (!p.function.empty() || !p.positions.empty() || p.planes != CutPlanes::none) return;
   int axis = axis_number(p.axis);
   std::optional<double> at = p.position;
   if (axis < 0 && p.origin)
     for (int a = 0; a < 3; ++a)
       if (p.normal[a] != 0 && p.normal[(a + 1) % 3] == 0 && p.normal[(a + 2) % 3] == 0) axis = a, at = (*p.origin)[a];
-  if (axis < 0 || !at) return r;
+  if (axis < 0 || !at) return;
   Box3 box{{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL, HUGE_VAL}};
   box.lo[axis] = box.hi[axis] = *at;
-  r.region = box;
-  return r;
+  up.region = box;
 }
 
 // Operations that take a mesh to cut with as an optional second input.
@@ -62,17 +99,61 @@ Data tractography_from(const std::vector<Data>& in, const TractographyParams& p,
   return with_second_mesh("tractography", in, p, ctx, [](auto&&... a) { return tractography(a...); });
 }
 
-// An expression may name any field.
-Request request_of_clip(const ParamSet& params, const Request& wanted) {
-  Request r = detail::request_carried(params, wanted);
+void ask_of_clip(const ParamSet& params, const Request&, size_t input, Request& up) {
   const auto& p = params.as<ClipParams>();
-  if (!p.function.empty()) return Request{};
-  return r;
+  if (input > 0) return;
+  ask_of_shape(p, up);
+  // A value alone is one of the active scalar.
+  if (p.value && p.field.empty()) up.all_fields = true, up.fields.clear();
 }
 
-Request request_of_extract(const ParamSet& params, const Request& wanted) {
-  const auto& p = params.as<ExtractParams>();
-  return p.region.function.empty() ? detail::request_carried(params, wanted) : Request{};
+void ask_of_extract(const ParamSet& params, const Request&, size_t, Request& up) { ask_of_shape(params.as<ExtractParams>().region, up); }
+
+// The pixels of a picture have values, other seeds are places alone.
+void ask_of_seeds(const ParamSet& params, const Request&, size_t input, Request& up) {
+  const ParamDecl* seeds = params.schema.find("seeds");
+  if (input > 0 && seeds && param_text(*seeds) == "pixels") up.all_fields = true;
+}
+
+// The field of the picture, where there is one.
+void ask_of_lic(const ParamSet& params, const Request&, size_t input, Request& up) {
+  if (input == 0) return;
+  const FieldName& image = params.as<LicParams>().image;
+  if (image.empty()) up.all_fields = true;
+  else add_field(up, image.name);
+}
+
+// Where nobody says what is carried, scalars and colours are.
+void ask_of_advect(const ParamSet& params, const Request&, size_t input, Request& up) {
+  const auto& p = params.as<AdvectParams>();
+  if (input > 0) up = Request::only({}, up);
+  if (p.carry.empty() && p.dye.empty()) up.all_fields = true, up.fields.clear();
+  for (const std::string& name : p.carry) add_field(up, name);
+}
+
+void ask_of_glyphs(const ParamSet& params, const Request&, size_t, Request& up) {
+  const auto& p = params.as<GlyphsParams>();
+  if (p.size_by != "auto" && p.size_by != "length" && p.size_by != "constant") add_field(up, p.size_by);
+}
+
+// In a file of gradient images their b-values and directions are fields, unless files are named.
+void ask_of_tensor_fit(const ParamSet& params, const Request&, size_t, Request& up) {
+  const auto& p = params.as<TensorFitParams>();
+  if (p.fields.empty() && p.field.empty()) up.all_fields = true, up.fields.clear();
+}
+
+void ask_of_silhouette(const ParamSet& params, const Request&, size_t, Request& up) {
+  if (params.as<SilhouetteParams>().smooth) up.all_fields = true, up.fields.clear();  // normals by their role
+}
+
+void ask_of_traction(const ParamSet& params, const Request&, size_t, Request& up) {
+  if (!params.as<TractionParams>().normal) up.all_fields = true, up.fields.clear();  // normals by their role
+}
+
+// Coordinates that are not named are chosen among the columns.
+void ask_of_table_to_points(const ParamSet& params, const Request&, size_t, Request& up) {
+  const auto& p = params.as<TableToPointsParams>();
+  if (p.x.empty() || p.y.empty() || p.z.empty()) up.all_fields = true, up.fields.clear();
 }
 
 // What several rows say of the kinds that they take.

@@ -3,10 +3,12 @@
 
 #include <fmt/core.h>
 
+#include "base/all_ranks.h"
 #include "base/error.h"
 #include "base/file/file.h"
 #include "base/text/text.h"
 #include "color/parse_color.h"
+#include "data/ranks/over_all.h"
 #include "pipeline/file/transfer_file.h"
 #include "pipeline/film/film_params.h"
 #include "pipeline/picture/picture_parts.h"
@@ -199,7 +201,8 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
     context.log(level, text);
   };
   Shown shown = collect(file, shows, results, stated.picture.legend, once);
-  const Box3& box = shown.box;
+  const Box3 box = over_all(shown.box, context);
+  shown.any_points = all_most(int(shown.any_points), context.communicator) > 0;
   if (!shown.any_points) context.warn("the picture is empty: there are no points to show");
   if (!file.show.empty() && look.shows.empty())
     choose_view(box, extension_of(origin_of(file, file.show[0].of.empty() ? file.steps.back().name : file.show[0].of)), look);

@@ -7,10 +7,12 @@
 #include <charconv>
 #include <map>
 
+#include "base/all_ranks.h"
 #include "base/text/text.h"
 #include "color/colormap_file.h"
 #include "color/parse_color.h"
 #include "data/lattice.h"
+#include "data/ranks/over_all.h"
 #include "scene/choose/shown_range.h"
 
 namespace sg {
@@ -19,8 +21,8 @@ namespace {
 
 constexpr size_t most_labels = 64;
 
-// Distinct values among evenly spread samples, or more than `most_labels` of them.
-std::vector<double> distinct_values(const Field& field, size_t limit) {
+// Distinct values of all pieces among evenly spread samples, or more than `limit` of them.
+std::vector<double> distinct_values(const Field& field, size_t limit, const Context& context) {
   const size_t n = field.array.count(), step = std::max<size_t>(1, n / 400000);
   std::vector<double> found;
   dispatch(field.array, [&](auto v) {
@@ -33,23 +35,27 @@ std::vector<double> distinct_values(const Field& field, size_t limit) {
       if (at == found.end() || *at != x) found.insert(at, x);
     }
   });
+  if (!context.communicator) return found;
+  found = all_concatenated(std::span<const double>(found), context.communicator);
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
   return found;
 }
 
 // Of neighbours along x of which one at least is not background, the share that is equal.
-double share_of_equal_neighbours(const Field& field, size_t nx, double background) {
-  return dispatch(field.array, [&](auto v) {
+double share_of_equal_neighbours(const Field& field, size_t nx, double background, const Context& context) {
+  uint64_t counts[2] = {0, 0};  // equal, all
+  dispatch(field.array, [&](auto v) {
     const size_t n = v.count, rows = n / std::max<size_t>(nx, 1), step = std::max<size_t>(1, rows / 2000);
-    size_t equal = 0, all = 0;
     for (size_t r = 0; r < rows; r += step)
       for (size_t i = 1; i < nx; ++i) {
         const double a = double(v[r * nx + i - 1]), b = double(v[r * nx + i]);
         if (a == background && b == background) continue;
-        ++all;
-        equal += a == b;
+        counts[0] += a == b, ++counts[1];
       }
-    return all ? double(equal) / double(all) : 0.0;
   });
+  all_sum(std::span<uint64_t>(counts), context.communicator);
+  return counts[1] ? double(counts[0]) / double(counts[1]) : 0.0;
 }
 
 double nice_symmetric(const Range& r) { return std::max(std::abs(r.lo), std::abs(r.hi)); }
@@ -159,18 +165,21 @@ ColorScale band_scale(const Dataset& d, const Field& band, const ColoringParams&
 
 }  // namespace
 
-bool looks_like_labels(const Dataset& data, const Field& field) {
-  if (is_float(field.array.type()) || field.components() != 1 || field.array.count() < 2) return false;
+bool looks_like_labels(const Dataset& data, const Field& field, const Context& context) {
+  if (is_float(field.array.type()) || field.components() != 1) return false;
   if (field.role == Role::global_ids || field.role == Role::colors) return false;
-  const Range r = data.range(field);
-  if (r.empty() || r.lo < 0 || r.hi - r.lo > 10000) return false;
-  const auto values = distinct_values(field, most_labels);
+  const uint64_t count = all_sum(uint64_t(field.array.count()), context.communicator);
+  const Range r = range_over_all(data, field, -1, context);
+  if (count < 2 || r.empty() || r.lo < 0 || r.hi - r.lo > 10000) return false;
+  const auto values = distinct_values(field, most_labels, context);
   if (values.size() > most_labels || values.size() < 2) return false;
-  if (!is_lattice(data.mesh())) return values.size() * 2 <= field.array.count() + 2;
+  // A piece without cells is no grid, whatever the others are.
+  const bool grid = is_lattice(data.mesh());
+  if (!all_most(int(grid), context.communicator)) return values.size() * 2 <= count + 2;
   if (values.size() == 2 || field.role == Role::labels) return true;
-  const auto d = lattice_dims(data.mesh());
-  const size_t nx = field.association == Association::point ? d[0] : std::max<size_t>(d[0], 2) - 1;
-  return share_of_equal_neighbours(field, nx, values[0]) > 0.7;
+  const auto d = grid ? lattice_dims(data.mesh()) : std::array<size_t, 3>{};
+  const size_t nx = !grid ? 0 : field.association == Association::point ? d[0] : std::max<size_t>(d[0], 2) - 1;
+  return share_of_equal_neighbours(field, nx, values[0], context) > 0.7;
 }
 
 bool two_sided(const Field& field, const Range& r) {
@@ -184,7 +193,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   s.title = field.name;
   if (field.components() > 1) s.title += p.component < 0 ? " magnitude" : fmt::format(" [{}]", p.component);
   s.unit = field.unit;
-  Range r = data.range(field, p.component);
+  Range r = range_over_all(data, field, p.component, context);
   if (r.empty()) {
     context.warn(fmt::format("field '{}' has no finite value; it is drawn in the colour of NaN", field.name));
     r = {0, 1};
@@ -195,7 +204,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   const bool automatic = !p.map;
   const std::optional<FileColormap> file = p.map && names_colormap_file(*p.map) ? std::optional(find_file_colormap(*p.map)) : std::nullopt;
   const Colormap asked = automatic ? Colormap{} : file ? file->map : find_colormap(*p.map);
-  const bool labels = automatic ? p.range.empty() && looks_like_labels(data, field) : asked.categorical();
+  const bool labels = automatic ? p.range.empty() && looks_like_labels(data, field, context) : asked.categorical();
   s.kind = p.scale;
   if (s.kind == ScaleKind::log && p.range.empty() && r.lo <= 0) {
     // Zeros and negative values have no place on a log scale: start at the smallest positive value.
@@ -207,6 +216,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
         if (x > 0 && std::isfinite(x)) positive.add({x, x});
       }
     });
+    positive = over_all(positive, context);
     if (positive.empty())
       fail_usage(fmt::format("field '{}' has no positive value for a log scale", field.name), "scale", "use scale=linear or scale=symlog");
     r = positive;
@@ -229,7 +239,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
     if (centred) s.hi = nice_symmetric(r), s.lo = -s.hi;
     const FieldOf one{&data, &field};
     if (s.kind == ScaleKind::linear && !labels && !file)
-      if (const ShownRange shown = shown_range({&one, 1}, p.component, centred); !shown.range.empty())
+      if (const ShownRange shown = shown_range({&one, 1}, p.component, centred, context); !shown.range.empty())
         take_shown_range(shown, r, field.name, s, context);
   }
   if (s.lo == s.hi) {  // a constant field: any range around it will do
@@ -239,7 +249,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   }
   if (s.kind == ScaleKind::symlog) s.linear_threshold = p.linear_threshold > 0 ? p.linear_threshold : nice_symmetric({s.lo, s.hi}) * 1e-3;
   if (labels) {
-    s.labels = distinct_values(field, 4096);
+    s.labels = distinct_values(field, 4096, context);
     if (file) take_categories(*file, field, s, context);
     else s.label_names = noted_names(data, field, s.labels);
     if (!s.labels.empty()) s.lo = s.labels.front(), s.hi = std::max(s.labels.back(), s.lo + 1);

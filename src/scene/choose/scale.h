@@ -14,6 +14,6 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
 bool two_sided(const Field& field, const Range& range);
 
 /// Integer values that name things: few distinct ones, in pieces. For fields of lattices, points and cells.
-bool looks_like_labels(const Dataset& data, const Field& field);
+bool looks_like_labels(const Dataset& data, const Field& field, const Context& context = Context());
 
 }  // namespace sg

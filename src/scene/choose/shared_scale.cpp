@@ -4,22 +4,23 @@
 #include <algorithm>
 
 #include "color/parse_color.h"
+#include "data/ranks/over_all.h"
 #include "scene/choose/scale.h"
 
 namespace sg {
 
-bool share_scale(std::span<const FieldOf> fields, ColoringParams& p) {
+bool share_scale(std::span<const FieldOf> fields, ColoringParams& p, const Context& context) {
   Range all;
   bool same = true;
   for (const FieldOf& f : fields) {
-    const Range r = f.data->range(*f.field, f.field->components() > 1 ? p.component : 0);
+    const Range r = range_over_all(*f.data, *f.field, f.field->components() > 1 ? p.component : 0, context);
     same = same && (&f == &fields.front() || r == all);
     all.add(r);
   }
   const bool automatic = !p.map && p.scale != ScaleKind::log;
   const bool is_signed = two_sided(*fields[0].field, all);
   ShownRange shown{all};
-  if (automatic && p.scale == ScaleKind::linear) shown = shown_range(fields, p.component, is_signed);
+  if (automatic && p.scale == ScaleKind::linear) shown = shown_range(fields, p.component, is_signed, context);
   else if (automatic && is_signed) shown.range.hi = std::max(-all.lo, all.hi), shown.range.lo = -shown.range.hi;
   const bool cut = shown.cut_low || shown.cut_high;
   if ((same && !cut) || !(all.lo < all.hi)) return false;

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/all_ranks.h"
 #include "base/text/text.h"
+#include "data/ranks/over_all.h"
 
 namespace sg {
 
@@ -17,18 +19,21 @@ using Shows = FieldLook::Shows;
 constexpr size_t most_samples = 400000;
 constexpr double inside = 0.995, inside_tailed = 0.99;
 
-// Evenly spread finite values of all the fields.
-std::vector<double> samples_of(std::span<const FieldOf> fields, int component) {
-  size_t all = 0;
+// Evenly spread finite values of all the fields, in all pieces.
+std::vector<double> samples_of(std::span<const FieldOf> fields, int component, const Context& context) {
+  uint64_t all = 0;
   for (const FieldOf& f : fields) all += f.field->array.count();
+  all = all_sum(all, context.communicator);
   const size_t step = std::max<size_t>(1, all / most_samples);
   std::vector<double> v;
   v.reserve(all / step + fields.size());
-  for (const FieldOf& f : fields)
+  for (const FieldOf& f : fields) {
+    const Array& ghost = f.field->association == Association::point ? f.data->point_ghost() : f.data->cell_ghost();
     dispatch(f.field->array, [&](auto view) {
       const bool magnitude = component < 0 && view.components > 1;
       const int one = view.components > 1 ? std::max(component, 0) : 0;
       for (size_t i = 0; i < view.count; i += step) {
+        if (context.communicator && !ghost.empty() && int(ghost.get(i)) & ghost_duplicate) continue;
         double x = double(view(i, one));
         if (magnitude) {
           x = 0;
@@ -38,7 +43,8 @@ std::vector<double> samples_of(std::span<const FieldOf> fields, int component) {
         if (std::isfinite(x)) v.push_back(x);
       }
     });
-  return v;
+  }
+  return all_concatenated(std::span<const double>(v), context.communicator);
 }
 
 double quantile(std::vector<double>& v, double q) {
@@ -52,12 +58,12 @@ double rounded(double x) { return *parse_double(short_number(x, 3)); }
 
 }  // namespace
 
-ShownRange shown_range(std::span<const FieldOf> fields, int component, bool symmetric) {
+ShownRange shown_range(std::span<const FieldOf> fields, int component, bool symmetric, const Context& context) {
   ShownRange s;
   bool may_cut = !fields.empty(), tailed = false;
   auto shows = Shows::any;
   for (const FieldOf& f : fields) {
-    s.range.add(f.data->range(*f.field, f.field->components() > 1 ? component : 0));
+    s.range.add(range_over_all(*f.data, *f.field, f.field->components() > 1 ? component : 0, context));
     may_cut = may_cut && is_float(f.field->array.type());
     tailed = tailed || f.field->look.tailed;
     if (symmetric) shows = f.field->look.shows;
@@ -69,7 +75,7 @@ ShownRange shown_range(std::span<const FieldOf> fields, int component, bool symm
   const double reach = shows == Shows::high ? whole.hi : shows == Shows::low ? -whole.lo : std::max(-whole.lo, whole.hi);
   if (symmetric) s = {{-reach, reach}, whole.lo<-reach, whole.hi> reach};
   if (!may_cut || !(tailed || symmetric)) return s;
-  std::vector<double> v = samples_of(fields, component);
+  std::vector<double> v = samples_of(fields, component, context);
   if (symmetric) {
     std::erase_if(v, [&](double x) {  // what is nowhere but in a few places has no tails
       return x == 0 || (shows == Shows::high && x < 0) || (shows == Shows::low && x > 0);

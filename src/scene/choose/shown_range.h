@@ -21,7 +21,8 @@ struct FieldOf {
 /// The range of one field of several datasets (magnitude where `component` is -1), without its tails: where few values lie beyond an end
 /// and they reach far, the end is where they begin (tailed looks: one in 100, when the range would grow by half; others only when signed:
 /// one in 200, four times). `symmetric`: the same reach on both sides of zero. Empty without finite values.
-ShownRange shown_range(std::span<const FieldOf> fields, int component, bool symmetric);
+/// Of all pieces, where processes share the data.
+ShownRange shown_range(std::span<const FieldOf> fields, int component, bool symmetric, const Context& context = Context());
 
 /// Takes the range; the legend gets a triangle at cut ends, and the log a line.
 void take_shown_range(const ShownRange& shown, const Range& whole, const std::string& name, ColorScale& scale, Context& context);

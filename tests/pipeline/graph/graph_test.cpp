@@ -151,8 +151,8 @@ TEST_CASE("graph: the request reaches the reader with only the fields that are n
   CHECK(asked(scaled, {}).fields.empty());
   CHECK(asked(scaled, Request::only({"p"})).fields == std::vector<std::string>{"T", "p"});
   CHECK(asked(g.add_operation("pick", {"field=T"}, {read}), {}).fields == std::vector<std::string>{"T"});
-  CHECK(asked(g.add_operation("whole", {}, {scaled}), Request::only({"p"})).fields.empty());  // says nothing, so gets all
-  CHECK(asked(g.add_operation("scale", {}, {read}), Request::only({"p"})).fields.empty());    // chooses the field itself
+  CHECK(asked(g.add_operation("whole", {}, {scaled}), Request::only({"p"})).fields == std::vector<std::string>{"T", "p"});
+  CHECK(asked(g.add_operation("scale", {}, {read}), Request::only({"p"})).fields.empty());  // chooses the field itself
   CHECK(asked(read, Request::only({"q", "T"})).fields == std::vector<std::string>{"T", "q"});
   CHECK(asked(read, Request::only({})).header_only);
   CHECK_FALSE(asked(read, {}).header_only);
@@ -217,9 +217,12 @@ TEST_CASE("graph: time, region and piece reach a reader that knows them, and sep
   g.evaluate(both, context);
   CHECK(reads.seen.size() == 2);
   CHECK(g.key(scaled, r) != g.key(scaled, later));
-  Request whole = r;
-  whole.region.reset(), whole.piece = 0, whole.pieces = 1;
-  CHECK(g.key(scaled, r) == g.key(scaled, whole));  // a filter that says nothing needs all of its input
+  Request anywhere = r;
+  anywhere.region.reset();
+  CHECK(g.key(scaled, r) == g.key(scaled, anywhere));  // a filter that says nothing needs all of its input
+  Request whole = anywhere;
+  whole.piece = 0, whole.pieces = 1;
+  CHECK(g.key(scaled, r) != g.key(scaled, whole));  // of whose result a piece is cut
 }
 
 TEST_CASE("graph: a source follows the time asked for unless its own is stated") {

@@ -102,13 +102,14 @@ TEST_CASE("operations: filters are applied to each part of a collection, and err
   CHECK(test::error_of([&] { run("add", {test::line_of(5), in}); }).find("add: needs a single mesh but got 3 parts") == 0);
 }
 
-TEST_CASE("requests: default is everything, named fields and carried fields narrow it") {
+TEST_CASE("requests: the fields wanted go up with those that parameters name; a field left open asks for everything") {
   const Operation& scale = find_operation("scale", test::operations());
   const Operation& pick = find_operation("pick", test::operations());
   const Operation& add = find_operation("add", test::operations());
   const Request p = Request::only({"p", "b", "p"});
   CHECK(p.fields == std::vector<std::string>{"b", "p"});
-  CHECK(upstream_request(add, add.make_params(), p).all_fields);
+  CHECK(upstream_request(add, add.make_params(), p, 1).fields == std::vector<std::string>{"T", "b", "p"});
+  CHECK(upstream_request(add, add.make_params(), {}).all_fields);
   CHECK(upstream_request(scale, make_params(scale, {"field=T"}), p).fields == std::vector<std::string>{"T", "b", "p"});
   CHECK(upstream_request(scale, make_params(scale, {}), p).all_fields);
   CHECK(upstream_request(pick, make_params(pick, {"field=T"}), p).fields == std::vector<std::string>{"T"});

@@ -125,9 +125,9 @@ std::span<const Operation> operations() {
   static constexpr Operation table[] = {
       SG_SOURCE(ramp, RampParams, ramp, "A line of points with a rising field."),
       SG_SOURCE(moment, MomentParams, moment, "A line at a moment."),
-      SG_FILTER(scale, ScaleParams, scale, "scalar", "Multiplies a field.", carries_fields, op_version<3>),
+      SG_FILTER(scale, ScaleParams, scale, "scalar", "Multiplies a field.", op_version<3>),
       SG_FILTER(pick, ScaleParams, scale, "scalar", "Scales and needs nothing else.", needs_only_named_fields),
-      SG_FILTER(add, NoParams, add, "scalar", "Adds the fields of two lines."),
+      SG_FILTER(add, NoParams, add, "scalar", "Adds the fields of two lines.", finds_fields("T")),
       SG_FILTER(join, NoParams, join, "parts", "Makes one collection.", op_inputs<1, -1>),
       SG_FILTER(whole, NoParams, whole, "parts", "Passes everything on."),
       SG_FILTER(drop, NoParams, drop, "parts", "Drops short lines."),

@@ -45,6 +45,9 @@ inline void describe(Schema& s, CalcParams& p) {
 /// Throws Error(usage) with the place in the expression, and for point fields mixed with cell fields.
 DatasetPtr calc(const DatasetPtr& in, const CalcParams& p, Context& ctx);
 
+/// Every name in an expression that may be a field's, also those of an expression with mistakes.
+std::vector<std::string> names_in_expression(std::string_view expression);
+
 /// Operators, names and functions of expressions, for help.
 std::vector<HelpWord> calc_words();
 

@@ -461,4 +461,29 @@ namespace sg {
 
 std::vector<HelpWord> calc_words() { return calc_detail::words(); }
 
+std::vector<std::string> names_in_expression(std::string_view text) {
+  std::vector<std::string> names;
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  const auto in_name = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || static_cast<unsigned char>(c) >= 0x80;
+  };
+  for (size_t at = 0; at < text.size();) {
+    const char c = text[at];
+    size_t end = at + 1;
+    if (c == '"' || c == '`') {
+      end = std::min(text.find(c, at + 1), text.size());
+      names.emplace_back(text.substr(at + 1, end - at - 1));
+      ++end;
+    } else if (is_digit(c)) {  // a number with its letter e
+      while (end < text.size() && (in_name(text[end]) || text[end] == '.')) ++end;
+    } else if (in_name(c)) {
+      while (end < text.size() && in_name(text[end])) ++end;
+      const size_t next = text.find_first_not_of(" \t\n", end);
+      if (next == text.npos || text[next] != '(') names.emplace_back(text.substr(at, end - at));
+    }
+    at = end;
+  }
+  return names;
+}
+
 }  // namespace sg

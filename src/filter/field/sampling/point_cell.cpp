@@ -79,7 +79,7 @@ struct LatticeCells {
       for (size_t j = lo[1]; j <= hi[1]; ++j)
         for (size_t i = lo[0]; i <= hi[0]; ++i) {
           const size_t c = i + cells[0] * (j + cells[1] * k);
-          if (!ghost.data || !(ghost[c] & (ghost_hidden_cell | ghost_refined_cell | ghost_duplicate))) found[n++] = int64_t(c);
+          if (!ghost.data || !(ghost[c] & (ghost_hidden_cell | ghost_refined_cell))) found[n++] = int64_t(c);
         }
     return {found.data(), n};
   }

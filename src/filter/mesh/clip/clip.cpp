@@ -9,6 +9,7 @@
 #include "base/text/text.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
+#include "data/ranks/over_all.h"
 #include "filter/mesh/clip/clip_box.h"
 #include "filter/mesh/clip/clip_impl.h"
 #include "filter/mesh/select/extract.h"
@@ -180,7 +181,7 @@ Data clip(const DatasetPtr& in, const DatasetPtr& surface, const ClipParams& p, 
     if (shape) fail_usage("both a shape and a field are given", "clip", "give only one of them");
     const Field* field = nullptr;
     Job job{mesh, numbers_of(*mesh, p.field, p.component, "clip", &field), {}, {}, ctx};
-    const Range range = mesh->range(*field, p.component);
+    const Range range = p.value ? Range() : range_over_all(*mesh, *field, p.component, ctx);
     job.keep.level = p.value.value_or(range.empty() ? 0.0 : 0.5 * (range.lo + range.hi));
     if (!std::isfinite(job.keep.level)) fail_usage("the value is not finite", "clip value");
     return both_sides(job, p.keep, flat);
@@ -205,7 +206,9 @@ DatasetPtr isovolume(const DatasetPtr& in, const IsovolumeParams& p, Context& ct
   const DatasetPtr mesh = prepared(in, p.tolerance, "isovolume", ctx);
   const Field* field = nullptr;
   Job job{mesh, numbers_of(*mesh, p.field, p.component, "isovolume", &field), {}, {}, ctx};
-  const Range range = mesh->range(*field, p.component);
+  // Values that belong to other pieces are cut here, too.
+  const bool alone = mesh->point_ghost().empty();
+  const Range range = over_all(alone ? mesh->range(*field, p.component) : field_stats(job.numbers).range[0], ctx);
   const double lo = std::max(p.min.value_or(-HUGE_VAL), -1.7e308), hi = std::min(p.max.value_or(HUGE_VAL), 1.7e308);
   if (!range.empty() && lo <= range.lo) job.keep.level = hi, job.keep.sign = -1;  // one limit is enough
   else if (!range.empty() && hi >= range.hi) job.keep.level = lo;

@@ -25,6 +25,9 @@ inline void describe(Schema& s, PieceParams& p) {
 /// piece without cells is an empty unstructured mesh (grids: null Dataset is never returned). Throws Error(usage) for a piece that is not
 /// there.
 DatasetPtr take_piece(const DatasetPtr& in, int piece, int pieces, int ghost_levels, Context& context);
+/// The same for one of several processes: point_ghost marks the points that belong to other pieces, too, so that each is counted once. A
+/// point belongs to the first piece with a cell at it. AMR with ghost layers: the whole, where all cells but the own are duplicates.
+DatasetPtr take_share(const DatasetPtr& in, int piece, int pieces, int ghost_levels, Context& context);
 inline DatasetPtr piece(const DatasetPtr& in, const PieceParams& p, Context& context) {
   return take_piece(in, p.piece, p.pieces, p.ghost_levels, context);
 }

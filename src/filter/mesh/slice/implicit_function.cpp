@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/text/text.h"
 #include "data/lattice.h"
+#include "data/ranks/over_all.h"
 #include "filter/field/calc/calc.h"
 #include "filter/mesh/surface.h"
 #include "filter/mesh/surface_builder.h"
@@ -50,8 +51,9 @@ double radius(double r, std::string_view who, std::string_view what) {
   return r;
 }
 
-ImplicitFunction plane_of(const ImplicitParams& p, const Dataset& in, std::string_view who) {
-  const Box3& bounds = in.bounds();
+ImplicitFunction plane_of(const ImplicitParams& p, const Dataset& in, std::string_view who, const Context& ctx) {
+  const bool stated = p.origin || p.position;
+  const Box3 bounds = stated ? in.bounds() : bounds_over_all(in, ctx);
   const bool shorthand = p.axis != CutAxis::none;
   if (p.position && !shorthand)
     fail_usage("position needs an axis", std::string(who), fmt::format("write axis=z position={}", short_number(*p.position)));
@@ -215,7 +217,7 @@ ImplicitFunction implicit_function(const ImplicitParams& p, const DatasetPtr& in
              q[7] * v.y + q[8] * v.z + q[9];
     });
   }
-  return plane_of(p, *in, who);
+  return plane_of(p, *in, who, ctx);
 }
 
 Array values_at_points(const ImplicitFunction& f, const DatasetPtr& in, Context& ctx) {

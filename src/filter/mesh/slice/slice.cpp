@@ -10,6 +10,7 @@
 #include "base/text/text.h"
 #include "data/cells/cell_reader.h"
 #include "data/field_ops.h"
+#include "data/ranks/over_all.h"
 #include "filter/mesh/append.h"
 #include "filter/mesh/clip/clip_cases.h"
 #include "filter/mesh/clip/corner_bits.h"
@@ -370,7 +371,7 @@ DatasetPtr slice_one(const DatasetPtr& in, const DatasetPtr& surface, const Impl
 }
 
 // The planes that the parameters request, one after the other.
-std::vector<ImplicitParams> planes_of(const Dataset& in, const SliceParams& p) {
+std::vector<ImplicitParams> planes_of(const Dataset& in, const SliceParams& p, const Context& ctx) {
   std::vector<ImplicitParams> r;
   const bool several = p.planes != CutPlanes::none;
   if (several && !p.positions.empty()) fail_usage("both planes and positions are given", "slice", "give only one of them");
@@ -380,7 +381,7 @@ std::vector<ImplicitParams> planes_of(const Dataset& in, const SliceParams& p) {
     for (const double x : p.positions) r.emplace_back(p).position = x;
   } else if (several) {
     if (p.axis != CutAxis::none) fail_usage("both planes and axis are given", "slice", "give only one of them");
-    const Box3& box = in.bounds();
+    const Box3 box = p.origin ? in.bounds() : bounds_over_all(in, ctx);
     const Vec3 middle = p.origin.value_or(box.empty() ? Vec3() : box.center());
     for (const char a : word_of(p.planes)) {
       ImplicitParams& plane = r.emplace_back(p);
@@ -398,7 +399,7 @@ DatasetPtr slice(const DatasetPtr& in, const DatasetPtr& surface, const SlicePar
   if (in->as<PointCloud>())
     fail_usage("a point cloud has no cells to cut", "slice", "select points by value with threshold, or show the points themselves");
   if (in->point_count() >= UINT32_MAX) fail_usage("the mesh has more than 2^32 points", "slice", "take a part of it first");
-  const std::vector<ImplicitParams> planes = planes_of(*in, p);
+  const std::vector<ImplicitParams> planes = planes_of(*in, p, ctx);
   DatasetPtr out;
   if (planes.empty()) {
     out = slice_one(in, surface, p, ctx);

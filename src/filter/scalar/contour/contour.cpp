@@ -9,8 +9,10 @@
 #include "base/parallel.h"
 #include "base/text/text.h"
 #include "data/cells/mesh_dimension.h"
+#include "data/ranks/over_all.h"
 #include "data/trusted.h"
 #include "filter/field/sampling/point_cell.h"
+#include "filter/mesh/select/extract.h"
 #include "filter/scalar/contour/cells/contour_curved.h"
 #include "filter/scalar/contour/contour_active.h"
 #include "filter/scalar/contour/contour_amr.h"
@@ -283,10 +285,30 @@ int dimension_to_cut(const Dataset& input) {
   return dimension;
 }
 
+// Where levels meet, a cell is cut as its neighbours ask for it, though they belong to other pieces: all are cut, the own ones stay.
+DatasetPtr contour_own_amr(const DatasetPtr& given, const ContourParams& params, Context& context) {
+  constexpr const char* mark = "cell of this piece";
+  const View<uint8_t> ghost = given->cell_ghost().empty() ? View<uint8_t>{} : given->cell_ghost().view<uint8_t>();
+  std::vector<uint8_t> rest, own;
+  for (size_t c = 0; c < ghost.count; ++c) rest.push_back(ghost[c] & ~ghost_duplicate), own.push_back(!(ghost[c] & ghost_duplicate));
+  if (std::find(own.begin(), own.end(), uint8_t(0)) == own.end()) return contour_amr(given, params, choose_component, context);
+  DatasetParts parts = given->parts();
+  parts.cell_ghost = Array::from_vector(std::move(rest));
+  parts.fields.add({mark, Association::cell, Array::from_vector(std::move(own)), "", Role::none});
+  const DatasetPtr all = contour_amr(make_dataset(std::move(parts)), params, choose_component, context);
+  const Array& kept = all->fields().require(mark, Association::cell).array;
+  std::vector<int64_t> cells;
+  for (size_t c = 0; c < kept.count(); ++c)
+    if (kept.get(c) != 0) cells.push_back(int64_t(c));
+  DatasetParts out = extract_cells(all, cells, "contour")->parts();
+  out.fields.remove(mark, Association::cell);
+  return make_dataset(std::move(out));
+}
+
 }  // namespace
 
 DatasetPtr contour(const DatasetPtr& given, const ContourParams& params, Context& context) {
-  if (given->as<AmrGrid>()) return contour_amr(given, params, choose_component, context);
+  if (given->as<AmrGrid>()) return contour_own_amr(given, params, context);
   check_mesh(*given);
   DatasetPtr input = given;
   FieldName name = params.field;
@@ -296,7 +318,7 @@ DatasetPtr contour(const DatasetPtr& given, const ContourParams& params, Context
   const int dimension = dimension_to_cut(*input);
   std::vector<double> values = params.values;
   if (values.empty()) {
-    const Range range = input->range(field, component);
+    const Range range = range_over_all(*input, field, component, context);
     values.push_back(range.empty() ? 0.0 : range.lo + 0.5 * (range.hi - range.lo));
   }
   for (double v : values)
@@ -324,7 +346,7 @@ DatasetPtr contour(const DatasetPtr& given, const ContourParams& params, Context
     for (double v : values) pieces.push_back(contour_cells(job, v, index.get()));
   }
   for (size_t i = 0; i < pieces.size(); ++i) {
-    if (pieces[i].lines.count() + pieces[i].triangles.count() > 0) continue;
+    if (pieces[i].lines.count() + pieces[i].triangles.count() > 0 || context.communicator) continue;
     const Range range = input->range(field, component);  // not before: it is a pass over all samples
     context.info(range.empty() ? fmt::format("contour: field '{}' has no values", field.name)
                                : fmt::format("contour: nothing at {} = {}; the field ranges from {} to {}", field.name,

@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "data/field_ops.h"
+#include "data/ranks/over_all.h"
 #include "filter/scalar/contour/amr_leaves.h"
 #include "filter/scalar/contour/amr_outline.h"
 
@@ -356,7 +357,7 @@ DatasetPtr contour_amr(const DatasetPtr& input, const ContourParams& params, int
   const int component = component_of(*field, params.component);
   ContourParams flat = params;
   if (flat.values.empty()) {
-    const Range range = input->range(*field, component);
+    const Range range = range_over_all(*input, *field, component, context);
     flat.values.push_back(range.empty() ? 0.0 : range.lo + 0.5 * (range.hi - range.lo));
   }
   for (double v : flat.values)
