@@ -47,7 +47,7 @@ std::string request_text(const Request& r) {
       box += (box.empty() ? "" : ",") + exact_number(v);
     add("region=" + box);
   }
-  if (r.pieces != 1 || r.piece != 0) add(fmt::format(r.ghost_levels ? "piece={}/{}/{}" : "piece={}/{}", r.piece, r.pieces, r.ghost_levels));
+  if (r.pieces != 1 || r.piece != 0) add(fmt::format("piece={}/{}", r.piece, r.pieces) + (r.ghost_levels ? fmt::format("/{}", r.ghost_levels) : ""));
   return text.empty() ? "everything" : text;
 }
 
