@@ -12,7 +12,8 @@ void describe(Schema& s, FilmParams& p) {
       .unit("new file");
   s("times", p.times,
     "With {n} in the output, or a film: the times to draw, like 0:10:101 (first:last:count), 0,0.5,1 or 0:114 (the steps of the file in "
-    "between); default: all of the file. A parameter written as {t} takes the time.")
+    "between); default: all of the file. A parameter written as {t} takes the time, also one of the camera: with azimuth={t} it goes "
+    "around.")
       .unit("time");
   s("fps", p.fps, "Films: pictures per second.").range(0.1, 1000);
 }

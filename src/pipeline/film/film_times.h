@@ -21,9 +21,9 @@ struct FilmTimes {
 /// `asked` as FilmParams::times. Throws Error(usage) where nothing has times.
 FilmTimes film_times(const PipelineFile& file, const std::string& asked, Context& context);
 
-/// The pipeline at times[n]: the parameters that ask for the time ({t}) get it; else operations that show a moment of what they are given
-/// (Operation::shows_moment), whose input stays as it is; else readers and sources with a time, and operations on series in place of what
-/// lies above them.
+/// The pipeline at times[n]: parameters of the camera and the picture that ask for the time ({t}) get it. Of the steps those parameters
+/// that ask for it, too; else operations that show a moment of what they are given (Operation::shows_moment), whose input stays as it is;
+/// else readers and sources with a time, and operations on series in place of what lies above them.
 PipelineFile at_time(PipelineFile file, const FilmTimes& film, size_t n);
 
 }  // namespace sg
