@@ -42,7 +42,7 @@ int main(int argc, char** argv) {
       const double angle = i * 3.1416 / 20;
       sg::Scene picture;
       picture.show(grid.run("contour", {{"values", {0.1, 1}}}), "surface", {{"opacity", 0.5}}).show(grid, "outline");
-      picture.camera({{"position", {12 + 60 * std::cos(angle), 12 + 60 * std::sin(angle), 30}}});
+      picture.camera({{"position", {12 + 75 * std::cos(angle), 12 + 75 * std::sin(angle), 35}}});
       orbit.add(picture.render(320, 240));
     }
     orbit.finish();
