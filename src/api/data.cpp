@@ -2,11 +2,14 @@
 // What can be asked of data.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "api/held.h"
 #include "base/text/text.h"
 #include "data/cells/point_positions.h"
 #include "data/fields/known_looks.h"
 #include "data/lattice.h"
+#include "filter/mesh/select/extract_ids.h"
 #include "filter/mesh/to_unstructured.h"
 
 namespace sightglass {
@@ -61,19 +64,17 @@ Cells lists_of(const sg::UnstructuredMesh& mesh) {
   return cells;
 }
 
-void add_parts(const sg::Data& data, const std::string& name, const std::shared_ptr<const Made>& made,
-               std::vector<std::pair<std::string, Data>>& out) {
-  auto* c = std::get_if<sg::CollectionPtr>(&data);
-  if (!c) {
-    auto part = std::make_shared<Made>();
-    part->operation = sg::memory_step;
-    part->words = {fmt::format("data=part '{}' of {}", name, made->operation)};
-    auto held = std::make_shared<const Data::Held>(Data::Held{data, part});
-    part->memory = held;
-    out.emplace_back(name, Data(held));
-    return;
-  }
-  for (const sg::Collection::Part& p : (*c)->parts) add_parts(p.data, name.empty() ? p.name : name + "/" + p.name, made, out);
+// The step that takes one part out: by its path, or by its number where the path is that of an earlier one or reads as a number.
+std::shared_ptr<const Made> made_of_part(const std::vector<sg::Collection::Part>& parts, size_t number,
+                                         const std::shared_ptr<const Made>& collection) {
+  const auto first = std::find_if(parts.begin(), parts.end(), [&](const auto& p) { return p.name == parts[number].name; });
+  const std::string& name = parts[number].name;
+  const bool named = !name.empty() && !name.starts_with('#') && size_t(first - parts.begin()) == number;
+  auto made = std::make_shared<Made>();
+  made->operation = "extract";
+  made->words = {"part=" + (named ? name : fmt::format("#{}", number))};
+  made->inputs = {collection};
+  return made;
 }
 
 }  // namespace
@@ -209,8 +210,12 @@ std::vector<std::pair<std::string, Data>> Data::parts() const {
   return guarded([&] {
     std::vector<std::pair<std::string, Data>> all;
     const Held& held = held_by(*this);
-    if (std::holds_alternative<sg::CollectionPtr>(held.data)) add_parts(held.data, "", held.made, all);
-    else all.emplace_back("", *this);
+    if (!std::holds_alternative<sg::CollectionPtr>(held.data)) {
+      all.emplace_back("", *this);
+      return all;
+    }
+    const std::vector<sg::Collection::Part> parts = sg::all_parts(held.data);
+    for (size_t i = 0; i < parts.size(); ++i) all.emplace_back(parts[i].name, make_data(parts[i].data, made_of_part(parts, i, held.made)));
     return all;
   });
 }

@@ -109,4 +109,14 @@ std::string StepsOf::add(const std::shared_ptr<const Made>& made) {
   return file.steps.back().name;
 }
 
+void add_memory(const std::shared_ptr<const Made>& made, StepsOf& steps, sg::StepResults& results, std::string_view where) {
+  for (const auto& input : made->inputs) add_memory(input, steps, results, where);
+  if (made->operation != sg::memory_step) return;
+  const auto held = made->memory.lock();
+  if (!held)
+    sg::fail_usage("follows time, and of what lies above it numbers from memory are gone (" + made->words.at(0) + ")", std::string(where),
+                   "keep the Data that hold them");
+  results[steps.add(made)] = held->data;
+}
+
 }  // namespace sightglass

@@ -68,6 +68,10 @@ Data make_data(sg::Data data, std::shared_ptr<const Made> made);
 /// From the caller's numbers.
 Data data_from_memory(sg::DatasetPtr data);
 
+/// Numbers of the caller's above data, by the names of their steps. Throws Error(usage) naming `where` when they are gone.
+class StepsOf;
+void add_memory(const std::shared_ptr<const Made>& made, StepsOf& steps, sg::StepResults& results, std::string_view where);
+
 /// Data as steps of a pipeline file: those above come first, each once.
 class StepsOf {
  public:
@@ -77,6 +81,20 @@ class StepsOf {
 
  private:
   std::vector<std::pair<const Made*, std::string>> names_;
+};
+
+struct Scene::State {
+  struct Shown {
+    Data data;
+    std::string way;
+    std::vector<std::string> words;
+  };
+  std::vector<Shown> shown;
+  std::vector<std::string> camera, picture;  ///< words
+
+  /// Steps, what is shown, and the picture. Gives each data shown, with the name of its step. Throws Error(usage) when nothing is shown.
+  sg::PipelineFile pipeline(int width, int height,
+                            const std::function<void(const std::string& step, const Data::Held& held, StepsOf& steps)>& each) const;
 };
 
 }  // namespace sightglass

@@ -41,23 +41,12 @@ bool varies(const Made& made, sg::Context& context) {
   return std::any_of(made.inputs.begin(), made.inputs.end(), [&](const auto& input) { return varies(*input, context); });
 }
 
-// The numbers of memory steps by the names of the steps.
-void add_memory(const std::shared_ptr<const Made>& made, StepsOf& steps, sg::StepResults& results) {
-  for (const auto& input : made->inputs) add_memory(input, steps, results);
-  if (sg::step_kind(made->operation) != sg::StepKind::memory) return;
-  const auto held = made->memory.lock();
-  if (!held)
-    sg::fail_usage("follows time, and of what lies above it numbers from memory are gone (" + made->words.at(0) + ")", "run()",
-                   "keep the Data that hold them");
-  results[steps.add(made)] = held->data;
-}
-
 // An operation that follows time, on all steps of what lies above it.
 sg::Data run_over_time(const std::shared_ptr<const Made>& made, sg::Context& context) {
   StepsOf steps;
   steps.add(made);
   sg::StepResults results;
-  add_memory(made, steps, results);
+  add_memory(made, steps, results, "run()");
   const sg::PipelineGraph built = sg::build_graph(steps.file, {}, results);
   return built.graph.evaluate(built.last, {}, context);
 }

@@ -11,16 +11,6 @@
 
 namespace sightglass {
 
-struct Scene::State {
-  struct Shown {
-    Data data;
-    std::string way;
-    std::vector<std::string> words;
-  };
-  std::vector<Shown> shown;
-  std::vector<std::string> camera, picture;  // words
-};
-
 namespace {
 
 // What is stated for a way to show, checked.
@@ -38,15 +28,51 @@ std::vector<std::string> words_of_show(std::string_view way, const Params& param
   return stated_words(set.schema);
 }
 
+// What is stated, checked; where a film writes its time ("{t}") as it stands.
 template <class P>
 std::vector<std::string> checked_words(const Params& params, std::string_view owner) {
   P p;
   sg::Schema schema = sg::schema_of(p);
-  set_values(schema, params, owner);
-  return stated_words(schema);
+  Params plain;
+  std::vector<std::string> timed;
+  for (const Param& param : params) {
+    const auto* word = std::get_if<std::string>(&param.value.alternatives());
+    if (word && word->find("{t}") != word->npos && schema.find(param.name)) timed.push_back(param.name + "=" + *word);
+    else plain.push_back(param);
+  }
+  set_values(schema, plain, owner);
+  std::vector<std::string> words = stated_words(schema);
+  words.insert(words.end(), timed.begin(), timed.end());
+  return words;
+}
+
+// In the place of what was stated before.
+void state_word(std::vector<std::string>& words, const std::string& word) {
+  const std::string key = word.substr(0, word.find('=') + 1);
+  std::erase_if(words, [&](const std::string& w) { return w.starts_with(key); });
+  words.push_back(word);
 }
 
 }  // namespace
+
+sg::PipelineFile Scene::State::pipeline(int width, int height,
+                                        const std::function<void(const std::string&, const Data::Held&, StepsOf&)>& each) const {
+  if (shown.empty()) sg::fail_usage("there is nothing to show", "Scene", "call show() first");
+  StepsOf steps;
+  std::vector<sg::PipelineFile::Show> shows;
+  for (const Shown& s : shown) {
+    const Data::Held& held = held_by(s.data);
+    const std::string step = steps.add(held.made);
+    each(step, held, steps);
+    shows.push_back({s.way, s.words, step, 0});
+  }
+  sg::PipelineFile file = std::move(steps.file);
+  file.show = std::move(shows);
+  file.picture = picture;
+  file.picture.insert(file.picture.end(), camera.begin(), camera.end());
+  file.picture.push_back(fmt::format("size={}x{}", width, height));
+  return file;
+}
 
 Scene::Scene() : state_(std::make_shared<State>()) {}
 
@@ -65,7 +91,7 @@ Scene& Scene::show(const Data& data, std::string_view way, const Params& params)
 Scene& Scene::camera(const Params& params) {
   return guarded([&]() -> Scene& {
     State next = *state_;
-    for (const std::string& w : checked_words<sg::CameraParams>(params, "camera")) next.camera.push_back("camera." + w);
+    for (const std::string& w : checked_words<sg::CameraParams>(params, "camera")) state_word(next.camera, "camera." + w);
     state_ = std::make_shared<const State>(std::move(next));
     return *this;
   });
@@ -74,7 +100,7 @@ Scene& Scene::camera(const Params& params) {
 Scene& Scene::picture(const Params& params) {
   return guarded([&]() -> Scene& {
     State next = *state_;
-    for (std::string& w : checked_words<sg::PictureParams>(params, "picture")) next.picture.push_back(std::move(w));
+    for (const std::string& w : checked_words<sg::PictureParams>(params, "picture")) state_word(next.picture, w);
     state_ = std::make_shared<const State>(std::move(next));
     return *this;
   });
@@ -82,23 +108,11 @@ Scene& Scene::picture(const Params& params) {
 
 Image Scene::render(int width, int height, const Context& context) const {
   return guarded([&] {
-    if (state_->shown.empty()) sg::fail_usage("there is nothing to show", "Scene::render()", "call show() first");
-    StepsOf steps;
     sg::PictureOptions options;
-    std::vector<sg::PipelineFile::Show> shows;
-    for (const State::Shown& s : state_->shown) {
-      const Data::Held& held = held_by(s.data);
-      const std::string step = steps.add(held.made);
-      options.results[step] = held.data;
-      shows.push_back({s.way, s.words, step, 0});
-    }
-    sg::PipelineFile file = std::move(steps.file);
+    sg::PipelineFile file = state_->pipeline(
+        width, height, [&](const std::string& step, const Data::Held& held, StepsOf&) { options.results[step] = held.data; });
     // What is shown is at hand, so nothing above it runs.
     for (const auto& step : file.steps) options.results.try_emplace(step.name, sg::DatasetPtr());
-    file.show = std::move(shows);
-    file.picture = state_->picture;
-    file.picture.insert(file.picture.end(), state_->camera.begin(), state_->camera.end());
-    file.picture.push_back(fmt::format("size={}x{}", width, height));
     sg::Picture picture = sg::make_picture(file, options, context.state().core);
     return Image(std::make_shared<const Image::Held>(Image::Held{std::move(picture.image), std::move(file), std::move(picture.notes)}));
   });

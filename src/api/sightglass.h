@@ -334,12 +334,21 @@ class SIGHTGLASS_API Image {
 
   struct Held;
   explicit Image(std::shared_ptr<const Held> held);
+  const Held& held() const { return *held_; }
 
  private:
   std::shared_ptr<const Held> held_;
 };
 
-/// What is to be seen, and from where. Parameters are checked at once; calls chain.
+/// One picture of a film.
+struct Frame {
+  Image image;
+  size_t number, count;  ///< from 0
+  double time;
+};
+
+/// What is to be seen, and from where. Parameters are checked at once; calls chain. camera(), picture() and film() take structs of
+/// sightglass/operations.h, too: camera(sg::settings::Camera{.view = "front"}).
 class SIGHTGLASS_API Scene {
  public:
   Scene();
@@ -358,9 +367,37 @@ class SIGHTGLASS_API Scene {
   Scene& picture(const Params& params);
   Image render(int width = 1280, int height = 720, const Context& context = {}) const;
 
+  /// A film: a picture per time, all with the looks and colours of one. What comes from a series, or a source with a time, and states none
+  /// moves; what lies between runs again each time. Camera and picture take the time where a value holds "{t}": {"azimuth", "{t}"}.
+  /// `output`: "out_{n}.png" (numbered pictures, with their recipes), "film.webm", or "film.mp4" where ffmpeg is installed. Parameters:
+  /// `sightglass ops film`: times (a list, or text; default: all of the series), fps. Returns the times. Throws Error(usage) where nothing
+  /// has times.
+  std::vector<double> film(const std::string& output, const Params& params = {}, int width = 1280, int height = 720,
+                           const Context& context = {}) const;
+  /// The same pictures for the program itself, one after the other, from the calling thread. Parameters: `times`. What `take` throws ends
+  /// the film and comes out of this.
+  std::vector<double> frames(const std::function<void(const Frame&)>& take, const Params& params = {}, int width = 1280, int height = 720,
+                             const Context& context = {}) const;
+
  private:
   struct State;
   std::shared_ptr<const State> state_;
+};
+
+/// A film of pictures that the program makes one after the other: of a simulation as it goes on, of a camera on its way. Copies are the
+/// same film; from one thread at a time.
+class SIGHTGLASS_API Film {
+ public:
+  /// As Scene::film(); parameters: fps.
+  explicit Film(const std::string& output, const Params& params = {});
+  /// Of a .webm or .mp4 all have one size. A numbered picture is there at once, with its recipe.
+  void add(const Image& image);
+  /// A .webm or .mp4 is there when this returns; without it there is none.
+  void finish();
+
+ private:
+  struct State;
+  std::shared_ptr<State> state_;
 };
 
 /// What `sightglass ops NAME` prints: an operation, its parameters, units, ranges and choices. "": all operations.

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/text/text.h"
-#include "pipeline/operation/operation.h"
+#include "pipeline/catalog/catalog.h"
 #include "scene/show/show.h"
 
 namespace sg {
@@ -77,9 +77,10 @@ std::string member(const ParamDecl& d) {
                      about);
 }
 
-std::string struct_of(std::string_view name, std::string_view sentence, std::string_view tag, const Schema& schema) {
+// `first`: the first line of the struct.
+std::string struct_of(std::string_view name, std::string_view sentence, const std::string& first, const Schema& schema) {
   const std::string type = type_name(name);
-  std::string r = fmt::format("/// {}\nstruct {} {{\n  static constexpr const char* {} = \"{}\";\n", sentence, type, tag, name);
+  std::string r = fmt::format("/// {}\nstruct {} {{\n  {}\n", sentence, type, first);
   std::string stated;
   for (const ParamDecl& d : schema.decls()) {
     if (schema.find(d.name) != &d) continue;  // of two of one name the first counts
@@ -99,16 +100,25 @@ std::string struct_of(std::string_view name, std::string_view sentence, std::str
 std::string cpp_header() {
   std::string r =
       "// SPDX-License-Identifier: Apache-2.0\n"
-      "// Made by `sightglass ops --cpp`: every operation and way to show as a struct, for sightglass.h.\n"
+      "// Made by `sightglass ops --cpp`: every operation, way to show and setting as a struct, for sightglass.h.\n"
       "//   data.run(sg::ops::Contour{.field = \"T\", .values = {300, 400}});\n"
-      "//   scene.show(data, sg::shows::Surface{.opacity = 0.5});\n"
+      "//   scene.show(data, sg::shows::Surface{.opacity = 0.5}).camera(sg::settings::Camera{.view = \"front\"});\n"
       "// Values are checked when they are used. A member that is a list, a word or a field and empty: the operation chooses.\n"
       "#pragma once\n#include <limits>\n#include <optional>\n\n#include \"sightglass.h\"\n\nnamespace sightglass {\n\nnamespace ops {\n\n";
+  const auto named = [](std::string_view tag, std::string_view name) {
+    return fmt::format("static constexpr const char* {} = \"{}\";", tag, name);
+  };
   for (const Operation& o : operations())
-    r += struct_of(o.name, fmt::format("{}\n/// {}", o.sentence, kinds_help(o)), "operation_name", o.make_params().schema);
+    r += struct_of(o.name, fmt::format("{}\n/// {}", o.sentence, kinds_help(o)), named("operation_name", o.name), o.make_params().schema);
   r += "}  // namespace ops\n\nnamespace shows {\n\n";
-  for (const ShowKind& k : show_kinds()) r += struct_of(k.name, k.sentence, "way_name", k.make_params().schema);
-  return r + "}  // namespace shows\n\n}  // namespace sightglass\n";
+  for (const ShowKind& k : show_kinds()) r += struct_of(k.name, k.sentence, named("way_name", k.name), k.make_params().schema);
+  r += "}  // namespace shows\n\nnamespace settings {\n\n";
+  for (CatalogEntry& e : catalog()) {
+    if (e.kind != EntryKind::camera && e.kind != EntryKind::picture && e.kind != EntryKind::film) continue;
+    std::erase_if(e.schema.decls(), [](const ParamDecl& d) { return d.name == "output"; });  // an argument of its own
+    r += struct_of(e.name, e.sentence, "operator Params() const { return stated_params(); }", e.schema);
+  }
+  return r + "}  // namespace settings\n\n}  // namespace sightglass\n";
 }
 
 }  // namespace sg

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Operations and ways to show as C++ structs, for programs that use the library.
+// Operations, ways to show and settings as C++ structs, for programs that use the library.
 #pragma once
 #include <string>
 
 namespace sg {
 
-/// The text of sightglass/operations.h: a struct per source and operation (sightglass::ops) and per way to show (sightglass::shows), each
-/// with its parameters as members and what is not the default as Params.
+/// The text of sightglass/operations.h: a struct per source and operation (sightglass::ops), per way to show (sightglass::shows), and for
+/// camera, picture and film (sightglass::settings), each with its parameters as members and what is not the default as Params.
 std::string cpp_header();
 
 }  // namespace sg

@@ -80,6 +80,27 @@ TEST_CASE("library: a picture is the one that its recipe makes, byte for byte") 
   CHECK(std::equal(found.pixels.begin(), found.pixels.end(), image.pixels().begin(), image.pixels().end()));
 }
 
+TEST_CASE("library: a picture of parts of a collection that was read, and of what runs on them, is made again from its recipe") {
+  const std::string folder = sg::test::temp_folder(), file = folder + "two.vtm", picture = folder + "two.png";
+  ball(12).write(folder + "a.vti"), source("gyroid", {{"size", 10}}).write(folder + "b.vti");
+  sg::write_file(file,
+                 "<?xml version=\"1.0\"?>\n<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\">\n<vtkMultiBlockDataSet>\n"
+                 "<DataSet index=\"0\" name=\"ball\" file=\"a.vti\"/>\n<DataSet index=\"1\" name=\"ball\" file=\"b.vti\"/>\n"
+                 "</vtkMultiBlockDataSet>\n</VTKFile>\n");
+  const auto parts = read(file).parts();
+  REQUIRE(parts.size() == 2);
+  const Image image = Scene().show(parts[0].second, "outline").show(parts[1].second.run("contour", {{"values", 0}})).render(64, 48);
+  CHECK(!holds(image.recipe(), "memory"));
+  CHECK(holds(image.recipe(), "part: ball"));
+  CHECK(holds(image.recipe(), "part: \"#1\""));  // two of one name
+  image.write(picture);
+  const sg::Image found = sg::read_png(picture);
+  std::vector<std::string> changed;
+  sg::PipelineFile recipe = sg::recipe_in(found, picture, changed);
+  sg::Context context;
+  CHECK(sg::make_picture(recipe, {}, context).image.pixels == found.pixels);
+}
+
 TEST_CASE("library: numbers from memory are named in the recipe, and making the picture again is refused with a reason") {
   const Data grid = uniform_grid({4, 4, 4}).with_point_field("f", std::vector<float>(64, 1.0f));
   const Image image = Scene().show(grid, "outline").render(64, 48);

@@ -112,6 +112,22 @@ TEST_CASE("film: a series becomes a .webm") {
         std::string::npos);
 }
 
+TEST_CASE("film: a camera goes around data that stand still, and each picture is made again from its recipe") {
+  const std::string f = files() + "orbit/";
+  std::filesystem::create_directory(f);
+  const Ran r = sightglass({"render", "-s", "tangle size=9", "-f", "contour values=0", "--camera", "azimuth={t}", "--times", "0:90:3",
+                            "--size", "80x60", "-o", "o_{n}.png"},
+                           f);
+  INFO(r.err);
+  REQUIRE(r.status == 0);
+  CHECK(r.out.find("3 pictures, times 0 to 90") != std::string::npos);
+  CHECK(read_png(f + "o_000.png").pixels != read_png(f + "o_001.png").pixels);
+  CHECK(sightglass({"open", "o_001.png"}, f).status == 0);
+  CHECK(read_png(f + "o_001-again.png").pixels == read_png(f + "o_001.png").pixels);
+  const Ran one = sightglass({"render", "-s", "tangle size=9", "--camera", "azimuth={t}", "-o", "one.png"}, f);
+  CHECK(one.err.find("'{t}' is not a number") != std::string::npos);
+}
+
 TEST_CASE("run: a pipeline file makes numbered pictures and films, of a file's steps or a source's times") {
   const std::string f = files() + "film/";
   std::filesystem::create_directory(f);

@@ -21,10 +21,10 @@ namespace sg {
 
 namespace {
 
-std::vector<Data> results_of(const PipelineFile& file, const std::shared_ptr<Cache>& cache, Context& context) {
+std::vector<Data> results_of(const PipelineFile& file, const StepResults& results, const std::shared_ptr<Cache>& cache, Context& context) {
   GraphOptions options;
   options.cache = cache;
-  const PipelineGraph built = build_graph(file, options);
+  const PipelineGraph built = build_graph(file, options, results);
   std::vector<Target> targets;
   for (NodeId n : built.show) targets.push_back({n, {}});
   if (targets.empty()) targets.push_back({built.last, {}});
@@ -34,10 +34,10 @@ std::vector<Data> results_of(const PipelineFile& file, const std::shared_ptr<Cac
 // Computes the results of one step while another is drawn, and holds them so that the cache finds them.
 class Ahead {
  public:
-  Ahead(PipelineFile file, std::shared_ptr<Cache> cache, Context& context)
-      : thread_([this, file = std::move(file), cache = std::move(cache), &context] {
+  Ahead(PipelineFile file, const PictureOptions& options, Context& context)
+      : thread_([this, file = std::move(file), &options, &context] {
           try {
-            results_ = results_of(file, cache, context);
+            results_ = results_of(file, options.results, options.cache, context);
           } catch (...) {
             // Drawing meets the same error and reports it.
           }
@@ -55,7 +55,7 @@ class Ahead {
 };
 
 // Colours mean the same in all pictures: where no range is stated, that of up to five steps spread over the series.
-void fix_ranges(PipelineFile& first, const std::vector<PipelineFile>& some, Context& context) {
+void fix_ranges(PipelineFile& first, const std::vector<PipelineFile>& some, const PictureOptions& options, Context& context) {
   for (size_t i = 0; i < first.show.size(); ++i) {
     PipelineFile::Show& show = first.show[i];
     const ShowKind& kind = find_show(show.kind);
@@ -65,7 +65,8 @@ void fix_ranges(PipelineFile& first, const std::vector<PipelineFile>& some, Cont
     Range all;
     std::optional<Field> one;
     for (const PipelineFile& file : some) {
-      const std::vector<Data> data = results_of(file, std::make_shared<Cache>(0), context);
+      const std::vector<Data> data =
+          results_of(file, options.results, some.size() > 1 ? std::make_shared<Cache>(0) : options.cache, context);
       for_each_dataset(data[std::min(i, data.size() - 1)], [&](const std::string&, const DatasetPtr& d) {
         const Field* f = shown_field(kind, params, *d);
         if (!f || f->association == Association::whole || f->role == Role::colors) return;
@@ -76,17 +77,20 @@ void fix_ranges(PipelineFile& first, const std::vector<PipelineFile>& some, Cont
     if (!one || !share_range(*one, all, coloring)) continue;
     const Range range{coloring.range[0], coloring.range[1]};
     show.words.push_back(fmt::format("range={},{}", exact_number(range.lo), exact_number(range.hi)));
+    if (some.size() == 1) continue;
     context.info(fmt::format("one range for all pictures: {} to {}, that of {} steps spread over the series", short_number(range.lo),
                              short_number(range.hi), some.size()));
   }
 }
 
-// The pipeline of a series with the looks that its first picture gets.
+// The pipeline of a film with the looks that its first picture gets.
 PipelineFile with_looks(const PipelineFile& plain, PipelineFile first, const PictureOptions& options, Context& context) {
   std::vector<std::string> notes;
   std::vector<Data> looked;
   choose_looks(first, options, options.cache, looked, notes, context);
-  for (size_t i = 0; i < plain.steps.size(); ++i) first.steps[i].words = plain.steps[i].words;  // without its time
+  // Without its time.
+  for (size_t i = 0; i < plain.steps.size(); ++i) first.steps[i].words = plain.steps[i].words;
+  first.picture = plain.picture;
   return first;
 }
 
@@ -102,7 +106,10 @@ std::vector<double> make_film(PipelineFile plain, const FilmParams& params, cons
     const std::lock_guard lock(mutex);
     if (told.emplace(text).second) outer.log(level, text);
   };
-  const FilmTimes film = film_times(plain, params.times, context);
+  // Progress is that of the drawing: what goes on beside it tells none.
+  Context silent(context, 0, 1);
+  silent.on_progress = nullptr;
+  const FilmTimes film = film_times(plain, params.times, silent);
   const size_t count = film.times.size();
   if (callbacks.begin) callbacks.begin(film.times);
 
@@ -110,14 +117,16 @@ std::vector<double> make_film(PipelineFile plain, const FilmParams& params, cons
   const auto cache = std::make_shared<Cache>(0);
   PictureOptions each = options;
   each.cache = cache;
-  std::vector<Data> held = results_of(at_time(plain, film, 0), cache, context);
+  std::vector<Data> held = results_of(at_time(plain, film, 0), each.results, cache, silent);
   const size_t one_step = array_memory();
-  PipelineFile base = with_looks(plain, at_time(plain, film, 0), each, context);
+  PipelineFile base = with_looks(plain, at_time(plain, film, 0), each, silent);
   each.coloring.clear();
   std::vector<PipelineFile> some;
-  for (size_t i = 0; i < std::min<size_t>(5, count); ++i)
-    some.push_back(at_time(base, film, count == 1 ? 0 : i * (count - 1) / (std::min<size_t>(5, count) - 1)));
-  fix_ranges(base, some, context);
+  for (size_t i = 0; i < std::min<size_t>(5, count); ++i) {
+    PipelineFile file = at_time(base, film, count == 1 ? 0 : i * (count - 1) / (std::min<size_t>(5, count) - 1));
+    if (some.empty() || some.back().steps != file.steps) some.push_back(std::move(file));
+  }
+  fix_ranges(base, some, each, silent);
 
   const bool prefetch = outer.memory_limit == 0 || 2 * one_step < outer.memory_limit;
   if (!prefetch) context.info("two steps do not fit into the allowed memory: each is read when it is drawn");
@@ -128,8 +137,9 @@ std::vector<double> make_film(PipelineFile plain, const FilmParams& params, cons
     if (n > 0 && !prefetch) held.clear();
     if (ahead) ahead->wait();
     const std::unique_ptr<Ahead> current = std::move(ahead);  // holds this step until it is drawn
-    if (prefetch && n + 1 < count) ahead = std::make_unique<Ahead>(at_time(base, film, n + 1), cache, context);
-    Picture picture = make_picture(file, each, context);
+    if (prefetch && n + 1 < count) ahead = std::make_unique<Ahead>(at_time(base, film, n + 1), each, silent);
+    Context drawing(context, double(n) / double(count), double(n + 1) / double(count));
+    Picture picture = make_picture(file, each, drawing);
     held.clear();
     callbacks.frame({std::move(picture.image), file, n, count, film.times[n]});
     context.progress(double(n + 1) / double(count), "drawing");

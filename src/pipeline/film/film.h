@@ -2,6 +2,7 @@
 // Films: one picture per time step of a pipeline, all with the looks and colours of one.
 #pragma once
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,8 @@
 #include "pipeline/picture/picture.h"
 
 namespace sg {
+
+class MovieWriter;
 
 /// Whether it is the name of a film or of numbered pictures.
 bool is_film(const std::string& output);
@@ -29,13 +32,32 @@ struct FilmCallbacks {
 };
 
 /// Makes the pictures; returns their times. A parameter written as {t} takes the time; else the steps that have a time do, unless they
-/// state one. The next step is read or computed while one is drawn, where context.memory_limit lets two be in memory. Notes are given once.
-/// Throws Error(usage) where nothing has times.
+/// set one. options.results are of steps that are the same at all times. The next step is read or computed while one is drawn, where
+/// context.memory_limit lets two be in memory. Notes are given once. Throws Error(usage) where nothing has times.
 std::vector<double> make_film(PipelineFile file, const FilmParams& params, const PictureOptions& options, const FilmCallbacks& callbacks,
                               Context& context);
 
+/// Where the pictures of a film go: numbered files, or frames of one film.
+class FilmWriter {
+ public:
+  /// `count`: of all pictures, for the digits of their numbers; 0: not known. Throws Error(usage) for names that are no film's, and Error
+  /// where the film cannot be written.
+  explicit FilmWriter(const FilmParams& params, size_t count = 0);
+  ~FilmWriter();
+  /// A numbered picture gets `pipeline` as its recipe, and is there at once. Throws Error(usage) for frames of different sizes.
+  void add(Image image, const PipelineFile& pipeline);
+  /// Returns what was written: "film.webm", or "out_000.png ... out_100.png". Throws Error(usage) when nothing was added.
+  std::string finish();
+
+ private:
+  std::string numbered(size_t n) const;
+  std::string output_;
+  size_t digits_, written_ = 0;
+  std::unique_ptr<MovieWriter> movie_;
+};
+
 struct FilmWritten {
-  std::string what;  ///< "film.webm", or "out_000.png ... out_100.png"
+  std::string what;  ///< as FilmWriter::finish()
   std::vector<double> times;
 };
 /// make_film() into params.output; numbered pictures get their recipes.

@@ -2,9 +2,10 @@
 // Where the pictures of a film go.
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/file/file.h"
-#include "base/text/text.h"
 #include "image/codec.h"
 #include "io/film/movie.h"
 #include "pipeline/film/film.h"
@@ -15,54 +16,56 @@ namespace {
 
 constexpr std::string_view mark = "{n}";
 
-std::string numbered(const std::string& pattern, size_t n, size_t count) {
-  const size_t at = pattern.find(mark), digits = std::max<size_t>(3, std::to_string(count - 1).size());
-  return pattern.substr(0, at) + fmt::format("{:0{}}", n, digits) + pattern.substr(at + mark.size());
-}
-
-// Where the pictures go: numbered files, or frames of one film.
-class Sink {
- public:
-  Sink(const FilmParams& params, size_t count) : output_(params.output), count_(count) {
-    if (!is_movie(output_)) {
-      AtomicFile probe(numbered(output_, 0, count));
-      return;
-    }
-    settings_.fps = params.fps;
-    movie_ = std::make_unique<MovieWriter>(output_, settings_);
-  }
-  void add(FilmFrame&& frame) {
-    if (movie_) return movie_->add(frame.image);
-    const std::string name = numbered(output_, frame.number, count_);
-    attach_recipe(frame.image, frame.pipeline, name);
-    write_image(name, frame.image);
-  }
-  /// What was written.
-  std::string finish() {
-    if (!movie_) return numbered(output_, 0, count_) + " ... " + numbered(output_, count_ - 1, count_);
-    movie_->finish();
-    return output_;
-  }
-
- private:
-  std::string output_;
-  size_t count_;
-  MovieSettings settings_;
-  std::unique_ptr<MovieWriter> movie_;
-};
-
 }  // namespace
 
 bool is_film(const std::string& output) { return output.find(mark) != std::string::npos || is_movie(output); }
 
+FilmWriter::FilmWriter(const FilmParams& params, size_t count)
+    : output_(params.output), digits_(std::max<size_t>(3, count > 0 ? std::to_string(count - 1).size() : 0)) {
+  if (!is_film(output_))
+    fail_usage(output_.empty() ? "is not named" : fmt::format("'{}' is the name of one picture", output_), "film output",
+               "out_{n}.png numbers the pictures, film.webm is a film of them");
+  if (is_movie(output_)) {
+    MovieSettings settings;
+    settings.fps = params.fps;
+    movie_ = std::make_unique<MovieWriter>(output_, settings);
+  } else {
+    AtomicFile probe(numbered(0));
+  }
+}
+FilmWriter::~FilmWriter() = default;
+
+void FilmWriter::add(Image image, const PipelineFile& pipeline) {
+  if (movie_) {
+    movie_->add(image);
+  } else {
+    const std::string name = numbered(written_);
+    attach_recipe(image, pipeline, name);
+    write_image(name, image);
+  }
+  ++written_;
+}
+
+std::string FilmWriter::finish() {
+  if (written_ == 0) fail_usage("has no picture", output_);
+  if (!movie_) return numbered(0) + " ... " + numbered(written_ - 1);
+  movie_->finish();
+  return output_;
+}
+
+std::string FilmWriter::numbered(size_t n) const {
+  const size_t at = output_.find(mark);
+  return output_.substr(0, at) + fmt::format("{:0{}}", n, digits_) + output_.substr(at + mark.size());
+}
+
 FilmWritten write_film(PipelineFile file, const FilmParams& params, const PictureOptions& options, Context& context) {
-  std::unique_ptr<Sink> sink;
+  std::unique_ptr<FilmWriter> writer;
   FilmWritten written;
   written.times = make_film(std::move(file), params, options,
-                            {[&](const std::vector<double>& times) { sink = std::make_unique<Sink>(params, times.size()); },
-                             [&](FilmFrame&& frame) { sink->add(std::move(frame)); }},
+                            {[&](const std::vector<double>& times) { writer = std::make_unique<FilmWriter>(params, times.size()); },
+                             [&](FilmFrame&& frame) { writer->add(std::move(frame.image), frame.pipeline); }},
                             context);
-  written.what = sink->finish();
+  written.what = writer->finish();
   return written;
 }
 

@@ -12,7 +12,7 @@ void describe(Schema& s, FilmParams& p) {
       .unit("new file");
   s("times", p.times,
     "With {n} in the output, or for a film: the times to draw, e.g. 0:10:101 (first:last:count), 0,0.5,1 or 0:114 (the steps of the file "
-    "in between); default: all in the file. {t} as the value of a parameter stands for the time.")
+    "in between); default: all in the file. {t} as the value of a parameter stands for the time, also in the camera: azimuth={t} orbits.")
       .unit("time");
   s("fps", p.fps, "Films: pictures per second.").range(0.1, 1000);
 }

@@ -15,17 +15,29 @@ namespace sg {
 
 namespace {
 
-// Writes the time where a parameter requests it: 'lic kernel=ripple phase={t}'. False when none does.
-bool write_time(PipelineFile& file, double time) {
-  constexpr std::string_view here = "{t}";
+constexpr std::string_view here = "{t}";
+
+// Writes the time where a word requests it. False when none does.
+bool write_time(std::vector<std::string>& words, double time) {
   bool written = false;
-  for (PipelineFile::Step& s : file.steps)
-    for (std::string& word : s.words)
-      for (size_t at = word.find(here); at != word.npos; at = word.find(here, at)) {
-        word.replace(at, here.size(), exact_number(time));
-        written = true;
-      }
+  for (std::string& word : words)
+    for (size_t at = word.find(here); at != word.npos; at = word.find(here, at)) {
+      word.replace(at, here.size(), exact_number(time));
+      written = true;
+    }
   return written;
+}
+// In a step: 'lic kernel=ripple phase={t}'.
+bool write_time_in_steps(PipelineFile& file, double time) {
+  bool written = false;
+  for (PipelineFile::Step& s : file.steps) written = write_time(s.words, time) || written;
+  return written;
+}
+bool asks_for_time(const PipelineFile& file) {
+  const auto asks = [](const std::vector<std::string>& words) {
+    return std::any_of(words.begin(), words.end(), [](const std::string& w) { return w.find(here) != w.npos; });
+  };
+  return asks(file.picture) || std::any_of(file.steps.begin(), file.steps.end(), [&](const auto& s) { return asks(s.words); });
 }
 
 // Steps all of whose times an operation on series takes.
@@ -82,10 +94,10 @@ std::vector<double> times_to_draw(const std::string& asked, const PipelineFile& 
   if (!first || !last || !(*first <= *last))
     fail_usage(fmt::format("'{}' is not a range of times", asked), "--times", "write FIRST:LAST, FIRST:LAST:COUNT, or a list");
   std::vector<double> times;
-  const bool computed = std::any_of(file.steps.begin(), file.steps.end(), [](const PipelineFile::Step& s) {
-    const Operation* op = known_operation(s.operation);
-    return op && op->kind == OperationKind::source;
-  });
+  const bool computed = asks_for_time(file) || std::any_of(file.steps.begin(), file.steps.end(), [](const PipelineFile::Step& s) {
+                          const Operation* op = known_operation(s.operation);
+                          return op && op->kind == OperationKind::source;
+                        });
   if (reads.path.empty() && !computed) fail_usage("has no time steps", reads.first, "leave {n} out of the picture's name");
   if (const std::vector<double>& all = reads.times; !reads.path.empty()) {
     for (size_t k = 0; k < all.size(); ++k)
@@ -115,7 +127,8 @@ FilmTimes film_times(const PipelineFile& file, const std::string& asked, Context
 PipelineFile at_time(PipelineFile file, const FilmTimes& film, size_t n) {
   const double time = film.times[n];
   const bool of_files = !film.steps.empty();
-  if (write_time(file, time)) return file;
+  const bool in_picture = write_time(file.picture, time);
+  if (write_time_in_steps(file, time)) return file;
   bool moment = false;
   for (PipelineFile::Step& s : file.steps)
     if (const Operation* op = known_operation(s.operation); op && op->shows_moment && !of_files && !word_value(s.words, "time"))
@@ -139,7 +152,7 @@ PipelineFile at_time(PipelineFile file, const FilmTimes& film, size_t n) {
       moves = true;
     }
   }
-  if (!moves && !source.empty())
+  if (!moves && !source.empty() && !in_picture)
     fail_usage(fmt::format("the source '{}' has no parameter 'time', or it is already set", source), "--times",
                "a series needs a source with a parameter 'time'");
   return file;

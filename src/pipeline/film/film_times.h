@@ -21,9 +21,9 @@ struct FilmTimes {
 /// `asked` as FilmParams::times. Throws Error(usage) where nothing has times.
 FilmTimes film_times(const PipelineFile& file, const std::string& asked, Context& context);
 
-/// The pipeline at times[n]: parameters given as {t} receive the time; else operations that show a moment of what they are given
-/// (Operation::shows_moment), whose input stays as it is; else readers and sources with a time, and operations on series in place of what
-/// lies above them.
+/// The pipeline at times[n]: parameters of the camera and the picture given as {t} receive the time. So do those of the
+/// steps; else operations that show a moment of what they are given (Operation::shows_moment), whose input stays as it is;
+/// else readers and sources with a time, and operations on series in place of what lies above them.
 PipelineFile at_time(PipelineFile file, const FilmTimes& film, size_t n);
 
 }  // namespace sg

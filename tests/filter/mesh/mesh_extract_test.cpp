@@ -218,3 +218,27 @@ TEST_CASE("extract: the cells of a turned or mirrored grid have their volume, no
     }
   }
 }
+
+TEST_CASE("extract: one part of a collection by its path or its number is the part itself, a table too") {
+  const auto inner = std::make_shared<Collection>(Collection{{{"left", grid({0, 0, 0})}, {"right", grid({9, 0, 0})}}});
+  const auto table = std::make_shared<const Table>();
+  const Data all = std::make_shared<const Collection>(Collection{{{"wing", inner}, {"#0", grid({0, 9, 0})}, {"numbers", table}}});
+  Context context;
+  const auto part = [&](const std::string& name) {
+    ExtractParams p;
+    p.part = name;
+    return extract_blocks(all, p, context);
+  };
+  CHECK(std::get<DatasetPtr>(part("wing/right")) == std::get<DatasetPtr>(inner->parts[1].data));
+  CHECK(std::get<DatasetPtr>(part("#0")) == std::get<DatasetPtr>(inner->parts[0].data));
+  CHECK(std::get<DatasetPtr>(part("#2"))->bounds().lo.y == 9);
+  CHECK(std::get<TablePtr>(part("numbers")) == table);
+  CHECK(test::error_of([&] { part("wing/rigth"); }).find("did you mean 'wing/right'?") != std::string::npos);
+  CHECK(test::error_of([&] { part("#4"); }).find("there is no part '#4'") != std::string::npos);
+  ExtractParams p;
+  p.part = "wing/left", p.ids = {0, 7};
+  CHECK(std::get<DatasetPtr>(extract_blocks(all, p, context))->cell_count() == 2);
+  p.blocks = {"wing"};
+  CHECK(test::error_of([&] { extract_blocks(all, p, context); }).find("state one of them") != std::string::npos);
+  CHECK(test::error_of([&] { extract_blocks(grid({0, 0, 0}), p, context); }).find("no collection") != std::string::npos);
+}

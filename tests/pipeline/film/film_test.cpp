@@ -97,6 +97,38 @@ TEST_CASE("film: an operation that shows a moment takes the time, and what it is
   }
 }
 
+TEST_CASE("film: the camera and the title take the time, of data that stand still too") {
+  PipelineFile file =
+      parse_pipeline("sightglass: 1\nsteps:\n  a: {tangle: {size: 8}}\npicture: {size: 40x30, title: 'At {t}', camera: {azimuth: '{t}'}}\n",
+                     "", picture_vocabulary());
+  FilmParams params;
+  params.times = "0:90:3";
+  Context context;
+  const std::vector<Shot> shots = shots_of(file, params, context);
+  CHECK(word_value(shots[1].pipeline.picture, "camera.azimuth") == "45");
+  CHECK(word_value(shots[1].pipeline.picture, "title") == "At 45");
+  CHECK(shots[0].image.pixels != shots[1].image.pixels);
+  // What has a time moves along.
+  file = parse_pipeline(gyre, "", picture_vocabulary());
+  take_film_words(file, params);
+  file.picture.push_back("camera.roll={t}");
+  const std::vector<Shot> both = shots_of(file, params, context);
+  CHECK(word_value(both[1].pipeline.steps[0].words, "time") == "0.5");
+  CHECK(word_value(both[1].pipeline.picture, "camera.roll") == "0.5");
+}
+
+TEST_CASE("film: progress goes on over all pictures") {
+  PipelineFile file = parse_pipeline(gyre, "", picture_vocabulary());
+  FilmParams params;
+  take_film_words(file, params);
+  Context context;
+  std::vector<double> told;
+  context.on_progress = [&](double f, std::string_view) { told.push_back(f); };
+  shots_of(file, params, context);
+  CHECK(std::is_sorted(told.begin(), told.end()));
+  CHECK(told.back() == 1);
+}
+
 TEST_CASE("film: numbered pictures go into files that carry their recipes") {
   PipelineFile file = parse_pipeline(gyre, "", picture_vocabulary());
   FilmParams params;

@@ -8,6 +8,7 @@
 #include <unordered_set>
 
 #include "base/error.h"
+#include "base/text/text.h"
 #include "data/cells/cell_reader.h"
 #include "filter/mesh/select/extract.h"
 
@@ -104,7 +105,32 @@ void keep_levels(const DatasetPtr& in, const std::vector<int64_t>& levels, std::
   for (size_t c = 0; c < yes.size(); ++c) yes[c] &= here[c];
 }
 
+void add_parts(const Data& data, const std::string& path, std::vector<Collection::Part>& out) {
+  const auto* c = std::get_if<CollectionPtr>(&data);
+  if (!c) return void(out.push_back({path, data}));
+  for (const Collection::Part& part : (*c)->parts) add_parts(part.data, path.empty() ? part.name : path + "/" + part.name, out);
+}
+
+Data part_named(const Data& in, const std::string& wanted) {
+  if (!std::holds_alternative<CollectionPtr>(in)) fail_usage("the input is no collection", "extract part", "leave part out");
+  const std::vector<Collection::Part> parts = all_parts(in);
+  const auto number = wanted.starts_with('#') ? parse_int(wanted.substr(1)) : std::nullopt;
+  if (number && *number >= 0 && size_t(*number) < parts.size()) return parts[size_t(*number)].data;
+  std::vector<std::string> names;
+  for (const Collection::Part& part : parts) {
+    if (part.name == wanted) return part.data;
+    names.push_back(part.name);
+  }
+  fail_usage(fmt::format("there is no part '{}'", wanted), "extract part", unknown_name_hint(wanted, names));
+}
+
 }  // namespace
+
+std::vector<Collection::Part> all_parts(const Data& data) {
+  std::vector<Collection::Part> parts;
+  add_parts(data, "", parts);
+  return parts;
+}
 
 DatasetPtr extract(const DatasetPtr& in, const ExtractParams& p, Context& ctx) {
   const bool region = has_region(p.region);
@@ -135,7 +161,10 @@ DatasetPtr extract(const DatasetPtr& in, const ExtractParams& p, Context& ctx) {
 }
 
 Data extract_blocks(const Data& in, const ExtractParams& p, Context& ctx) {
-  Data chosen = in;
+  const bool of_cells = !p.ids.empty() || has_region(p.region) || !p.types.empty() || !p.levels.empty();
+  Data chosen = p.part.empty() ? in : part_named(in, p.part);
+  if (!p.part.empty() && !p.blocks.empty()) fail_usage("one part and blocks are asked for", "extract part", "state one of them");
+  if (!p.part.empty() && !of_cells) return chosen;
   if (!p.blocks.empty()) {
     const auto* c = std::get_if<CollectionPtr>(&in);
     if (!c) fail_usage("the input is not a collection", "extract blocks", "leave out blocks");
@@ -158,7 +187,7 @@ Data extract_blocks(const Data& in, const ExtractParams& p, Context& ctx) {
         fail_usage(fmt::format("there is no block '{}'", wanted), "extract blocks", unknown_name_hint(wanted, names));
     }
     chosen = CollectionPtr(r);
-    if (p.ids.empty() && !has_region(p.region) && p.types.empty() && p.levels.empty()) return chosen;
+    if (!of_cells) return chosen;
   }
   if (auto* d = std::get_if<DatasetPtr>(&chosen)) return extract(*d, p, ctx);
   return map_datasets(chosen, [&](const DatasetPtr& d) {

@@ -21,6 +21,7 @@ struct ExtractParams {
   std::vector<std::string> types = {};
   std::vector<int64_t> levels = {};
   std::vector<std::string> blocks = {};
+  std::string part = {};
 };
 inline void describe(Schema& s, ExtractParams& p) {
   s("ids", p.ids, "Numbers of cells or points, counted from 0; or values of the field 'by'.");
@@ -33,6 +34,7 @@ inline void describe(Schema& s, ExtractParams& p) {
   s("types", p.types, "Cell types to select, e.g. Tetra,Hexahedron.");
   s("levels", p.levels, "Levels of an AMR grid to select; 0 is the coarsest.").at_least(0);
   s("blocks", p.blocks, "Parts of a collection to select, by name, path or number.");
+  s("part", p.part, "One part of a collection, by its path or by its number among all parts from #0 on: the result is the part itself.");
 }
 
 /// The chosen cells as a mesh of their own (see extract_cells), in input order, with all fields. With of=point: the cells that use one
@@ -40,8 +42,11 @@ inline void describe(Schema& s, ExtractParams& p) {
 /// Throws Error(usage) when nothing is selected, for nonexistent numbers (without `by`), and for a field `by` of several components or on
 /// an association other than `of`.
 DatasetPtr extract(const DatasetPtr& in, const ExtractParams& p, Context& ctx);
-/// The parts of a collection that `blocks` names (all where it is empty), by name, path of names or number among the top parts; those of
-/// which something is left after extract(), when there are other conditions.
+/// The datasets and tables of a collection in order, each with its path ("wing/left"); anything else is its only part, "".
+std::vector<Collection::Part> all_parts(const Data& data);
+
+/// The part that `part` names, of all_parts(). The parts of a collection that `blocks` names (all where it is empty), by name, path of
+/// names or number among the top parts; those of which something is left after extract(), when there are other conditions.
 Data extract_blocks(const Data& in, const ExtractParams& p, Context& ctx);
 
 }  // namespace sg

@@ -6,7 +6,7 @@ namespace sg::volume {
 std::unique_ptr<TileEngine> engine_for(const EngineInput& input) {
   // Shadows, occlusion, styles and means of cells are for single rays.
   if (input.volume.effects || input.volume.averaged) return nullptr;
-  constexpr EngineFactory fastest_first[] = {tolerant_packets, marching_packets, brick_engine, tetrahedra_engine};
+  constexpr EngineFactory fastest_first[] = {tolerant_packets, marching_packets, maximum_packets, brick_engine, tetrahedra_engine};
   for (const EngineFactory make : fastest_first)
     if (auto engine = make(input)) return engine;
   return nullptr;

@@ -12,28 +12,24 @@ namespace {
 class BrickEngine : public TileEngine {
  public:
   BrickEngine(const EngineInput& in, const BrickedSource& source)
-      : stage_(brick_stage(source, in.item(), in.volume.id, in.volume.unit, in.volume.per_scale)), plan_{stage_,
-                                                                                                         in.projection,
-                                                                                                         in.knobs,
-                                                                                                         {},
-                                                                                                         in.volume.material,
-                                                                                                         in.volume.medium.get(),
-                                                                                                         in.volume.budget,
-                                                                                                         float(in.volume.source->edge)} {
-    if (in.shaded) plan_.lamps = in.lamps;
+      : stage_(brick_stage(source, in.item(), in.volume.id, in.volume.unit, in.volume.per_scale)) {
+    BrickPlan plan{in.projection,
+                   in.knobs.simd,
+                   in.knobs.skip_empty,
+                   in.knobs.stop_below,
+                   {in.shaded ? in.lamps : std::vector<Lamp>(), in.volume.material},
+                   in.volume.medium.get(),
+                   in.volume.budget,
+                   !in.by_tolerance()};
+    if (BrickPackets::fits(source, in.item(), plan)) packets_.emplace(source, stage_, std::move(plan), in.context);
   }
   /// False where packets do not fit.
-  bool read(const EngineInput& in, const BrickedSource& source) {
-    if (!BrickPackets::fits(source, in.item(), plan_, !in.by_tolerance())) return false;
-    packets_.emplace(source, stage_, plan_, !in.by_tolerance(), in.context);
-    return true;
-  }
+  bool fits() const { return packets_.has_value(); }
   void draw(int x0, int y0, int x1, int y1, Frame& frame) const override { packets_->draw(x0, y0, x1, y1, frame); }
   const Volume* blocks() const override { return &stage_; }
 
  private:
   Volume stage_;
-  PacketPlan plan_;
   std::optional<BrickPackets> packets_;
 };
 
@@ -44,7 +40,7 @@ std::unique_ptr<TileEngine> brick_engine(const EngineInput& in) {
   if (!source || in.lattice || in.volume.detail || !in.item().clip.empty() || !in.knobs.bricks_in_packets) return nullptr;
   if (!in.by_tolerance() && !in.by_samples()) return nullptr;
   auto engine = std::make_unique<BrickEngine>(in, *source);
-  return engine->read(in, *source) ? std::move(engine) : nullptr;
+  return engine->fits() ? std::move(engine) : nullptr;
 }
 
 }  // namespace sg::volume

@@ -30,20 +30,19 @@ Volume brick_stage(const BrickedSource& source, const VolumeItem& item, uint32_t
   return v;
 }
 
-bool BrickPackets::fits(const BrickedSource& source, const VolumeItem& item, const PacketPlan& plan, bool in_steps) {
+bool BrickPackets::fits(const BrickedSource& source, const VolumeItem& item, const BrickPlan& plan) {
   for (const size_t n : source.volume().levels[0].dims)
     if (n / BrickedVolume::block >= size_t(1) << 17) return false;
-  const float power = plan.material.power;
-  const bool light = in_steps ? power == 32 : power == std::floor(power) && power >= 0 && power <= 4096;
+  const bool light = in_packets(plan.light) && (!plan.in_steps || plan.light.material.power == 32);
   return source.volume().levels.size() <= 32 && plan.medium->linear() && item.color.kind == ScaleKind::linear &&
-         item.color.labels.empty() && light && plan.lamps.size() <= PacketPlan::most_lamps;
+         item.color.labels.empty() && light;
 }
 
-BrickPackets::BrickPackets(const BrickedSource& source, const Volume& stage, const PacketPlan& plan, bool in_steps, const Context& context)
-    : source_(source), stage_(stage), plan_(plan), in_steps_(in_steps), context_(context) {
+BrickPackets::BrickPackets(const BrickedSource& source, const Volume& stage, BrickPlan plan, const Context& context)
+    : source_(source), stage_(stage), plan_(std::move(plan)), context_(context) {
   source.expect_lattices();
   const BrickTree& tree = source.tree();
-  const Projection& p = plan.projection;
+  const Projection& p = plan_.projection;
   const BrickedVolume::Level& fine = source.volume().levels[0];
   for (const int at : tree.front_to_back()) {
     Leaf leaf{at, HUGE_VALF, HUGE_VALF, -HUGE_VALF, -HUGE_VALF, {}, false};
@@ -88,7 +87,7 @@ bool BrickPackets::meets(const Leaf& leaf, double x0, double y0, double x1, doub
   return true;
 }
 
-bool BrickPackets::load(const BrickNode& node, Volume& v, PacketPlan& plan, std::shared_ptr<const BrickLattice>& lattice) const {
+bool BrickPackets::load(const BrickNode& node, Volume& v, LatticePart& part, std::shared_ptr<const BrickLattice>& lattice) const {
   lattice = source_.lattice(node);
   const auto space = spaces_.get(lattice_key(node), [&] {
     auto s = std::make_shared<BrickSpace>(space_of(lattice->samples.fine, source_.invisible));
@@ -109,7 +108,7 @@ bool BrickPackets::load(const BrickNode& node, Volume& v, PacketPlan& plan, std:
     const double scale = places.scale[node.level][a], shift = places.shift[node.level][a] - lattice->first[a];
     const double low = lo[a] > places.lo[a] ? lo[a] - aside : lo[a], high = hi[a] < places.hi[a] ? hi[a] - aside : hi[a];
     v.lo[a] = low * scale + shift, v.hi[a] = high * scale + shift;
-    plan.whole_lo[a] = places.lo[a] * scale + shift, plan.whole_hi[a] = places.hi[a] * scale + shift;
+    part.whole_lo[a] = places.lo[a] * scale + shift, part.whole_hi[a] = places.hi[a] * scale + shift;
     for (int c = 0; c < 3; ++c) v.to_q.m[a][c] = volume.direction.m[c][a] / level.spacing[a];
     v.margin[a] = 1e-3;
   }
@@ -123,15 +122,17 @@ bool BrickPackets::load(const BrickNode& node, Volume& v, PacketPlan& plan, std:
 void BrickPackets::draw(int x0, int y0, int x1, int y1, Frame& frame) const {
   const auto width = size_t(x1 - x0), height = size_t(y1 - y0);
   // A little picture of its own, with what was gathered so far; rays end at what is opaque in the frame.
-  Frame part(x1 - x0, y1 - y0);
+  Frame gathered(x1 - x0, y1 - y0);
   std::vector<float> half(width * height, HUGE_VALF);
   for (size_t y = 0; y < height; ++y)
-    for (size_t x = 0; x < width; ++x) part.depth[y * width + x] = frame.depth[(size_t(y0) + y) * size_t(frame.width) + size_t(x0) + x];
+    for (size_t x = 0; x < width; ++x) gathered.depth[y * width + x] = frame.depth[(size_t(y0) + y) * size_t(frame.width) + size_t(x0) + x];
   Projection p = plan_.projection;
   p.shift_x -= x0, p.shift_y -= y0;
   Volume volume = stage_;
-  PacketPlan plan{volume, p, plan_.knobs, plan_.lamps, plan_.material, plan_.medium, plan_.budget, plan_.edge};
-  plan.half = half.data();
+  const PrimaryRays rays{volume, p, plan_.simd};
+  LatticePart part{half.data(), {}, {}, plan_.budget.stop_below};
+  const MarchingPlan steps{rays, plan_.light, plan_.stop_below, plan_.skip_empty, nullptr, &part};
+  const StridingPlan integral{{rays, plan_.light, plan_.medium, plan_.budget}, nullptr, plan_.skip_empty, &part};
   std::shared_ptr<const BrickLattice> lattice;
   for (const Leaf& leaf : leaves_) {
     if (!meets(leaf, x0, y0, x1, y1)) continue;
@@ -141,15 +142,16 @@ void BrickPackets::draw(int x0, int y0, int x1, int y1, Frame& frame) const {
     const int top = within(std::floor(leaf.y0), y0, y1), bottom = within(std::ceil(leaf.y1), y0, y1);
     bool light = false;
     for (int y = top; y < bottom && !light; ++y)
-      for (int x = left; x < right && !light; ++x) light = 1 - part.rgba[4 * (size_t(y) * width + size_t(x)) + 3] >= plan.budget.stop_below;
+      for (int x = left; x < right && !light; ++x) light = 1 - gathered.rgba[4 * (size_t(y) * width + size_t(x)) + 3] >= part.stop_below;
     context_.check();
-    if (!light || !load(source_.tree().node(leaf.node), volume, plan, lattice)) continue;
-    (in_steps_ ? march_tile : cast_tile)(plan, left, top, right, bottom, part);
+    if (!light || !load(source_.tree().node(leaf.node), volume, part, lattice)) continue;
+    if (plan_.in_steps) draw_tile(steps, left, top, right, bottom, gathered);
+    else draw_tile(integral, left, top, right, bottom, gathered);
   }
   for (size_t y = 0; y < height; ++y)
     for (size_t x = 0; x < width; ++x) {
       const size_t from = y * width + x, to = (size_t(y0) + y) * size_t(frame.width) + size_t(x0) + x;
-      const float* in = &part.rgba[4 * from];
+      const float* in = &gathered.rgba[4 * from];
       float* out = &frame.rgba[4 * to];
       Gathered sum{in[0], in[1], in[2], 1 - in[3]};
       sum.behind(out);

@@ -10,18 +10,28 @@ namespace sg::volume {
 /// What the lattices of all bricks share: all but the samples. `unit`: world length to which opacity refers.
 Volume brick_stage(const BrickedSource& source, const VolumeItem& item, uint32_t id, double unit, float per_scale);
 
-/// One volume alone. Draws what single rays through the source draw, except where two levels meet: there the levels are mixed at the
-/// samples and linear between them.
+/// What the rays of a picture share.
+struct BrickPlan {
+  const Projection& projection;
+  bool simd, skip_empty;  ///< of Knobs
+  float stop_below;       ///< in steps: early ray termination
+  Illumination light;
+  const Medium* medium;
+  Budget budget;
+  bool in_steps;  ///< fixed steps, else within the tolerance
+};
+
+/// One volume alone. Draws what single rays through the source draw, except where two levels meet: there the levels are mixed at the samples
+/// and linear between them.
 class BrickPackets {
  public:
-  /// Whether this can be drawn so: as in_tolerant_packets() and in_packets(), and lattice_key() can distinguish the bricks.
-  static bool fits(const BrickedSource& source, const VolumeItem& item, const PacketPlan& plan, bool in_steps);
+  /// Whether this can be drawn so: as in_packets(), and lattice_key() can distinguish the bricks.
+  static bool fits(const BrickedSource& source, const VolumeItem& item, const BrickPlan& plan);
 
-  /// `stage` as brick_stage() makes it; plan.volume is not read. The source must have its Invisible. All of them, and the plan's medium,
-  /// must outlive this.
-  BrickPackets(const BrickedSource& source, const Volume& stage, const PacketPlan& plan, bool in_steps, const Context& context);
+  /// `stage` as brick_stage() makes it. The source must have its Invisible. All of them, and the plan's medium, must outlive this.
+  BrickPackets(const BrickedSource& source, const Volume& stage, BrickPlan plan, const Context& context);
 
-  /// Composites the pixels [x0, x1) x [y0, y1) before what is in the frame, as cast_tile() does; reads bricks as rays reach them.
+  /// Composites the pixels [x0, x1) x [y0, y1) before what is in the frame, as draw_tile() does; reads bricks as rays reach them.
   void draw(int x0, int y0, int x1, int y1, Frame& frame) const;
 
  private:
@@ -32,13 +42,12 @@ class BrickPackets {
     bool all = false;  ///< it reaches behind the eye: anything
   };
   bool meets(const Leaf& leaf, double x0, double y0, double x1, double y1) const;
-  /// The lattice of a leaf as the volume of a plan; false when there is nothing to draw.
-  bool load(const BrickNode& node, Volume& volume, PacketPlan& plan, std::shared_ptr<const BrickLattice>& lattice) const;
+  /// The lattice of a leaf as the volume of a plan, and the part that it is; false when there is nothing to draw.
+  bool load(const BrickNode& node, Volume& volume, LatticePart& part, std::shared_ptr<const BrickLattice>& lattice) const;
 
   const BrickedSource& source_;
   const Volume& stage_;
-  PacketPlan plan_;
-  bool in_steps_;
+  BrickPlan plan_;
   const Context& context_;
   std::vector<Leaf> leaves_;  // front to back
   mutable ByteCache<BrickSpace> spaces_{size_t(32) << 20};

@@ -25,7 +25,7 @@ DetailTable::DetailTable(const VolumeItem& item, const Detail& detail, double ba
       edges(detail.transfer.edges()),
       second_edges(detail.transfer.second_edges()),
       per_unit(float(1 / detail.unit)),
-      most_tau(detail.most_tau) {
+      most_sigma_t(detail.most_tau) {
   const auto draw = [&](float lo, float hi) {
     if (!drawn.empty() && lo <= drawn.back().hi) drawn.back().hi = hi;
     else drawn.push_back({lo, hi});

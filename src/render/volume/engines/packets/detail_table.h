@@ -27,7 +27,7 @@ struct DetailTable {
   std::vector<Range> drawn;     ///< of values, ascending; nothing is drawn outside of them
   float narrow, narrow_second;  ///< of the TransferFunction, as the edges
   std::vector<TransferFunction::Edge> edges, second_edges;
-  float per_unit, most_tau;  ///< tau = -ln(1 - opacity) * per_unit, at most most_tau
+  float per_unit, most_sigma_t;  ///< sigma_t = -ln(1 - opacity) * per_unit, at most most_sigma_t
 };
 
 }  // namespace sg::volume

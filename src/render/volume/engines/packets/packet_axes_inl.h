@@ -20,7 +20,7 @@ class EvenAxes {
 
  public:
   template <class T>
-  HWY_INLINE EvenAxes(const PacketPlan&, const Source<D, T>& source) {
+  HWY_INLINE EvenAxes(const IntegralPlan&, const Source<D, T>& source) {
     for (int a = 0; a < 3; ++a) last_cell_[a] = source.last_cell[a];
   }
 
@@ -64,7 +64,7 @@ class UnevenLanes {
 
  public:
   template <class T>
-  HWY_INLINE UnevenLanes(const PacketPlan& plan, const Source<D, T>& source) : axes_(*plan.uneven), loads_(source.loads) {
+  HWY_INLINE UnevenLanes(const UnevenPlan& plan, const Source<D, T>& source) : axes_(*plan.axes), loads_(source.loads) {
     for (int a = 0; a < 3; ++a) last_cell_[a] = source.last_cell[a];
   }
 

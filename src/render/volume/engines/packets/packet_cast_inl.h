@@ -14,8 +14,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
 
-template <template <class, class, bool> class Packet, class D, class T, bool shaded>
-HWY_NOINLINE void cast_all(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+template <template <class, class, bool> class Packet, class D, class T, bool shaded, class Plan>
+HWY_NOINLINE void cast_all(const Plan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
   constexpr int lanes = lanes_of<D>, width = packet_width<D>, height = lanes / width;
   RayPacket rays;
   PacketResult result;
@@ -24,12 +24,12 @@ HWY_NOINLINE void cast_all(const PacketPlan& plan, int x0, int y0, int x1, int y
       if (!set_up<D>(plan, x, y, x1, y1, frame, rays)) continue;
       Packet<D, T, shaded> packet(plan, rays);
       packet.run(result);
-      put(plan, rays, result, lanes, frame);
+      put(plan.volume, part_of(plan), rays, result, lanes, frame);
     }
 }
 
-template <template <class, class, bool> class Packet, class D, class T>
-HWY_INLINE void cast_as(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+template <template <class, class, bool> class Packet, class D, class T, class Plan>
+HWY_INLINE void cast_as(const Plan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
   if (plan.volume.shaded) cast_all<Packet, D, T, true>(plan, x0, y0, x1, y1, frame);
   else cast_all<Packet, D, T, false>(plan, x0, y0, x1, y1, frame);
 }

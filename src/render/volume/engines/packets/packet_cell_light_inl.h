@@ -27,9 +27,9 @@ class CellLight {
   /// By how much it changes on the way. And by how much it may jump (a surface turns over, a lamp begins to reach it).
   struct Error {
     F bend, change, jump;
-    bool over;                             ///< may it turn over in any lane?
-    bool reached[PacketPlan::most_lamps];  ///< may a lamp begin to reach it?
-    Mask<D> begins;                        ///< the lanes in which its weight may pass 1
+    bool over;                               ///< may it turn over in any lane?
+    bool reached[Illumination::most_lamps];  ///< may a lamp begin to reach it?
+    Mask<D> begins;                          ///< the lanes in which its weight may pass 1
   };
   /// The gradient on the way, of which those that follow speak.
   HWY_INLINE void find(const Source<D, T>& source, const I cell[3], const F from[3], const F way[3]) {
@@ -95,7 +95,7 @@ class CellLight {
   }
 
   /// Room for all of them, so that no lane goes short because of another: three for the face that is seen and for each lamp.
-  static constexpr int quarters = 4, most_jumps = 3 * (1 + int(PacketPlan::most_lamps)) + quarters;
+  static constexpr int quarters = 4, most_jumps = 3 * (1 + int(Illumination::most_lamps)) + quarters;
 
   /// Where the light of the lanes told jumps on the way; 2 in lanes where it does not. Returns how many.
   HWY_NOINLINE int jumps(const Error& e, Mask<D> which, F at[most_jumps]) const {

@@ -32,14 +32,14 @@ struct RayLanes {
   using I = Int<D>;
   using M = Mask<D>;
 
-  const PacketPlan& plan;
+  const IntegralPlan& plan;
   const Source<D, T> source;
   const Axes axes;
   F start[3], along[3];  ///< in q: where the rays enter, and one world length
   Gathering<D> sum;
 
-  HWY_INLINE RayLanes(const PacketPlan& p, const RayPacket& rays)
-      : plan(p), source(p.volume.voxels, p.volume.within_samples()), axes(p, source) {
+  template <class Plan>
+  HWY_INLINE RayLanes(const Plan& p, const RayPacket& rays) : plan(p), source(p.volume.voxels, p.volume.within_samples()), axes(p, source) {
     const D d;
     // Rays that miss stay where there are samples.
     const M meets = hn::Load(d, rays.length) > 0;
@@ -68,14 +68,16 @@ class PacketCells : public RayLanes<D, T, Axes> {
   const MediumLanes<D> medium;
   const Lighting<D> lighting;
 
-  HWY_INLINE PacketCells(const PacketPlan& p, const RayPacket& rays)
-      : Rays(p, rays), medium(*p.medium), lighting(p, rays), light(lighting, axes) {
+  template <class Plan>
+  HWY_INLINE PacketCells(const Plan& p, const RayPacket& rays)
+      : Rays(p, rays), medium(*p.medium), lighting(p.volume, p.light, rays), light(lighting, axes) {
     at_ = set(IntTag<D>(), 0);
     line_ = medium.line(at_);
   }
 
-  /// What a change of the value by `range` and of its light by `lightening` may have of itself hidden by its front, in a fifth of the
-  /// tolerance. `covary`: by how much of that light the colours are lit as they change, 0 where they have one light each.
+  /// Sets the bounds by which segment() tells whether self-occlusion counts: how much colour that changes with the value, by `range`, and
+  /// with the light, by `lightening`, the front of a segment may hide, in fifths of the tolerance. `covary`: the change of light by which
+  /// colours are multiplied as they change; 0 where a segment has one light.
   HWY_INLINE void may_hide(F range, F lightening, F covary) {
     const D d;
     const F per = set(d, 1 / (0.2f * float(plan.budget.tolerance))), recolored = range * medium.medium.color_slope();
@@ -84,25 +86,27 @@ class PacketCells : public RayLanes<D, T, Axes> {
     most_hidden_ = change * per, most_covary_ = recolored * covary * (per * (1.0f / 3));
   }
 
-  /// One cell per lane: its cubic, and what the medium makes of it.
+  /// One cell per lane, from t to `leave`: along the ray the trilinear field is a cubic, which is integrated.
   HWY_INLINE void cross(const I inside[3], F t, F leave, M look) {
+    // The ray in the cell, and the samples at its corners.
     F from[3], way[3];
     this->way_through(inside, t, leave, from, way);
     Pair<D> rows[4];
     source.corners(source.offset(inside[0], inside[1], inside[2]), rows);
     const auto &p00 = rows[0], &p01 = rows[1], &p10 = rows[2], &p11 = rows[3];
-    // No place in the cell lies outside the range of its corners.
+    // Empty cells: no value in a cell lies outside the range of its corners.
     const F least = min(min(min(p00.a, p00.b), min(p01.a, p01.b)), min(min(p10.a, p10.b), min(p11.a, p11.b)));
     const F largest = max(max(max(p00.a, p00.b), max(p01.a, p01.b)), max(max(p10.a, p10.b), max(p11.a, p11.b)));
     const M clear_line = line_.dark();
     if (none(look & !(clear_line & ((least >= line_.lo) & (largest <= line_.hi))))) return;
+    // The cubic with its bounds, and the line of the medium where it begins.
     const Cubic<D> f = along_way(rows, from, way);
     F lo, hi;
     f.hull(lo, hi);
     look = look & (f.last == f.last);  // no hole
-    const M strange = look & !((f.a >= line_.lo) & (f.a <= line_.hi));
+    const M off_line = look & !((f.a >= line_.lo) & (f.a <= line_.hi));
     // Only these: on a knot either line would do, and which it is must not depend on the other lanes.
-    if (any(strange)) at_ = select(strange, medium.line_of(f.a), at_), line_ = medium.line(at_);
+    if (any(off_line)) at_ = select(off_line, medium.line_of(f.a), at_), line_ = medium.line(at_);
     const M same = (lo >= line_.lo) & (hi <= line_.hi);
     const M dark = same & line_.dark();
     look = look & !dark;
@@ -110,6 +114,8 @@ class PacketCells : public RayLanes<D, T, Axes> {
     integrate(f, lo, hi, same, inside, from, way, t, leave - t, look);
   }
 
+  /// The integral over a cell. `lo`, `hi` bound the values; `same`: they lie on one line of the medium. Estimates the error of one piece
+  /// first, takes as many pieces as the tolerance asks for, and cuts them at the knots of the medium and at the kinks of the light.
   HWY_INLINE void integrate(const Cubic<D>& f, F lo, F hi, M same, [[maybe_unused]] const I inside[3], const F from[3], const F way[3], F t,
                             F length, M look) {
     const D d;
@@ -120,19 +126,19 @@ class PacketCells : public RayLanes<D, T, Axes> {
     const float tolerance = float(plan.budget.tolerance);
     // Extinction on the way: mean, largest, steepest. The mean of the cubic is a + b/2 + c/3 + e/4.
     const F mean = mul_add(half, f.b, f.a) + mul_add(0.25f, f.e, 1.0f / 3 * f.c);
-    F tau_mean = line.tau(mean), most = max(max(line.tau(lo), line.tau(hi)), tau_mean);
+    F mean_sigma_t = line.sigma_t(mean), most = max(max(line.sigma_t(lo), line.sigma_t(hi)), mean_sigma_t);
     F slope = max(line.slope_at(lo), line.slope_at(hi));
     M abrupt = hn::MaskFromVec(zero);  // lanes in which the medium jumps between the values
     if (any(look & !same)) {
       const I first = medium.line_of(lo), last = medium.line_of(hi);
       most = select(same, most, medium.most(medium.columns.most_tau, first, last));
       slope = select(same, slope, medium.most(medium.columns.most_slope, first, last));
-      tau_mean = select(same, tau_mean, medium.line(medium.line_of(mean)).tau(mean));
+      mean_sigma_t = select(same, mean_sigma_t, medium.line(medium.line_of(mean)).sigma_t(mean));
       look = look & (most > zero);
       if (none(look)) return;
       if (m.any_abrupt()) abrupt = medium.abrupt(first, last) & !same;
     }
-    // The errors of rays/integrate.cpp, Pieces::whole.
+    // Error of the whole as one piece, and the share of the tolerance allowed: Pieces::whole of rays/integrate.cpp.
     const F pass = sum.pass, depth = length * most, taken = min(one, depth), range = hi - lo;
     const F color_slope = set(d, m.color_slope());
     const F widths = range * (1 / m.color_width()), change = min(one, range * color_slope);
@@ -147,7 +153,7 @@ class PacketCells : public RayLanes<D, T, Axes> {
     const F fourth = mul_add(abs(f.e), range + range, bend * bend);
     const F leaning = min(taken * 120.0f, length * medium.leaning(slope, range, bend, abs(f.e)));
     const F uneven = pass * (1.0f / 120) * (min(one, fourth * (tilt * color_slope)) + leaning);
-    const F share = pass * min(one, length * tau_mean);
+    const F share = pass * min(one, length * mean_sigma_t);
     const F allowed = tolerance * mul_add(share, 0.4f, length * float(0.3 / plan.budget.length));
     // Knots: turns of the value between them matter where it goes far enough beyond.
     F close = zero;  // so near to a knot a value counts as that
@@ -227,14 +233,14 @@ class PacketCells : public RayLanes<D, T, Axes> {
         if (any(astray)) meet = select(astray, enclosed(f, s, end, v, target, knot, close, astray), meet);
         to = select(cut, meet, to), next = select(cut, knot, next);
       }
-      // Simpson's rule.
+      // Simpson's rule: optical depth of the piece, its mean value by emission and where that lies.
       const F middle = f.at(half * (s + to)), part = length * (to - s);
-      const F t0 = l.tau(v), tm = 4.0f * l.tau(middle), t1 = l.tau(next), all = t0 + tm + t1;
+      const F t0 = l.sigma_t(v), tm = 4.0f * l.sigma_t(middle), t1 = l.sigma_t(next), all = t0 + tm + t1;
       const F per_all = one / max(all, 1e-37f);
       const F by_emission = mul_add(t1, next, mul_add(tm, middle, t0 * v)) * per_all;
       const F weight = mul_add(half, tm, t1) * per_all;
-      const F taus[3] = {t0, tm * 0.25f, t1};
-      segment(look, mul_add(length, s, t), part, part * (all * (1.0f / 6)), taus, v, next, by_emission, weight, &at_,
+      const F extinctions[3] = {t0, tm * 0.25f, t1};
+      segment(look, mul_add(length, s, t), part, part * (all * (1.0f / 6)), extinctions, v, next, by_emission, weight, &at_,
               [&](F at, F share, const Spread&, F& red, F& green, F& blue) HWY_ATTR {
                 if constexpr (shaded) {
                   const auto on = light.at(mul_add(to - s, at, s));
@@ -278,15 +284,15 @@ class PacketCells : public RayLanes<D, T, Axes> {
     return meet;
   }
 
-  /// The share of the way after which the share q of its depth is passed; tau at the begin, the middle and the end.
-  static HWY_INLINE F way_of_depth(const F tau[3], F q) {
+  /// The share of the way after which the share q of its depth is passed; sigma_t at the begin, the middle and the end.
+  static HWY_INLINE F way_of_depth(const F sigma_t[3], F q) {
     const D d;
     const F zero = set(d, 0), half = set(d, 0.5f), least = set(d, 1e-30f);
-    const F front = tau[0] + tau[1], back = tau[1] + tau[2];
+    const F front = sigma_t[0] + sigma_t[1], back = sigma_t[1] + sigma_t[2];
     const F x = q * (front + back);
     const M in_front = x <= front;
     // a s + (b - a) s^2 / 2 = rest / 2
-    const F a = select(in_front, tau[0], tau[1]), b = select(in_front, tau[1], tau[2]);
+    const F a = select(in_front, sigma_t[0], sigma_t[1]), b = select(in_front, sigma_t[1], sigma_t[2]);
     const F rest = select(in_front, x, x - front), sum = a + b;
     const F root = sqrt(max(zero, mul_add(a, a, rest * (b - a))));
     const F s = rest / max(a + root, least);
@@ -298,20 +304,26 @@ class PacketCells : public RayLanes<D, T, Axes> {
     F narrower, change[3];
     bool any_change;
   };
-  /// Pieces::segment of rays/integrate.cpp. `line`: of the medium on which the part lies; null: that of each value. `lit(at, share,
-  /// spread, r, g, b)` lights the colours and the share of what is mirrored, at the share `at` of the part.
+  /// Composites a segment front to back (Pieces::segment of rays/integrate.cpp): it begins at `here`, is `part` long, has the optical depth
+  /// `depth`, sigma_t at its begin, middle and end, the values a and b at its ends, and `middle` as the mean by emission, at the share
+  /// `weight` of its length. `line`: of the medium on which it lies; null: that of each value. `lit(at, share, spread, r, g, b)` lights the
+  /// colours and the share of what is mirrored, at the share `at` of the segment.
   template <class Lit>
-  HWY_INLINE void segment(M look, F here, F part, F depth, const F tau[3], F a, F b, F middle, F weight, const I* line, const Lit& lit) {
+  HWY_INLINE void segment(M look, F here, F part, F depth, const F sigma_t[3], F a, F b, F middle, F weight, const I* line,
+                          const Lit& lit) {
     const D d;
     const F zero = set(d, 0), one = set(d, 1.0f), half = set(d, 0.5f);
     const M drawn = look & (depth > zero);
     if (none(drawn)) return;
     depth = only(drawn, depth);
+    // Transmittance and opacity; where thin by its series: the difference would cancel.
     const F pass = exp_minus(depth);
     const F thin = depth * neg_mul_add(depth, neg_mul_add(depth, 1.0f / 6, half), one);
     const F alpha = select(depth < 0.02f, thin, one - pass);
+    // Emitted colour at the mean value.
     auto color = line ? medium.color(middle, *line) : medium.color(middle);
     F r = color.r * alpha, g = color.g * alpha, bl = color.b * alpha;
+    // Self-occlusion: where colour or light changes along a deep segment its front hides the back.
     M deep = drawn & (depth > 0.1f);
     deep = deep & (min(depth, 6.0f) * most_hidden_ > 12.0f);
     Spread spread{one, {zero, zero, zero}, false};
@@ -338,18 +350,20 @@ class PacketCells : public RayLanes<D, T, Axes> {
         spread.any_change = true;
       }
     }
+    // Light on it, and front-to-back compositing.
     const F before = only(drawn, sum.pass);
     lit(weight, alpha, spread, r, g, bl);
     // Lanes that draw nothing may have been lit beside a hole.
     if constexpr (shaded) r = only(drawn, r), g = only(drawn, g), bl = only(drawn, bl);
     sum.r = mul_add(before, r, sum.r), sum.g = mul_add(before, g, sum.g), sum.b = mul_add(before, bl, sum.b);
     const F after = sum.pass * pass;
+    // Where half of the light is gone.
     const M halved = drawn & ((after < half) & (sum.half_at < zero));
     if (any(halved)) {
       // ln(2 pass) = 2 atanh z
       const F z = (sum.pass - half) / (sum.pass + half), z2 = z * z;
       const F log = (z + z) * mul_add(z2, mul_add(z2, mul_add(z2, 1.0f / 7, 0.2f), 1.0f / 3), one);
-      const F share = way_of_depth(tau, max(zero, min(log / max(depth, 1e-30f), one)));
+      const F share = way_of_depth(sigma_t, max(zero, min(log / max(depth, 1e-30f), one)));
       sum.half_at = select(halved, mul_add(part, share, here), sum.half_at);
     }
     sum.pass = select(drawn, after, sum.pass);

@@ -23,9 +23,10 @@ class DetailLanes {
  public:
   HWY_INLINE explicit DetailLanes(const DetailTable& table) : table_(table) {}
 
-  HWY_INLINE F tau(F value, F gradient) const {
+  /// The extinction coefficient.
+  HWY_INLINE F sigma_t(F value, F gradient) const {
     const D d;
-    const F zero = set(d, 0), one = set(d, 1.0f), most = set(d, table_.most_tau);
+    const F zero = set(d, 0), one = set(d, 1.0f), most = set(d, table_.most_sigma_t);
     const F opacity = at(table_.opacity, value) * at(table_.factor, gradient);
     const M whole = opacity >= one;
     const F below = max(zero, only(!whole, opacity));
@@ -62,9 +63,10 @@ class DetailCells : public RayLanes<D, T, Axes> {
  public:
   using Rays::plan, Rays::source, Rays::axes, Rays::sum;
 
-  HWY_INLINE DetailCells(const PacketPlan& p, const RayPacket& rays)
-      : Rays(p, rays), medium_(*p.medium), detail_(*p.detail), lighting_(p, rays), light_(lighting_, axes) {}
+  HWY_INLINE DetailCells(const DetailPlan& p, const RayPacket& rays)
+      : Rays(p, rays), medium_(*p.medium), detail_(*p.table), lighting_(p.volume, p.light, rays), light_(lighting_, axes) {}
 
+  /// One cell per lane, from t to `leave`.
   HWY_INLINE void cross(const I inside[3], F t, F leave, M look) {
     F from[3], way[3];
     this->way_through(inside, t, leave, from, way);
@@ -82,10 +84,10 @@ class DetailCells : public RayLanes<D, T, Axes> {
  private:
   /// What is at a place: extinction and, lit, its colour.
   struct Spot {
-    F value, gradient, tau, color[3];
+    F value, gradient, sigma_t, color[3];
     FieldSurface<D> surface;  // of what is shaded
     HWY_INLINE void take(const Spot& o, M which) {
-      for (const auto& [to, from] : {std::pair{&value, &o.value}, {&gradient, &o.gradient}, {&tau, &o.tau}})
+      for (const auto& [to, from] : {std::pair{&value, &o.value}, {&gradient, &o.gradient}, {&sigma_t, &o.sigma_t}})
         *to = select(which, *from, *to);
       for (int c = 0; c < 3; ++c) color[c] = select(which, o.color[c], color[c]);
       if constexpr (shaded) surface.take(o.surface, which);
@@ -97,7 +99,7 @@ class DetailCells : public RayLanes<D, T, Axes> {
     p.value = f.at(s);
     light_.gradient(s, g);
     p.gradient = sqrt(Lighting<D>::dot(g, g));
-    p.tau = detail_.tau(p.value, p.gradient);
+    p.sigma_t = detail_.sigma_t(p.value, p.gradient);
     const auto color = medium_.color(p.value);
     p.color[0] = color.r, p.color[1] = color.g, p.color[2] = color.b;
     if constexpr (shaded) {
@@ -116,8 +118,8 @@ class DetailCells : public RayLanes<D, T, Axes> {
     F depth, passes, light[3];
     HWY_INLINE Part(F length, const Spot& a, const Spot& m, const Spot& b) {
       const D d;
-      const F one = set(d, 1.0f), two = set(d, 2.0f), half = set(d, 0.5f), tm = 4.0f * m.tau;
-      const F all = a.tau + tm + b.tau, per_all = one / max(all, 1e-30f);
+      const F one = set(d, 1.0f), two = set(d, 2.0f), half = set(d, 0.5f), tm = 4.0f * m.sigma_t;
+      const F all = a.sigma_t + tm + b.sigma_t, per_all = one / max(all, 1e-30f);
       depth = all * (length * (1.0f / 6)), passes = exp_minus(depth);
       // Series where differences would cancel.
       const F square = depth * depth;
@@ -131,7 +133,7 @@ class DetailCells : public RayLanes<D, T, Axes> {
       const F of_change = select(thin, change_thin, mul_sub(half, alpha, i1));
       const F of_bend = select(thin, bend_thin, mul_add(alpha, 1.0f / 6, i2 - i1));
       for (int c = 0; c < 3; ++c) {
-        const F sent = mul_add(b.tau, b.color[c], mul_add(tm, m.color[c], a.tau * a.color[c]));
+        const F sent = mul_add(b.sigma_t, b.color[c], mul_add(tm, m.color[c], a.sigma_t * a.color[c]));
         const F change = b.color[c] - a.color[c], bend = mul_add(-4.0f, m.color[c], two * (a.color[c] + b.color[c]));
         light[c] = mul_add(bend, of_bend, neg_mul_add(change, of_change, sent * per_all * alpha));
       }
@@ -143,10 +145,11 @@ class DetailCells : public RayLanes<D, T, Axes> {
     const F zero = set(d, 0), one = set(d, 1.0f), half = set(d, 0.5f);
     const F stop = set(d, plan.budget.stop_below), tolerance = set(d, float(plan.budget.tolerance));
     // Parts shorter than a cell have as much: kinks, of which there are few, would be cut down to nothing.
-    const F by_cell = set(d, float(0.4 * double(plan.edge) / plan.budget.length));
+    const F by_cell = set(d, float(0.4 * double(float(plan.volume.edge)) / plan.budget.length));
     F s = zero, part = one;
     Spot a = spot(f, zero);
     for (;;) {
+      // Five places of the part: the integral over all of it, and over both halves.
       const F quarter = part * 0.25f, end = min(one, s + part);
       const Spot p1 = spot(f, s + quarter), m = spot(f, mul_add(half, part, s)), p3 = spot(f, mul_add(3.0f, quarter, s)), b = spot(f, end);
       const F whole = length * part, half_length = half * whole;
@@ -161,13 +164,15 @@ class DetailCells : public RayLanes<D, T, Axes> {
       // trapezoid rule differs by counts, too.
       const F taken_here = one - passes, depth = front.depth + back.depth;
       const F per_depth = taken_here / max(depth, 1e-6f);
-      F bend = bend_of(a.tau, p1.tau, m.tau, p3.tau, b.tau);
+      F bend = bend_of(a.sigma_t, p1.sigma_t, m.sigma_t, p3.sigma_t, b.sigma_t);
       for (int c = 0; c < 3; ++c)
-        bend = max(bend, bend_of(a.tau * a.color[c], p1.tau * p1.color[c], m.tau * m.color[c], p3.tau * p3.color[c], b.tau * b.color[c]));
+        bend = max(bend, bend_of(a.sigma_t * a.color[c], p1.sigma_t * p1.color[c], m.sigma_t * m.color[c], p3.sigma_t * p3.color[c],
+                                 b.sigma_t * b.color[c]));
       error = max(half * error, 1.0f / 24 * (bend * whole * per_depth));
       error = sum.pass * error;
       const F taken = sum.pass * taken_here;
       const F allowed = tolerance * mul_add(0.4f, taken, by_cell);
+      // Do the curves have anything between the places that these do not show?
       const DetailTable& table = detail_.table();
       const AxisSamples values{{&a.value, &p1.value, &m.value, &p3.value, &b.value}, table.narrow, table.opacity, table.edges};
       const AxisSamples gradients{
@@ -183,6 +188,7 @@ class DetailCells : public RayLanes<D, T, Axes> {
                           (grazing(m.surface, p3.surface) | grazing(p3.surface, b.surface));
         missed = missed | (turning & ((taken > tolerance) & (part > least_turning)));
       }
+      // Parts that are good enough, or short enough, are composited; the others are halved.
       const M fine = (error <= allowed) & !missed;
       const M done = look & (fine | (part <= least_part));
       if (any(done)) {
@@ -263,6 +269,7 @@ class DetailCells : public RayLanes<D, T, Axes> {
     }
   };
 
+  /// Composites a part front to back.
   HWY_INLINE void add(M which, const F light[3], F passes, F here, F length) {
     const D d;
     const F half = set(d, 0.5f), before = only(which, sum.pass);

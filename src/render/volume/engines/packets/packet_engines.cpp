@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lattices by packets of rays: the plans of both engines, with the tables that they read.
+// Lattices by packets of rays: the plan of each engine, with the tables that it reads.
 #include <optional>
 
 #include "render/volume/engines/engine.h"
@@ -11,86 +11,109 @@ namespace sg::volume {
 
 namespace {
 
+/// Draws by a plan.
+template <class Plan>
 class PacketEngine : public TileEngine {
  public:
-  explicit PacketEngine(const EngineInput& in)
-      : plan{*in.lattice,        in.projection,          in.knobs,         {},
-             in.volume.material, in.volume.medium.get(), in.volume.budget, float(in.volume.source->edge)} {
-    if (in.shaded) plan.lamps = in.lamps;
-    plan.clip = in.item().clip;
-  }
-  const Volume* blocks() const override { return &plan.volume; }
-
-  PacketPlan plan;
+  const Volume* blocks() const override { return &plan_.volume; }
+  void draw(int x0, int y0, int x1, int y1, Frame& frame) const override { draw_tile(plan_, x0, y0, x1, y1, frame); }
 
  protected:
-  /// Where there is something empty to leap over.
-  void look_ahead(const EngineInput& in) {
-    if (leaps(in)) plan.ahead = &ahead_.emplace(space_ahead(in));
+  explicit PacketEngine(Plan plan) : plan_(std::move(plan)) {}
+  Plan plan_;
+};
+
+PrimaryRays rays_of(const EngineInput& in) { return {*in.lattice, in.projection, in.knobs.simd, in.item().clip}; }
+Illumination light_of(const EngineInput& in) { return {in.shaded ? in.lamps : std::vector<Lamp>(), in.volume.material}; }
+IntegralPlan integral_of(const EngineInput& in) { return {rays_of(in), light_of(in), in.volume.medium.get(), in.volume.budget}; }
+
+/// Is there something empty to leap over?
+bool leaps(const EngineInput& in) { return in.knobs.skip_empty && in.lattice->any_empty; }
+SpaceAhead space_ahead(const EngineInput& in) {
+  return {in.lattice->distance, in.lattice->fine().dims, Ways::of(in.projection, in.lattice->to_q)};
+}
+Passages passages(const EngineInput& in) {
+  auto bends = bends_of(in.item(), *in.lattice);
+  return leaps(in) ? Passages(std::move(bends), space_ahead(in)) : Passages(std::move(bends));
+}
+
+class StridingPackets : public PacketEngine<StridingPlan> {
+ public:
+  explicit StridingPackets(const EngineInput& in)
+      : PacketEngine(StridingPlan{integral_of(in), nullptr, in.knobs.skip_empty}), tables_{MediumSums(*in.volume.medium), passages(in)} {
+    plan_.tables = &tables_;
   }
-  static bool leaps(const EngineInput& in) { return in.knobs.skip_empty && in.lattice->any_empty; }
-  static SpaceAhead space_ahead(const EngineInput& in) {
-    return {in.lattice->distance, in.lattice->fine().dims, Ways::of(in.projection, in.lattice->to_q)};
+
+ private:
+  const StrideTables tables_;
+};
+
+class UnevenPackets : public PacketEngine<UnevenPlan> {
+ public:
+  explicit UnevenPackets(const EngineInput& in) : PacketEngine(UnevenPlan{integral_of(in)}), axes_(*in.lattice) {
+    plan_.axes = &axes_;
+    if (leaps(in)) plan_.ahead = &ahead_.emplace(space_ahead(in));
+  }
+
+ private:
+  const UnevenAxes axes_;
+  std::optional<SpaceAhead> ahead_;
+};
+
+class DetailPackets : public PacketEngine<DetailPlan> {
+ public:
+  explicit DetailPackets(const EngineInput& in)
+      : PacketEngine(DetailPlan{integral_of(in)}), table_(in.item(), *in.volume.detail, double(in.volume.source->base)) {
+    plan_.table = &table_;
+    if (leaps(in)) plan_.ahead = &ahead_.emplace(space_ahead(in));
+  }
+
+ private:
+  const DetailTable table_;
+  std::optional<SpaceAhead> ahead_;
+};
+
+class MarchingPackets : public PacketEngine<MarchingPlan> {
+ public:
+  explicit MarchingPackets(const EngineInput& in)
+      : PacketEngine(MarchingPlan{rays_of(in), light_of(in), in.knobs.stop_below, in.knobs.skip_empty}) {
+    if (leaps(in)) plan_.ahead = &ahead_.emplace(space_ahead(in));
   }
 
  private:
   std::optional<SpaceAhead> ahead_;
 };
 
-class TolerantPackets : public PacketEngine {
+class MaximumPackets : public PacketEngine<MaximumPlan> {
  public:
-  using PacketEngine::PacketEngine;
-
-  void read(const EngineInput& in) {
-    const Volume& lattice = *in.lattice;
-    if (in.volume.detail) {
-      plan.detail = &detail_.emplace(in.item(), *in.volume.detail, double(in.volume.source->base));
-      look_ahead(in);
-    } else if (lattice.affine) {
-      plan.sums = &sums_.emplace(*in.volume.medium);
-      auto bends = bends_of(in.item(), lattice);
-      if (leaps(in)) passages_.emplace(std::move(bends), space_ahead(in));
-      else passages_.emplace(std::move(bends));
-      plan.passages = &*passages_;
-    } else {
-      plan.uneven = &uneven_.emplace(lattice);
-      look_ahead(in);
-    }
-  }
-  void draw(int x0, int y0, int x1, int y1, Frame& frame) const override { cast_tile(plan, x0, y0, x1, y1, frame); }
-
- private:
-  std::optional<MediumSums> sums_;
-  std::optional<Passages> passages_;
-  std::optional<UnevenAxes> uneven_;
-  std::optional<DetailTable> detail_;
+  explicit MaximumPackets(const EngineInput& in) : PacketEngine(MaximumPlan{rays_of(in), in.knobs.skip_empty}) {}
 };
 
-class MarchingPackets : public PacketEngine {
- public:
-  explicit MarchingPackets(const EngineInput& in) : PacketEngine(in) {
-    if (in.by_samples()) look_ahead(in);
-  }
-  void draw(int x0, int y0, int x1, int y1, Frame& frame) const override { march_tile(plan, x0, y0, x1, y1, frame); }
-};
+/// A lattice that packets read.
+bool in_packets(const EngineInput& in) { return in.lattice && !wants_reconstruction(in.item().sampling) && in_packets(*in.lattice); }
+/// The same, lit.
+bool lit_in_packets(const EngineInput& in) { return in_packets(in) && in_packets(light_of(in)); }
 
 }  // namespace
 
 std::unique_ptr<TileEngine> tolerant_packets(const EngineInput& in) {
-  if (!in.lattice || !in.by_tolerance() || wants_reconstruction(in.item().sampling)) return nullptr;
-  if (const Detail* detail = in.volume.detail.get(); detail && !(in.lattice->affine && DetailTable::fits(in.item(), *detail)))
-    return nullptr;
-  auto engine = std::make_unique<TolerantPackets>(in);
-  if (!in_tolerant_packets(engine->plan)) return nullptr;
-  engine->read(in);
-  return engine;
+  if (!in.by_tolerance() || !lit_in_packets(in) || !in.volume.medium->linear()) return nullptr;
+  if (const Detail* detail = in.volume.detail.get()) {
+    if (!in.lattice->affine || !DetailTable::fits(in.item(), *detail)) return nullptr;
+    return std::make_unique<DetailPackets>(in);
+  }
+  if (in.lattice->affine) return std::make_unique<StridingPackets>(in);
+  return std::make_unique<UnevenPackets>(in);
 }
 
 std::unique_ptr<TileEngine> marching_packets(const EngineInput& in) {
-  if (!in.lattice || in.by_tolerance() || in.volume.detail || wants_reconstruction(in.item().sampling)) return nullptr;
-  if (!in.by_samples() && in.item().mode != RayFunction::maximum) return nullptr;
-  auto engine = std::make_unique<MarchingPackets>(in);
-  return in_packets(engine->plan) ? std::move(engine) : nullptr;
+  if (!in.by_samples() || in.by_tolerance() || in.volume.detail || !lit_in_packets(in) || !in.lattice->affine) return nullptr;
+  return std::make_unique<MarchingPackets>(in);
+}
+
+std::unique_ptr<TileEngine> maximum_packets(const EngineInput& in) {
+  if (in.item().mode != RayFunction::maximum || in.volume.detail || !in_packets(in) || !in.lattice->affine) return nullptr;
+  return std::make_unique<MaximumPackets>(in);
 }
 
 }  // namespace sg::volume

@@ -19,7 +19,7 @@ struct Space {
   Int<D> row, layer, last[3], up[3];  ///< up: of SpaceAhead
   Float<D> margin, edges[3];
 
-  HWY_INLINE explicit Space(const PacketPlan& plan) : distance(plan.ahead ? plan.ahead->bricks.data() : plan.volume.distance.data()) {
+  HWY_INLINE explicit Space(const MarchingPlan& plan) : distance(plan.ahead ? plan.ahead->bricks.data() : plan.volume.distance.data()) {
     const D d;
     const IntTag<D> di;
     const Volume& v = plan.volume;

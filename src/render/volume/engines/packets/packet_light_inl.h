@@ -93,17 +93,18 @@ class Lighting {
 
  public:
   Lighting() = default;
-  HWY_INLINE Lighting(const PacketPlan& plan, const RayPacket& rays) : plan_(&plan) {
+  HWY_INLINE Lighting(const Volume& volume, const Illumination& light, const RayPacket& rays)
+      : volume_(&volume), light_(&light), edge_(float(volume.edge)) {
     const D d;
     for (int a = 0; a < 3; ++a) ray[a] = hn::Load(d, rays.direction[a]);
-    const auto& m = plan.volume.shade_plan.to_world;
+    const auto& m = volume.shade_plan.to_world;
     upright_ = m[0][1] == 0 && m[0][2] == 0 && m[1][0] == 0 && m[1][2] == 0 && m[2][0] == 0 && m[2][1] == 0;
-    if (!plan.volume.shaded) return;
-    power_ = shading::HWY_NAMESPACE::Power(plan.material.power);
-    for (size_t l = 0; l < plan.lamps.size(); ++l) {
-      intensity_ += plan.lamps[l].intensity;
+    if (!volume.shaded) return;
+    power_ = shading::HWY_NAMESPACE::Power(light.material.power);
+    for (size_t l = 0; l < light.lamps.size(); ++l) {
+      intensity_ += light.lamps[l].intensity;
       // Half way between the light and the viewer.
-      const Vec3f to(plan.lamps[l].direction);
+      const Vec3f to(light.lamps[l].direction);
       const F h[3] = {to.x - ray[0], to.y - ray[1], to.z - ray[2]};
       const F length = sqrt(dot(h, h));
       const F per = only(length > 0, 1.0f / length);
@@ -116,7 +117,7 @@ class Lighting {
   /// A gradient of the field per world length, from one per cell.
   HWY_INLINE void to_world(const F g[3], F out[3]) const {
     const D d;
-    const auto& m = plan_->volume.shade_plan.to_world;
+    const auto& m = volume_->shade_plan.to_world;
     for (int a = 0; a < 3; ++a) {
       if (upright_) {
         out[a] = m[a][a] * g[a];
@@ -132,9 +133,9 @@ class Lighting {
     const D d;
     const auto to = hn::IndicesFromVec(d, order);
     Lighting l;
-    l.plan_ = plan_, l.upright_ = upright_, l.power_ = power_, l.intensity_ = intensity_;
+    l.volume_ = volume_, l.light_ = light_, l.edge_ = edge_, l.upright_ = upright_, l.power_ = power_, l.intensity_ = intensity_;
     for (int a = 0; a < 3; ++a) l.ray[a] = hn::TableLookupLanes(ray[a], to);
-    for (size_t n = 0; n < plan_->lamps.size(); ++n)
+    for (size_t n = 0; n < light_->lamps.size(); ++n)
       for (int a = 0; a < 3; ++a) l.half_[n][a] = hn::TableLookupLanes(half_[n][a], to);
     return l;
   }
@@ -142,7 +143,7 @@ class Lighting {
   /// The surface where the field has this gradient (world); it changes by `over_edge` over an edge of a cell.
   HWY_INLINE FieldSurface<D> surface(const F g[3]) const {
     const F square = dot(g, g), length = sqrt(square);
-    return surface(g, square, length, length * plan_->edge);
+    return surface(g, square, length, length * edge_);
   }
   HWY_INLINE FieldSurface<D> surface(const F g[3], F over_edge) const {
     const F square = dot(g, g);
@@ -157,13 +158,13 @@ class Lighting {
   /// Light on the face that is not seen.
   HWY_INLINE LitLanes<D> on_back(const FieldSurface<D>& s) const { return lit<false>(s, facing(s) ^ flipped(), nullptr, nullptr); }
   /// What `sides` differ by where only the face that is seen is another.
-  HWY_INLINE I turned_over() const { return set(IntTag<D>(), 1 | ((1 << plan_->lamps.size()) - 1) << 2); }
+  HWY_INLINE I turned_over() const { return set(IntTag<D>(), 1 | ((1 << light_->lamps.size()) - 1) << 2); }
 
   /// The second derivative of the light over the angle of the surface, at most, on an arc of `turn` (1 - cosine) from a place that is
   /// `nearest` to the middle of a highlight, or to such a place. A highlight is exp(-p x^2 / 2) at the angle x.
   HWY_INLINE F bend(F nearest, F turn) const {
     const D d;
-    const Material& m = plan_->material;
+    const Material& m = light_->material;
     const F zero = set(d, 0), one = set(d, 1.0f);
     const F away = sqrt(max(zero, one - nearest)), half_arc = 0.5f * sqrt(max(zero, turn));
     const F closest = max(zero, away - half_arc), fall = closest * closest;
@@ -172,34 +173,36 @@ class Lighting {
   }
   /// The same anywhere.
   HWY_INLINE F most_bend() const {
-    return set(D(), intensity_ * (plan_->material.diffuse + plan_->material.specular * plan_->material.power));
+    return set(D(), intensity_ * (light_->material.diffuse + light_->material.specular * light_->material.power));
   }
 
   /// By how much light may differ between where there is a surface and where there is none.
   HWY_INLINE F most_fade() const {
-    const Material& m = plan_->material;
+    const Material& m = light_->material;
     const float flat = std::abs(1 - m.ambient), lit = std::abs(m.ambient + m.diffuse * intensity_ - 1);
     return set(D(), std::max(flat, lit) + m.specular * intensity_);
   }
 
   /// By how much light may differ where a surface turns over or a lamp begins to reach it.
-  HWY_INLINE F most_jump() const { return set(D(), intensity_ * (plan_->material.diffuse + plan_->material.specular)); }
+  HWY_INLINE F most_jump() const { return set(D(), intensity_ * (light_->material.diffuse + light_->material.specular)); }
 
-  const Material& material() const { return plan_->material; }
-  size_t lamps() const { return plan_->lamps.size(); }
+  const Material& material() const { return light_->material; }
+  size_t lamps() const { return light_->lamps.size(); }
   HWY_INLINE void towards(size_t lamp, F out[3]) const {
-    const Vec3f to(plan_->lamps[lamp].direction);
+    const Vec3f to(light_->lamps[lamp].direction);
     out[0] = set(D(), to.x), out[1] = set(D(), to.y), out[2] = set(D(), to.z);
   }
 
   F ray[3];  ///< directions
 
  private:
-  const PacketPlan* plan_ = nullptr;
+  const Volume* volume_ = nullptr;
+  const Illumination* light_ = nullptr;
+  float edge_ = 1;                       ///< of a cell
   bool upright_ = false;                 ///< the axes of the lattice are those of the world
   float intensity_ = 0;                  ///< of all lamps
   shading::HWY_NAMESPACE::Power power_;  ///< of highlights
-  F half_[PacketPlan::most_lamps][3];
+  F half_[Illumination::most_lamps][3];
 
   static HWY_INLINE F flipped() { return hn::SignBit(D()); }
   /// The sign bit where the normal points away from the viewer: then the other face is seen.
@@ -211,7 +214,7 @@ class Lighting {
     for (int a = 0; a < 3; ++a) s.normal[a] = g[a] * per;
     s.along = dot(s.normal, ray);
     const auto some = (square > 0) & (square < 1e30f);
-    s.weight = only(some, over_edge * plan_->volume.shade_plan.per_scale);
+    s.weight = only(some, over_edge * volume_->shade_plan.per_scale);
     return s;
   }
 
@@ -225,13 +228,13 @@ class Lighting {
       *sides = bit(s.along > zero, 0) | bit(s.weight < one, 1);
       *nearest = zero;
     }
-    const Material& m = plan_->material;
+    const Material& m = light_->material;
     F diffuse = zero, specular = zero;
-    for (size_t l = 0; l < plan_->lamps.size(); ++l) {
-      const Vec3f to(plan_->lamps[l].direction);
+    for (size_t l = 0; l < light_->lamps.size(); ++l) {
+      const Vec3f to(light_->lamps[l].direction);
       const F lamp[3] = {set(d, to.x), set(d, to.y), set(d, to.z)};
       const F c = flip ^ dot(s.normal, lamp), h = flip ^ dot(s.normal, half_[l]);
-      const F intensity = set(d, plan_->lamps[l].intensity);
+      const F intensity = set(d, light_->lamps[l].intensity);
       const auto terms = shading::HWY_NAMESPACE::lamp_terms(c, h, power_);
       diffuse = mul_add(intensity, terms.diffuse, diffuse);
       specular = mul_add(intensity, terms.specular, specular);

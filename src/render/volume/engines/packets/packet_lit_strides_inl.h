@@ -171,8 +171,8 @@ struct StrideLight {
     return l;
   }
   /// Where the surface turns over between the ends, and nothing else is a kink: each face on its part of the way, lit by a straight line
-  /// between what it has at the ends. `tau` at the ends and the middle tells how much is taken on either part.
-  static HWY_INLINE StrideLight turned_over(const Lighting<D>& lighting, const LitPlace<D>& p0, const LitPlace<D>& p2, const F tau[3],
+  /// between what it has at the ends. `sigma_t` at the ends and the middle tells how much is taken on either part.
+  static HWY_INLINE StrideLight turned_over(const Lighting<D>& lighting, const LitPlace<D>& p0, const LitPlace<D>& p2, const F sigma_t[3],
                                             F depth) {
     const D d;
     const LitLanes<D> back0 = lighting.on_back(p0.surface), back2 = lighting.on_back(p2.surface);
@@ -181,14 +181,14 @@ struct StrideLight {
     const F fall = rise_0 - rise_2;
     const F at = max(zero, min(rise_0 / select(fall == zero, one, fall), one));  // of the way
     const F x = at + at, s0 = min(x, one), s1 = max(zero, x - one);
-    // Weights and first moments of straight tau in the first stride and the second, from the begin on.
-    const F rise0 = tau[1] - tau[0], rise1 = tau[2] - tau[1];
+    // Weights and first moments of straight sigma_t in the first stride and the second, from the begin on.
+    const F rise0 = sigma_t[1] - sigma_t[0], rise1 = sigma_t[2] - sigma_t[1];
     const auto weight = [&](F from, F rise, F s) HWY_ATTR { return s * mul_add(half, rise * s, from); };
     const auto moment = [&](F from, F rise, F s) HWY_ATTR { return s * s * mul_add(third, rise * s, half * from); };
-    const F w1 = weight(tau[1], rise1, s1), w = weight(tau[0], rise0, s0) + w1;
-    const F mom = moment(tau[0], rise0, s0) + (w1 + moment(tau[1], rise1, s1));
-    const F all1 = half * (tau[1] + tau[2]), all = mul_add(half, tau[0] + tau[1], all1);
-    const F all_mom = moment(tau[0], rise0, one) + (all1 + moment(tau[1], rise1, one));
+    const F w1 = weight(sigma_t[1], rise1, s1), w = weight(sigma_t[0], rise0, s0) + w1;
+    const F mom = moment(sigma_t[0], rise0, s0) + (w1 + moment(sigma_t[1], rise1, s1));
+    const F all1 = half * (sigma_t[1] + sigma_t[2]), all = mul_add(half, sigma_t[0] + sigma_t[1], all1);
+    const F all_mom = moment(sigma_t[0], rise0, one) + (all1 + moment(sigma_t[1], rise1, one));
     const F share = max(zero, min(w / max(all, least), one)), rest = one - share;
     const F first = half * (mom / max(w, least));  // of the way
     const F second = half * ((all_mom - mom) / max(all - w, least));

@@ -21,9 +21,10 @@ struct MediumLanes {
   const Medium& medium;
   const Medium::Columns& columns;
 
+  /// A line of the medium: sigma_t is a cubic of the value from lo to hi, with these coefficients at `origin`.
   struct Line {
     F lo, hi, origin, at, slope, curve, twist;
-    HWY_INLINE F tau(F v) const {
+    HWY_INLINE F sigma_t(F v) const {
       const F x = v - origin;
       return max(0, mul_add(x, mul_add(x, mul_add(x, twist, curve), slope), at));
     }
@@ -50,6 +51,7 @@ struct MediumLanes {
       few_columns[c] = hn::Load(d, column);
     }
   }
+  /// By its number.
   HWY_INLINE Line line(I i) const {
     const D d;
     Line l;
@@ -66,6 +68,7 @@ struct MediumLanes {
     l.lo = select(i == 0, -HUGE_VALF, l.origin);
     return l;
   }
+  /// The number of the line on which a value lies: that of its slice of values, and on over those that end before it.
   HWY_INLINE I line_of(F v) const {
     const D d;
     const IntTag<D> di;

@@ -30,27 +30,42 @@ struct PacketResult {
   double surface[most_lanes];  ///< t of it; -1 = none
 };
 
-/// Adds the results to the frame.
-void put(const PacketPlan& plan, const RayPacket& rays, const PacketResult& result, int lanes, Frame& frame);
+/// The part that a plan draws; null: its lattice is the whole.
+template <class Plan>
+const LatticePart* part_of(const Plan& plan) {
+  if constexpr (requires { plan.part; }) return plan.part;
+  else return nullptr;
+}
 
-/// Draws the maximum; the same contract as march_tile.
-void maximum_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
+/// What tells how bricks are passed, a byte each.
+struct BrickBytes {
+  const uint8_t* bytes = nullptr;              ///< null: no brick is empty
+  const std::array<int32_t, 3>* up = nullptr;  ///< of SpaceAhead; null: the same bytes whichever way rays go
+  bool codes = false;                          ///< Passages::codes; else distances to what is drawn
+};
+inline BrickBytes brick_bytes(const SpaceAhead* ahead) { return ahead ? BrickBytes{ahead->bricks.data(), &ahead->up} : BrickBytes(); }
+inline BrickBytes brick_bytes(const UnevenPlan& plan) { return brick_bytes(plan.ahead); }
+inline BrickBytes brick_bytes(const DetailPlan& plan) { return brick_bytes(plan.ahead); }
+inline BrickBytes brick_bytes(const StridingPlan& plan) {
+  if (plan.tables) return {plan.tables->passages.codes.data(), &plan.tables->passages.up, true};
+  if (plan.skip_empty && plan.volume.any_empty) return {plan.volume.distance.data()};
+  return {};
+}
+
+/// Adds the results to the frame.
+void put(const Volume& volume, const LatticePart* part, const RayPacket& rays, const PacketResult& result, int lanes, Frame& frame);
 
 /// A sample of one or two bytes, with or without a sign: told apart as they are read, so that vector code is compiled for two types only.
 enum class SmallInteger : uint8_t {};
 
-// The others for samples T, float or SmallInteger; each is an object file of its own.
-/// march_tile() but for the maximum.
+// draw_tile() for samples T, float or SmallInteger; each is an object file of its own.
 template <class T>
-void march_even_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
-/// cast_tile() for uniform grids.
+void march_tile(const MarchingPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
 template <class T>
-void cast_even_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
-/// cast_tile() for rectilinear grids: plan.uneven.
+void stride_tile(const StridingPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
 template <class T>
-void cast_uneven_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
-/// cast_tile() where opacity hangs on the gradient, too: plan.detail.
+void uneven_tile(const UnevenPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
 template <class T>
-void cast_detail_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
+void detail_tile(const DetailPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
 
 }  // namespace sg::volume

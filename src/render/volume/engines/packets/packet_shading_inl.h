@@ -22,10 +22,12 @@ class ShadeQueue {
   enum { at_sample, at_r, at_g, at_b, at_flash, at_lane, parts };
 
  public:
-  HWY_INLINE void start(const PacketPlan& plan, const RayPacket& rays) { count_ = 0, lighting_ = Lighting<D>(plan, rays); }
+  HWY_INLINE void start(const MarchingPlan& plan, const RayPacket& rays) {
+    count_ = 0, lighting_ = Lighting<D>(plan.volume, plan.light, rays);
+  }
 
   /// The number of the sample; negative: the last, shorter step. Colours and `flash` (the share of what is mirrored) are weighted already.
-  HWY_INLINE void push(const PacketPlan& plan, const RayPacket& rays, PacketResult& result, Mask<D> which, F sample, F r, F g, F b,
+  HWY_INLINE void push(const MarchingPlan& plan, const RayPacket& rays, PacketResult& result, Mask<D> which, F sample, F r, F g, F b,
                        F flash) {
     const D d;
     const F part[parts] = {sample, r, g, b, flash, convert(d, hn::Iota(IntTag<D>(), 0))};
@@ -37,7 +39,7 @@ class ShadeQueue {
     count_ -= lanes_;
     for (auto& q : queue_) hn::Store(hn::Load(d, q + lanes_), d, q);
   }
-  HWY_INLINE void finish(const PacketPlan& plan, const RayPacket& rays, PacketResult& result) {
+  HWY_INLINE void finish(const MarchingPlan& plan, const RayPacket& rays, PacketResult& result) {
     if (count_ == 0) return;
     // What stands behind the last entry is old: any place will do.
     for (auto& q : queue_)
@@ -46,7 +48,7 @@ class ShadeQueue {
   }
 
  private:
-  HWY_NOINLINE void light(const PacketPlan& plan, const RayPacket& rays, PacketResult& result, size_t count) {
+  HWY_NOINLINE void light(const MarchingPlan& plan, const RayPacket& rays, PacketResult& result, size_t count) {
     const D d;
     const Source<D, T> source(plan.volume.voxels);
     const I order = to_int(d, hn::Load(d, queue_[at_lane]));

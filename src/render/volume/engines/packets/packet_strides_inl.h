@@ -23,9 +23,9 @@ struct SumLanes {
   const MediumSums* sums;
   bool loads;  ///< of gathers.h
 
-  /// The medium at a value: tau, and the integral of tau up to it in two parts.
+  /// The medium at a value: sigma_t, and the integral of sigma_t up to it in two parts.
   struct Place {
-    F value, tau, slope, beyond, kinks;
+    F value, sigma_t, slope, beyond, kinks;
     I node, sum;
   };
   HWY_INLINE Place at(F value) const {
@@ -38,16 +38,16 @@ struct SumLanes {
     p.value = value, p.node = to_int(d, at);
     const auto* table = reinterpret_cast<const float*>(sums->table());
     const I entry = shift_left<2>(p.node);
-    const auto [sum_tau, slope] = gather_quad(d, table, entry, loads);
-    p.sum = bit_cast(di, sum_tau.a);
+    const auto [sum_sigma_t, slope] = gather_quad(d, table, entry, loads);
+    p.sum = bit_cast(di, sum_sigma_t.a);
     const F x = neg_mul_add(convert(d, p.node), sums->width(), value - lo);
     p.slope = slope.a, p.kinks = slope.b;
     const F rise = x * slope.a;
-    p.beyond = x * mul_add(0.5f, rise, sum_tau.b);
-    p.tau = max(zero, sum_tau.b + rise);
+    p.beyond = x * mul_add(0.5f, rise, sum_sigma_t.b);
+    p.sigma_t = max(zero, sum_sigma_t.b + rise);
     return p;
   }
-  /// The mean of tau over the values between two places; `even` is that of a straight line.
+  /// The mean of sigma_t over the values between two places; `even` is that of a straight line.
   HWY_INLINE F mean(const Place& a, const Place& b, F even) const {
     const D d;
     const F change = b.value - a.value;
@@ -56,7 +56,7 @@ struct SumLanes {
     const auto near = abs(change) < 2 * sums->width();
     return select(near, even, max(0, all / select(near, 1.0f, change)));
   }
-  /// The largest |slope| of tau between two places, so many nodes to both sides.
+  /// The largest |slope| of sigma_t between two places, so many nodes to both sides.
   HWY_INLINE F steepest(const Place& a, const Place& b, I pad) const {
     const D d;
     const IntTag<D> di;
@@ -108,7 +108,7 @@ HWY_INLINE Strides<D> strides(const SumLanes<D>& medium, const Medium& colors, f
   const F zero = set(d, 0), one = set(d, 1.0f), half = set(d, 0.5f), third = set(d, 1.0f / 3);
   const F rise_a = p1.value - p0.value, rise_b = p2.value - p1.value;
   const F arch = rise_b - rise_a;  // the second difference
-  const F both_a = p0.tau + p1.tau, both_b = p1.tau + p2.tau;
+  const F both_a = p0.sigma_t + p1.sigma_t, both_b = p1.sigma_t + p2.sigma_t;
   const F even_a = half * both_a, even_b = half * both_b;
   const F mean_a = medium.mean(p0, p1, even_a), mean_b = medium.mean(p1, p2, even_b);
   const F lo = min(p0.value, min(p1.value, p2.value)), hi = max(p0.value, max(p1.value, p2.value)), change = hi - lo;
@@ -126,10 +126,10 @@ HWY_INLINE Strides<D> strides(const SumLanes<D>& medium, const Medium& colors, f
   s.change = change;
   s.depth = world * sum;
 
-  // Where a stride's tau goes straight its middle lies between a third and two thirds of it.
+  // Where a stride's sigma_t goes straight its middle lies between a third and two thirds of it.
   const F least = set(d, 1e-30f), twice_least = set(d, 2e-30f);
   const auto share_of = [&](F part, F all) HWY_ATTR { return (part + least) / (all + twice_least); };
-  const F w_a = mul_add(third, share_of(p1.tau, both_a), third), w_b = mul_add(third, share_of(p2.tau, both_b), third);
+  const F w_a = mul_add(third, share_of(p1.sigma_t, both_a), third), w_b = mul_add(third, share_of(p2.sigma_t, both_b), third);
   const F share_b = share_of(depth_b, sum), share_a = one - share_b;
   const F from_a = w_a - one;
   s.middle = mul_add(share_b, w_b, share_a * from_a);
@@ -138,14 +138,14 @@ HWY_INLINE Strides<D> strides(const SumLanes<D>& medium, const Medium& colors, f
   const F apart = w_b - from_a;
   s.variance = mul_add(share_a * share_b, apart * apart, mul_add(share_b, spread(w_b), share_a * spread(w_a)));
 
-  // Colours bend on a width; where tau is no straight line between the ends its middle lies elsewhere, by two thirds of the stride at most;
-  // in a deep stride the front shows more of its own colour.
+  // Colours bend on a width; where sigma_t is no straight line between the ends its middle lies elsewhere, by two thirds of the stride at
+  // most; in a deep stride the front shows more of its own colour.
   const F taken = min(one, s.depth);
   const F recolored = min(one, change * colors.color_slope());
   const F widths = change * (1 / colors.color_width());
-  // A constant tau would hide as much of the back as this one by two straight pieces does, but for 1 / 240 of the square of what the depth
-  // tilts by, and 1 / 192 of the depth times what it turns by in the middle; and the third order. Twice that, as tau may do more.
-  const F tilt = twice * abs(p2.tau - p0.tau), turn = twice * abs(p0.tau + p2.tau - (p1.tau + p1.tau));
+  // A constant sigma_t would hide as much of the back as this one by two straight pieces does, but for 1 / 240 of the square of what the
+  // depth tilts by, and 1 / 192 of the depth times what it turns by in the middle; and the third order. Twice that, as sigma_t may do more.
+  const F tilt = twice * abs(p2.sigma_t - p0.sigma_t), turn = twice * abs(p0.sigma_t + p2.sigma_t - (p1.sigma_t + p1.sigma_t));
   const F tilted = mul_add(s.depth * s.depth, 1.0f / 360, tilt * (1.0f / 120));
   const F deep = mul_add(tilt, tilted, s.depth * (turn * (1.0f / 96)));
   const F uneven = third * world * (abs(mean_a - even_a) + abs(mean_b - even_b));

@@ -20,15 +20,17 @@ class CellWalk {
   using I = Int<D>;
   using M = Mask<D>;
 
-  HWY_INLINE CellWalk(const PacketPlan& plan, const RayPacket& rays) : plan_(plan), v_(plan.volume), cells_(plan, rays), rays_(rays) {
+  template <class Plan>
+  HWY_INLINE CellWalk(const Plan& plan, const RayPacket& rays)
+      : plan_(plan), v_(plan.volume), cells_(plan, rays), bricks_(brick_bytes(plan)), rays_(rays) {
     const D d;
     for (int a = 0; a < 3; ++a) {
       still_[a] = cells_.along[a] == 0, up_[a] = cells_.along[a] > 0;
       per_along_[a] = only(!still_[a], 1.0f / cells_.along[a]);
     }
     octant_ = set(IntTag<D>(), 0);
-    if (const auto* up = plan.passages ? &plan.passages->up : plan.ahead ? &plan.ahead->up : nullptr)
-      for (size_t a = 0; a < 3; ++a) octant_ = octant_ + only(up_[a], set(IntTag<D>(), (*up)[a]));
+    if (bricks_.up)
+      for (size_t a = 0; a < 3; ++a) octant_ = octant_ + only(up_[a], set(IntTag<D>(), (*bricks_.up)[a]));
     end_ = hn::Load(d, rays.length), cells_.sum.pass = hn::Load(d, rays.before);
   }
 
@@ -54,21 +56,21 @@ class CellWalk {
     const D d;
     const IntTag<D> di;
     const I byte = set(di, 255), unbounded = set(di, int(Bends::unbounded));
-    const I place = id + octant_;
-    if (plan_.passages) return {gather_words(d, plan_.passages->codes.data(), place, cells_.source.loads) & byte};
-    if (!plan_.knobs.skip_empty || !v_.any_empty) return {unbounded};
-    const uint8_t* distance = plan_.ahead ? plan_.ahead->bricks.data() : v_.distance.data();
-    const I free = gather_words(d, distance, place, cells_.source.loads) & byte;
-    return {select(free > 0, free, unbounded)};
+    if (!bricks_.bytes) return {unbounded};
+    const I found = gather_words(d, bricks_.bytes, id + octant_, cells_.source.loads) & byte;
+    if (bricks_.codes) return {found};
+    return {select(found > 0, found, unbounded)};
   }
 
   HWY_INLINE I cell_at(int a, F t) const { return cells_.axes.cell_at(a, mul_add(cells_.along[a], t, cells_.start[a])); }
 
-  /// Takes lanes out of the cube of bricks nearer than what is drawn.
+  /// Empty-space leaping: takes lanes out of the cube of bricks around them that draw nothing. They arrive in the cell beyond the side
+  /// through which they leave, told by the side itself, not by rounding.
   HWY_INLINE void leap(const Passage& from, M leaping, I cell[3], F& t) const {
     const IntTag<D> di;
     const I one = set(di, 1), zero = set(di, 0);
     const I* last_cell = cells_.source.last_cell;
+    // The sides ahead, and the first of them that the ray meets.
     F leave = end_, at[3];
     I side[3];
     hn::Mask<IntTag<D>> open[3];
@@ -80,6 +82,7 @@ class CellWalk {
       at[a] = select(open[a], HUGE_VALF, when_at(a, side[a], t));
       leave = min(leave, at[a]);
     }
+    // The cells there: exact along the axis that is crossed, by the place along the others.
     const auto moving = rebind(di, leaping);
     for (int a = 0; a < 3; ++a) {
       const auto up = rebind(di, up_[a]), still = rebind(di, still_[a]);
@@ -94,10 +97,11 @@ class CellWalk {
     t = select(leaping, leave, t);
   }
 
-  /// Takes lanes through their cells.
+  /// Takes lanes through their cells and on to the next ones (3D DDA, Amanatides and Woo).
   HWY_INLINE void cross(M crossing, I cell[3], F& t) {
     const IntTag<D> di;
     const I one = set(di, 1), zero = set(di, 0);
+    // Where the ray leaves: the nearest of the sides ahead.
     F leave = end_, at[3];
     I inside[3], beyond[3];
     for (int a = 0; a < 3; ++a) {
@@ -107,6 +111,7 @@ class CellWalk {
       at[a] = select(still_[a], HUGE_VALF, when_at(a, max(cell[a], beyond[a]), t));
       leave = min(leave, at[a]);
     }
+    // Integrate, then step along the axes that are crossed there.
     const M look = crossing & (leave > t);
     if (any(look)) cells_.cross(inside, t, leave, look);
     for (int a = 0; a < 3; ++a) cell[a] = select(crossing & (at[a] <= leave), beyond[a], cell[a]);
@@ -122,9 +127,10 @@ class CellWalk {
     for (size_t n = 0; n < hn::Lanes(d); ++n) result.surface[n] = half_at[n] >= 0 ? rays_.enter[n] + double(half_at[n]) : -1;
   }
 
-  const PacketPlan& plan_;
+  const IntegralPlan& plan_;
   const Volume& v_;
   Cells cells_;
+  const BrickBytes bricks_;
   F end_;
   M still_[3], up_[3];
   I octant_;  // where the codes of the octants that rays go to begin
@@ -145,7 +151,8 @@ class CellByCell : CellWalk<D, Cells> {
   using typename Walk::F, typename Walk::I, typename Walk::M;
 
  public:
-  HWY_INLINE CellByCell(const PacketPlan& plan, const RayPacket& rays) : Walk(plan, rays) {}
+  template <class Plan>
+  HWY_INLINE CellByCell(const Plan& plan, const RayPacket& rays) : Walk(plan, rays) {}
 
   HWY_INLINE void run(PacketResult& result) {
     const D d;

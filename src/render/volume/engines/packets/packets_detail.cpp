@@ -26,12 +26,12 @@ using DetailPacket = CellByCell<D, DetailCells<D, T, shaded, EvenAxes<D>>>;
 
 namespace {
 
-void cast_detail_in_packets(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+void cast_detail_in_packets(const DetailPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
   cast_as<DetailPacket, hn::CappedTag<float, most_lanes>, SG_SAMPLES>(plan, x0, y0, x1, y1, frame);
 }
 
 #if HWY_ONCE
-void cast_detail_singly(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+void cast_detail_singly(const DetailPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
   cast_as<DetailPacket, hn::CappedTag<float, 1>, SG_SAMPLES>(plan, x0, y0, x1, y1, frame);
 }
 #endif
@@ -47,11 +47,11 @@ namespace sg::volume {
 HWY_EXPORT(cast_detail_in_packets);
 
 template <class T>
-void cast_detail_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
-  if (plan.knobs.simd) return HWY_DYNAMIC_DISPATCH(cast_detail_in_packets)(plan, x0, y0, x1, y1, frame);
+void detail_tile(const DetailPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  if (plan.simd) return HWY_DYNAMIC_DISPATCH(cast_detail_in_packets)(plan, x0, y0, x1, y1, frame);
   return HWY_STATIC_DISPATCH(cast_detail_singly)(plan, x0, y0, x1, y1, frame);
 }
-template void cast_detail_tile<SG_SAMPLES>(const PacketPlan&, int, int, int, int, Frame&);
+template void detail_tile<SG_SAMPLES>(const DetailPlan&, int, int, int, int, Frame&);
 
 }  // namespace sg::volume
 #endif

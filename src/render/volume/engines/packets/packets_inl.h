@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vector code that both kinds of packets share; included once per target, after highway.h. D is the tag of a packet: one lane per ray.
+// Vector code that all kinds of packets share; included once per target, after highway.h. D is the tag of a packet: one lane per ray.
 // Only IEEE operations in a fixed order, fused where it says so (the compiler fuses none): the same bits for any number of lanes.
 #if defined(SG_PACKETS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SG_PACKETS_INL_H
@@ -170,14 +170,15 @@ HWY_INLINE void store_narrow(DD, Float<DD> v, float* to) {
 }
 
 /// The rays through the pixels from (x, y) on, as far as they lie in the tile; false when none meets the volume.
-template <class D>
-HWY_INLINE bool set_up(const PacketPlan& plan, int x, int y, int x1, int y1, const Frame& frame, RayPacket& r) {
+template <class D, class Plan>
+HWY_INLINE bool set_up(const Plan& plan, int x, int y, int x1, int y1, const Frame& frame, RayPacket& r) {
   constexpr int lanes = lanes_of<D>, width = packet_width<D>;
   using DD = hn::CappedTag<double, lanes>;
   const DD d;
   using V = Float<DD>;
   const Projection& p = plan.projection;
   const Volume& v = plan.volume;
+  const LatticePart* const part = part_of(plan);
   alignas(64) double px[lanes], py[lanes], depth[lanes];
   for (int n = 0; n < lanes; ++n) {
     const int i = x + n % width, j = y + n / width;
@@ -185,8 +186,8 @@ HWY_INLINE bool set_up(const PacketPlan& plan, int x, int y, int x1, int y1, con
     r.inside[n] = i < x1 && j < y1;
     r.pixel[n] = r.inside[n] ? size_t(j) * size_t(frame.width) + size_t(i) : 0;
     depth[n] = r.inside[n] ? std::min(p.far_plane, double(frame.depth[r.pixel[n]])) : -HUGE_VAL;
-    r.before[n] = plan.half && r.inside[n] ? 1 - frame.rgba[4 * r.pixel[n] + 3] : 1;
-    if (r.before[n] < plan.budget.stop_below) depth[n] = -HUGE_VAL;
+    r.before[n] = part && r.inside[n] ? 1 - frame.rgba[4 * r.pixel[n] + 3] : 1;
+    if (part && r.before[n] < part->stop_below) depth[n] = -HUGE_VAL;
   }
   const Mat3& m = v.to_q;
   const V zero = set(d, 0);
@@ -221,8 +222,8 @@ HWY_INLINE bool set_up(const PacketPlan& plan, int x, int y, int x1, int y1, con
       enter = select(still, enter, max(enter, min(t0, t1)));
       leave = select(still, leave, min(leave, max(t0, t1)));
       leave = select(still & outside, -HUGE_VAL, leave);
-      if (!plan.half) continue;
-      const V w0 = (plan.whole_lo[a] - start[a]) / along[a], w1 = (plan.whole_hi[a] - start[a]) / along[a];
+      if (!part) continue;
+      const V w0 = (part->whole_lo[a] - start[a]) / along[a], w1 = (part->whole_hi[a] - start[a]) / along[a];
       first_enter = select(still, first_enter, max(first_enter, min(w0, w1)));
       last_leave = select(still, last_leave, min(last_leave, max(w0, w1)));
     }
@@ -244,7 +245,7 @@ HWY_INLINE bool set_up(const PacketPlan& plan, int x, int y, int x1, int y1, con
     const V half = set(d, 0.5);
     enter = only(hit, enter), leave = only(hit, leave);
     V t_first = mul_add(half, step, enter), t_last = neg_mul_add(half, rest, leave);
-    if (plan.half) {
+    if (part) {
       // Steps of the whole whose middles lie in this part.
       first_enter = only(hit, first_enter), last_leave = only(hit, last_leave);
       const V all = last_leave - first_enter, count = floor(all / step);

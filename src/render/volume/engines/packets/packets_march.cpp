@@ -129,7 +129,7 @@ class March {
   RayPacket rays;
   PacketResult result;
 
-  HWY_INLINE void start(const PacketPlan& plan) {
+  HWY_INLINE void start(const MarchingPlan& plan) {
     const D d;
     // Places go one way, so all lie inside when the first and the last do. Rays without whole steps stand in the first sample.
     const F steps = hn::Load(d, rays.steps), zero = set(d, 0);
@@ -144,9 +144,11 @@ class March {
       hn::Store(first, d, rays.first[a]);
     }
     for (int a = 0; a < 3; ++a) hn::Store(1.0f / hn::Load(d, rays.by[a]), d, per_by_[a]);
+    // Nothing is gathered yet.
     hn::Store(hn::Load(d, rays.before), d, result.transmittance), hn::Store(set(d, -1.0f), d, seen_half_);
     hn::Store(set(d, 0), d, result.r), hn::Store(set(d, 0), d, result.g), hn::Store(set(d, 0), d, result.b);
     if constexpr (shaded) queue_.start(plan, rays), Due<D>().store(due_);
+    // Over what is empty where the rays enter.
     Lanes<D> lanes(rays, per_by_, set(d, 0));
     const Source<D, T> source(plan.volume.voxels);
     const Space<D> space(plan);
@@ -161,7 +163,7 @@ class March {
   }
 
   /// Goes on until no ray has samples before `until`; false when all are through.
-  HWY_INLINE bool go(const PacketPlan& plan, float until) {
+  HWY_INLINE bool go(const MarchingPlan& plan, float until) {
     const D d;
     const Volume& v = plan.volume;
     const Source<D, T> source(v.voxels);
@@ -173,7 +175,7 @@ class March {
     const bool skip = skips(plan);
     // Who asks for shorter steps wants to see each of them lit.
     [[maybe_unused]] const bool together = v.step > 0.4 * v.edge;
-    const F stop = set(d, plan.knobs.stop_below), one = set(d, 1.0f), half = set(d, 0.5f);
+    const F stop = set(d, plan.stop_below), one = set(d, 1.0f), half = set(d, 0.5f);
 
     Lanes<D> lanes(rays, per_by_, hn::Load(d, next_));
     F r = hn::Load(d, result.r), g = hn::Load(d, result.g), b = hn::Load(d, result.b);
@@ -240,7 +242,7 @@ class March {
   }
 
   /// The last step has what length is left.
-  HWY_INLINE void finish(const PacketPlan& plan) {
+  HWY_INLINE void finish(const MarchingPlan& plan) {
     const D d;
     const Volume& v = plan.volume;
     const Source<D, T> source(v.voxels);
@@ -250,7 +252,7 @@ class March {
     alignas(64) float before[most_lanes];
     hn::Store(pass, d, before);
     const F rest = hn::Load(d, rays.rest);
-    const auto last = (rest > 0) & (pass >= plan.knobs.stop_below);
+    const auto last = (rest > 0) & (pass >= plan.stop_below);
     if (any(last)) {
       const F x = hn::Load(d, rays.last[0]), y = hn::Load(d, rays.last[1]), z = hn::Load(d, rays.last[2]);
       const F value = source.value(source.place(0, x), source.place(1, y), source.place(2, z));
@@ -289,9 +291,9 @@ class March {
   }
 
  private:
-  static bool skips(const PacketPlan& plan) { return plan.knobs.skip_empty && plan.volume.any_empty; }
+  static bool skips(const MarchingPlan& plan) { return plan.skip_empty && plan.volume.any_empty; }
 
-  HWY_INLINE void push(const PacketPlan& plan, Due<D>& due, Mask<D> which) {
+  HWY_INLINE void push(const MarchingPlan& plan, Due<D>& due, Mask<D> which) {
     queue_.push(plan, rays, result, which, due.moment / due.taken, due.r, due.g, due.b, due.taken);
     due.drop(which);
   }
@@ -329,7 +331,7 @@ constexpr int group = 16;               ///< pixels across of the packets that t
 constexpr float samples_per_turn = 96;  ///< fewer are better where nothing is empty, more where rays leap
 
 template <class D, class T, bool shaded>
-HWY_NOINLINE void march_all(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+HWY_NOINLINE void march_all(const MarchingPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
   using Packet = March<D, T, shaded>;
   constexpr int lanes = lanes_of<D>, width = packet_width<D>, height = lanes / width;
   constexpr size_t most = size_t(group / width) * size_t(group / height);
@@ -350,20 +352,20 @@ HWY_NOINLINE void march_all(const PacketPlan& plan, int x0, int y0, int x1, int 
       }
       for (size_t i = 0; i < count; ++i) {
         packets[i].finish(plan);
-        put(plan, packets[i].rays, packets[i].result, lanes, frame);
+        put(plan.volume, plan.part, packets[i].rays, packets[i].result, lanes, frame);
       }
     }
 }
 
 namespace {
 
-void march_in_packets(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+void march_in_packets(const MarchingPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
   (plan.volume.shaded ? march_all<hn::CappedTag<float, most_lanes>, SG_SAMPLES, true>
                       : march_all<hn::CappedTag<float, most_lanes>, SG_SAMPLES, false>)(plan, x0, y0, x1, y1, frame);
 }
 
 #if HWY_ONCE
-void march_singly(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+void march_singly(const MarchingPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
   (plan.volume.shaded ? march_all<hn::CappedTag<float, 1>, SG_SAMPLES, true>
                       : march_all<hn::CappedTag<float, 1>, SG_SAMPLES, false>)(plan, x0, y0, x1, y1, frame);
 }
@@ -380,11 +382,11 @@ namespace sg::volume {
 HWY_EXPORT(march_in_packets);
 
 template <class T>
-void march_even_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
-  if (plan.knobs.simd) return HWY_DYNAMIC_DISPATCH(march_in_packets)(plan, x0, y0, x1, y1, frame);
+void march_tile(const MarchingPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  if (plan.simd) return HWY_DYNAMIC_DISPATCH(march_in_packets)(plan, x0, y0, x1, y1, frame);
   return HWY_STATIC_DISPATCH(march_singly)(plan, x0, y0, x1, y1, frame);
 }
-template void march_even_tile<SG_SAMPLES>(const PacketPlan&, int, int, int, int, Frame&);
+template void march_tile<SG_SAMPLES>(const MarchingPlan&, int, int, int, int, Frame&);
 
 }  // namespace sg::volume
 #endif

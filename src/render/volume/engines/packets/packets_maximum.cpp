@@ -21,10 +21,10 @@ HWY_INLINE Float<D> clamped_to(Float<D> x, Float<D> lo, Float<D> hi) {
   return max(lo, min(x, hi));
 }
 
-/// Walks the boxes of `edge` cells that rays cross; box numbers are whole floats. Boxes from `lowest` to `highest` exist, those at
+/// 3D DDA through the boxes of `edge` cells that rays cross; box numbers are whole floats. Boxes from `lowest` to `highest` exist, those at
 /// the ends reach as far as the ray does.
 template <class D>
-struct Walk {
+struct BoxWalk {
   using F = Float<D>;
   using M = Mask<D>;
   const F *entry, *along, *per_along;
@@ -67,14 +67,14 @@ struct Walk {
 };
 
 template <class D, class T>
-class Climb {
+class MaximumPacket {
   using F = Float<D>;
   using I = Int<D>;
   using M = Mask<D>;
 
  public:
-  HWY_INLINE Climb(const PacketPlan& plan, const RayPacket& rays)
-      : volume_(plan.volume), skip_(plan.knobs.skip_empty), source_(plan.volume.voxels) {
+  HWY_INLINE MaximumPacket(const MaximumPlan& plan, const RayPacket& rays)
+      : volume_(plan.volume), skip_(plan.skip_empty), source_(plan.volume.voxels) {
     const D d;
     for (int a = 0; a < 3; ++a) {
       entry_[a] = hn::Load(d, rays.entry[a]), along_[a] = hn::Load(d, rays.along[a]);
@@ -87,7 +87,7 @@ class Climb {
 
   HWY_INLINE void run() {
     const D d;
-    Walk<D> walk = bricks();
+    BoxWalk<D> walk = bricks();
     walk.start(set(d, 0), length_);
     for (M going = length_ > 0; any(going);) {
       going = look(walk, going);
@@ -100,14 +100,14 @@ class Climb {
   }
 
  private:
-  HWY_INLINE Walk<D> bricks() const {
+  HWY_INLINE BoxWalk<D> bricks() const {
     const D d;
-    Walk<D> w;
+    BoxWalk<D> w;
     w.entry = entry_, w.along = along_, w.per_along = per_along_, w.edge = set(d, float(MinMaxBricks::edge));
     for (size_t a = 0; a < 3; ++a) w.lowest[a] = set(d, 0), w.highest[a] = set(d, float(volume_.bricks().dims[a] - 1));
     return w;
   }
-  HWY_INLINE F highest_in(const Walk<D>& w) const {
+  HWY_INLINE F highest_in(const BoxWalk<D>& w) const {
     const D d;
     const auto& dims = volume_.bricks().dims;
     const auto id = to_int(d, w.box[0]) + (to_int(d, w.box[1]) * int(dims[0]) + to_int(d, w.box[2]) * int(dims[0] * dims[1]));
@@ -115,7 +115,7 @@ class Climb {
   }
 
   /// Notes what the next bricks promise; returns the lanes that have more of them.
-  HWY_INLINE M look(Walk<D>& walk, M going) {
+  HWY_INLINE M look(BoxWalk<D>& walk, M going) {
     const D d;
     hn::Store(walk.t, d, begin_[0]);
     for (seen_ = 0; seen_ < most_seen && any(going); ++seen_) {
@@ -152,16 +152,17 @@ class Climb {
   /// Cells between the lengths; -1 and the number of cells are the halves beyond the outermost samples, where values are clamped.
   HWY_INLINE void cells(M m, F from, F to) {
     const D d;
-    Walk<D> w;
+    BoxWalk<D> w;
     w.entry = entry_, w.along = along_, w.per_along = per_along_, w.edge = set(d, 1.0f);
     for (int a = 0; a < 3; ++a) w.lowest[a] = set(d, -1.0f), w.highest[a] = last_cell_[a] + 1.0f;
     w.start(from, to);
     for (; any(m); m = w.advance(m)) cell(m, w);
   }
 
-  HWY_INLINE void cell(M m, const Walk<D>& w) {
+  HWY_INLINE void cell(M m, const BoxWalk<D>& w) {
     const D d;
     const F zero = set(d, 0), one = set(d, 1.0f);
+    // Corner samples: a cell below what was found is passed over.
     F low[3];
     Int<D> at[3];
     for (int a = 0; a < 3; ++a) low[a] = clamped_to<D>(w.box[a], zero, last_cell_[a]), at[a] = to_int(d, low[a]);
@@ -187,9 +188,10 @@ class Climb {
       leaves = select(inside & (w.next[a] <= crossing), select(forth, one, zero), leaves);
       f0[a] = enters, df[a] = leaves - enters;
     }
+    // The field along the ray is a cubic: its maximum is at an end of the cell, or where its derivative falls through zero.
     const Cubic<D> f = along_way(c, f0, df);
     offer(m, along_cell(c, f0, df, zero), w.t), offer(m, along_cell(c, f0, df, one), leave);
-    // Of the zeros of f' = b + 2 c s + 3 e s^2 the one where f'' < 0.
+    // Of the zeros of f' = b + 2 c s + 3 e s^2 the one where f'' < 0, by the root that does not cancel.
     const F discriminant = neg_mul_add(3.0f * f.e, f.b, f.c * f.c);
     const F square_root = sqrt(max(discriminant, zero));
     const M falling = f.c > zero;
@@ -221,7 +223,7 @@ class Climb {
 };
 
 template <class D, class T>
-HWY_NOINLINE void climb_all(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+HWY_NOINLINE void maximum_all(const MaximumPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
   constexpr int lanes = lanes_of<D>, width = packet_width<D>, height = lanes / width;
   const Transfer& transfer = plan.volume.transfer[0];
   RayPacket rays;
@@ -229,10 +231,10 @@ HWY_NOINLINE void climb_all(const PacketPlan& plan, int x0, int y0, int x1, int 
   for (int y = y0; y < y1; y += height)
     for (int x = x0; x < x1; x += width) {
       if (!set_up<D>(plan, x, y, x1, y1, frame, rays)) continue;
-      Climb<D, T> climb(plan, rays);
-      climb.run();
+      MaximumPacket<D, T> packet(plan, rays);
+      packet.run();
       alignas(64) float best[most_lanes], where[most_lanes];
-      climb.result(best, where);
+      packet.result(best, where);
       for (int n = 0; n < lanes; ++n) {
         result.r[n] = result.g[n] = result.b[n] = 0, result.transmittance[n] = 1, result.surface[n] = -1;
         if (!(best[n] > -HUGE_VALF)) continue;
@@ -241,28 +243,28 @@ HWY_NOINLINE void climb_all(const PacketPlan& plan, int x0, int y0, int x1, int 
         result.r[n] = m.r, result.g[n] = m.g, result.b[n] = m.b, result.transmittance[n] = 0;
         result.surface[n] = rays.enter[n] + double(where[n]);
       }
-      put(plan, rays, result, lanes, frame);
+      put(plan.volume, nullptr, rays, result, lanes, frame);
     }
 }
 
 template <class D>
-HWY_INLINE void climb_with(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+HWY_INLINE void maximum_with(const MaximumPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
   switch (plan.volume.voxels.array.type()) {
     case ElementType::u8:
     case ElementType::i8:
     case ElementType::u16:
-    case ElementType::i16: return climb_all<D, SmallInteger>(plan, x0, y0, x1, y1, frame);
-    default: return climb_all<D, float>(plan, x0, y0, x1, y1, frame);
+    case ElementType::i16: return maximum_all<D, SmallInteger>(plan, x0, y0, x1, y1, frame);
+    default: return maximum_all<D, float>(plan, x0, y0, x1, y1, frame);
   }
 }
 
-void climb_in_packets(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
-  climb_with<hn::CappedTag<float, most_lanes>>(plan, x0, y0, x1, y1, frame);
+void maximum_in_packets(const MaximumPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  maximum_with<hn::CappedTag<float, most_lanes>>(plan, x0, y0, x1, y1, frame);
 }
 
 #if HWY_ONCE
-void climb_singly(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
-  climb_with<hn::CappedTag<float, 1>>(plan, x0, y0, x1, y1, frame);
+void maximum_singly(const MaximumPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  maximum_with<hn::CappedTag<float, 1>>(plan, x0, y0, x1, y1, frame);
 }
 #endif
 
@@ -272,11 +274,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sg::volume {
 
-HWY_EXPORT(climb_in_packets);
+HWY_EXPORT(maximum_in_packets);
 
-void maximum_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
-  if (plan.knobs.simd) return HWY_DYNAMIC_DISPATCH(climb_in_packets)(plan, x0, y0, x1, y1, frame);
-  return HWY_STATIC_DISPATCH(climb_singly)(plan, x0, y0, x1, y1, frame);
+void draw_tile(const MaximumPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  if (plan.simd) return HWY_DYNAMIC_DISPATCH(maximum_in_packets)(plan, x0, y0, x1, y1, frame);
+  return HWY_STATIC_DISPATCH(maximum_singly)(plan, x0, y0, x1, y1, frame);
 }
 
 }  // namespace sg::volume

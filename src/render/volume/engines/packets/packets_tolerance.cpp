@@ -45,14 +45,15 @@ constexpr float safety = 0.55f, least_growth = 0.5f, most_growth = 1.4f, most_gr
 constexpr float least_if_refused = 0.4f, most_if_refused = 0.7f;
 
 template <class D, class T, bool shaded>
-class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
+class StridingPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
   using Walk = CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>>;
   using typename Walk::Passage, typename Walk::F, typename Walk::I, typename Walk::M;
   using Walk::brick_id, Walk::cell_at, Walk::cross, Walk::leap, Walk::passage, Walk::store;
   using Walk::plan_, Walk::cells_, Walk::end_;
 
  public:
-  HWY_INLINE TolerantPacket(const PacketPlan& plan, const RayPacket& rays) : Walk(plan, rays), sums_{plan.sums, cells_.source.loads} {
+  HWY_INLINE StridingPacket(const StridingPlan& plan, const RayPacket& rays)
+      : Walk(plan, rays), tables_(plan.tables), sums_{tables_ ? &tables_->sums : nullptr, cells_.source.loads} {
     const D d;
     F square = set(d, 0);
     for (int a = 0; a < 3; ++a) square = mul_add(cells_.along[a], cells_.along[a], square);
@@ -60,7 +61,7 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
     per_speed_ = 1.0f / max(speed_, 1e-30f);
     reserve_ = set(d, share_at_first * float(plan.budget.tolerance));
     stride_ = set(d, 1.0f);
-    if (plan.passages) here_ = sums_.at(set(d, 0));
+    if (tables_) here_ = sums_.at(set(d, 0));
     lit_ = hn::MaskFromVec(set(d, 0));
     here_lit_ = LitPlace<D>::none();
     strides_ = !shaded || plan.budget.tolerance >= least_lit_tolerance;
@@ -125,7 +126,7 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
   HWY_INLINE void renew(F t, M which) { take(sums_.at(value_at(t)), which); }
   HWY_INLINE void take(const typename SumLanes<D>::Place& p, M which) {
     const IntTag<D> di;
-    here_.value = select(which, p.value, here_.value), here_.tau = select(which, p.tau, here_.tau);
+    here_.value = select(which, p.value, here_.value), here_.sigma_t = select(which, p.sigma_t, here_.sigma_t);
     here_.slope = select(which, p.slope, here_.slope);
     here_.beyond = select(which, p.beyond, here_.beyond), here_.kinks = select(which, p.kinks, here_.kinks);
     const auto whole = rebind(di, which);
@@ -137,7 +138,7 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
     const D d;
     if (none(longer)) return here.code;
     const I id = brick_id(between[0].cell, between[1].cell, between[2].cell);
-    const I there = gather_words(d, plan_.passages->bends->codes.data(), id, cells_.source.loads) & 255;
+    const I there = gather_words(d, tables_->passages.bends->codes.data(), id, cells_.source.loads) & 255;
     return select(longer, there, here.code);
   }
 
@@ -161,7 +162,7 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
     places_at(t1, between);
     const M longer_pair = cells > half_brick;
     const I bend_code = bends_around(here, between, longer_pair);
-    const F bend = bit_cast(d, shift_left<21>(bend_code) + ((127 + Bends::least) << 23)) * plan_.passages->bends->range;
+    const F bend = bit_cast(d, shift_left<21>(bend_code) + ((127 + Bends::least) << 23)) * tables_->passages.bends->range;
     // Where most lanes are lit already the slopes are found together with the values.
     const bool lit_ahead = shaded && 2 * hn::CountTrue(d, striding & lit_) > hn::Lanes(d);
     const F value1 = value_at(between);
@@ -189,8 +190,8 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
         const auto over = (here_lit_.sides ^ lit2.sides) == cells_.lighting.turned_over();
         const M turned = seen & rebind(d, over);
         if (any(turned)) {
-          const F tau[3] = {here_.tau, p1.tau, p2.tau};
-          light.take(StrideLight<D>::turned_over(cells_.lighting, here_lit_, lit2, tau, s.depth), turned);
+          const F sigma_t[3] = {here_.sigma_t, p1.sigma_t, p2.sigma_t};
+          light.take(StrideLight<D>::turned_over(cells_.lighting, here_lit_, lit2, sigma_t, s.depth), turned);
         }
         // The middle only where the ends do not do.
         const F unknown = select(path_.known(), zero, first_error);
@@ -214,8 +215,8 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
       F lightening = zero;
       if constexpr (shaded) lightening = 2.0f * (abs(light.diffuse.b) + abs(light.specular.b));
       cells_.may_hide(s.change, lightening, lightening);
-      const F taus[3] = {here_.tau, p1.tau, p2.tau};
-      cells_.segment(drawn, t, world + world, s.depth, taus, here_.value, p2.value, s.value, half * (one + s.middle), nullptr,
+      const F extinctions[3] = {here_.sigma_t, p1.sigma_t, p2.sigma_t};
+      cells_.segment(drawn, t, world + world, s.depth, extinctions, here_.value, p2.value, s.value, half * (one + s.middle), nullptr,
                      [&](F at, F share, const auto& spread, F& red, F& green, F& blue) HWY_ATTR {
                        if constexpr (shaded) {
                          const F x = at + at - one, variance = s.variance * spread.narrower;
@@ -304,6 +305,7 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
     return found;
   }
 
+  const StrideTables* const tables_;
   const SumLanes<D> sums_;
   F speed_, per_speed_;  // speed: in cell lengths per world length
   F stride_, reserve_;
@@ -317,13 +319,13 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
 
 namespace {
 
-void cast_in_packets(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
-  cast_as<TolerantPacket, hn::CappedTag<float, most_lanes>, SG_SAMPLES>(plan, x0, y0, x1, y1, frame);
+void cast_in_packets(const StridingPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  cast_as<StridingPacket, hn::CappedTag<float, most_lanes>, SG_SAMPLES>(plan, x0, y0, x1, y1, frame);
 }
 
 #if HWY_ONCE
-void cast_singly(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
-  cast_as<TolerantPacket, hn::CappedTag<float, 1>, SG_SAMPLES>(plan, x0, y0, x1, y1, frame);
+void cast_singly(const StridingPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  cast_as<StridingPacket, hn::CappedTag<float, 1>, SG_SAMPLES>(plan, x0, y0, x1, y1, frame);
 }
 #endif
 
@@ -338,11 +340,11 @@ namespace sg::volume {
 HWY_EXPORT(cast_in_packets);
 
 template <class T>
-void cast_even_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
-  if (plan.knobs.simd) return HWY_DYNAMIC_DISPATCH(cast_in_packets)(plan, x0, y0, x1, y1, frame);
+void stride_tile(const StridingPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  if (plan.simd) return HWY_DYNAMIC_DISPATCH(cast_in_packets)(plan, x0, y0, x1, y1, frame);
   return HWY_STATIC_DISPATCH(cast_singly)(plan, x0, y0, x1, y1, frame);
 }
-template void cast_even_tile<SG_SAMPLES>(const PacketPlan&, int, int, int, int, Frame&);
+template void stride_tile<SG_SAMPLES>(const StridingPlan&, int, int, int, int, Frame&);
 
 }  // namespace sg::volume
 #endif

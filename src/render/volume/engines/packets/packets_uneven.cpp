@@ -26,12 +26,12 @@ using UnevenPacket = CellByCell<D, PacketCells<D, T, shaded, UnevenLanes<D>>>;
 
 namespace {
 
-void cast_uneven_in_packets(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+void cast_uneven_in_packets(const UnevenPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
   cast_as<UnevenPacket, hn::CappedTag<float, most_lanes>, SG_SAMPLES>(plan, x0, y0, x1, y1, frame);
 }
 
 #if HWY_ONCE
-void cast_uneven_singly(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+void cast_uneven_singly(const UnevenPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
   cast_as<UnevenPacket, hn::CappedTag<float, 1>, SG_SAMPLES>(plan, x0, y0, x1, y1, frame);
 }
 #endif
@@ -47,11 +47,11 @@ namespace sg::volume {
 HWY_EXPORT(cast_uneven_in_packets);
 
 template <class T>
-void cast_uneven_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
-  if (plan.knobs.simd) return HWY_DYNAMIC_DISPATCH(cast_uneven_in_packets)(plan, x0, y0, x1, y1, frame);
+void uneven_tile(const UnevenPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  if (plan.simd) return HWY_DYNAMIC_DISPATCH(cast_uneven_in_packets)(plan, x0, y0, x1, y1, frame);
   return HWY_STATIC_DISPATCH(cast_uneven_singly)(plan, x0, y0, x1, y1, frame);
 }
-template void cast_uneven_tile<SG_SAMPLES>(const PacketPlan&, int, int, int, int, Frame&);
+template void uneven_tile<SG_SAMPLES>(const UnevenPlan&, int, int, int, int, Frame&);
 
 }  // namespace sg::volume
 #endif

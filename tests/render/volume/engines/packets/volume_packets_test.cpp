@@ -48,12 +48,17 @@ TEST_CASE("volume packets: a ray does not depend on its neighbours: tiles of any
     VolumeItem v = wave_item(ElementType::f32, true);
     v.mode = mode;
     const volume::Volume prepared = volume::prepare(v, 1, {});
-    const volume::PacketPlan plan{prepared, oblique, {}, {{normalize(Vec3{1, 1, 1}), 1}}, {}};
-    REQUIRE(volume::in_packets(plan));
+    REQUIRE(volume::in_packets(prepared));
+    const volume::MarchingPlan steps{{prepared, oblique}, {{{normalize(Vec3{1, 1, 1}), 1}}, {}}};
+    const volume::MaximumPlan maximum{{prepared, oblique}};
+    const auto draw_tile = [&](int x0, int y0, int x1, int y1, Frame& frame) {
+      if (mode == VolumeItem::Mode::maximum) volume::draw_tile(maximum, x0, y0, x1, y1, frame);
+      else volume::draw_tile(steps, x0, y0, x1, y1, frame);
+    };
     Frame whole(45, 37), parts(45, 37);
-    volume::march_tile(plan, 0, 0, 45, 37, whole);
+    draw_tile(0, 0, 45, 37, whole);
     for (int y = 0; y < 37; y += 3)
-      for (int x = 0; x < 45; x += 7) volume::march_tile(plan, x, y, std::min(x + 7, 45), std::min(y + 3, 37), parts);
+      for (int x = 0; x < 45; x += 7) draw_tile(x, y, std::min(x + 7, 45), std::min(y + 3, 37), parts);
     CHECK(same_bytes(whole, parts));
     CHECK(whole.rgba[4 * (18 * 45 + 22) + 3] > 0);
   }
