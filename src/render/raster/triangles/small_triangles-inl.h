@@ -7,7 +7,7 @@
 #else
 #define SG_RASTER_SMALL_TRIANGLES_INL
 #endif
-#include "base/compress_inl.h"
+#include "base/compress-inl.h"
 #include "base/simd/vector-inl.h"
 #include "render/raster/triangles/kernels.h"
 

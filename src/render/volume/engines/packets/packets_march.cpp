@@ -18,9 +18,9 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "render/volume/engines/packets/packet_leaps_inl.h"
-#include "render/volume/engines/packets/packet_shading_inl.h"
-#include "render/volume/engines/packets/packets_inl.h"
+#include "render/volume/engines/packets/packet_leaps-inl.h"
+#include "render/volume/engines/packets/packet_shading-inl.h"
+#include "render/volume/engines/packets/packets-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {

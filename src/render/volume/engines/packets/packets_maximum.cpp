@@ -10,8 +10,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "render/volume/engines/packets/packet_cubic_inl.h"
-#include "render/volume/engines/packets/packets_inl.h"
+#include "render/volume/engines/packets/packet_cubic-inl.h"
+#include "render/volume/engines/packets/packets-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {

@@ -15,8 +15,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "render/volume/engines/packets/packet_cast_inl.h"
-#include "render/volume/engines/packets/packet_walk_inl.h"
+#include "render/volume/engines/packets/packet_cast-inl.h"
+#include "render/volume/engines/packets/packet_walk-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {

@@ -9,7 +9,7 @@
 #endif
 
 #include "render/shade/exp-inl.h"
-#include "render/volume/engines/packets/gathers_inl.h"
+#include "render/volume/engines/packets/gathers-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {

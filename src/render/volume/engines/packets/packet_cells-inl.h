@@ -8,9 +8,9 @@
 #define SG_PACKET_CELLS_INL_H
 #endif
 
-#include "render/volume/engines/packets/packet_cell_light_inl.h"
-#include "render/volume/engines/packets/packet_cubic_inl.h"
-#include "render/volume/engines/packets/packet_medium_inl.h"
+#include "render/volume/engines/packets/packet_cell_light-inl.h"
+#include "render/volume/engines/packets/packet_cubic-inl.h"
+#include "render/volume/engines/packets/packet_medium-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {

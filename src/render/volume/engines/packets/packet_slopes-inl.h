@@ -8,8 +8,8 @@
 #define SG_PACKET_SLOPES_INL_H
 #endif
 
-#include "render/volume/engines/packets/packet_around_inl.h"
-#include "render/volume/engines/packets/ray_rows_inl.h"
+#include "render/volume/engines/packets/packet_around-inl.h"
+#include "render/volume/engines/packets/ray_rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {

@@ -7,7 +7,7 @@
 #define SG_PACKET_CUBIC_INL_H
 #endif
 
-#include "render/volume/engines/packets/packets_inl.h"
+#include "render/volume/engines/packets/packets-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {

@@ -9,7 +9,7 @@
 
 #include <cstdint>
 
-#include "render/volume/engines/packets/packets_inl.h"
+#include "render/volume/engines/packets/packets-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {

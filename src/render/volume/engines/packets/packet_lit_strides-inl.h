@@ -7,8 +7,8 @@
 #define SG_PACKET_LIT_STRIDES_INL_H
 #endif
 
-#include "render/volume/engines/packets/packet_light_inl.h"
-#include "render/volume/engines/packets/packet_slopes_inl.h"
+#include "render/volume/engines/packets/packet_light-inl.h"
+#include "render/volume/engines/packets/packet_slopes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {

@@ -8,7 +8,7 @@
 #define SG_PACKET_STRIDES_INL_H
 #endif
 
-#include "render/volume/engines/packets/packets_inl.h"
+#include "render/volume/engines/packets/packets-inl.h"
 #include "render/volume/medium/medium_sums.h"
 #include "render/volume/sources/lattice/bends.h"
 

@@ -7,9 +7,9 @@
 #define SG_PACKET_SHADING_INL_H
 #endif
 
-#include "base/compress_inl.h"
-#include "render/volume/engines/packets/packet_light_inl.h"
-#include "render/volume/engines/packets/packet_slopes_inl.h"
+#include "base/compress-inl.h"
+#include "render/volume/engines/packets/packet_light-inl.h"
+#include "render/volume/engines/packets/packet_slopes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {

@@ -11,7 +11,7 @@
 #include <cmath>
 
 #include "render/shade/blinn_phong-inl.h"
-#include "render/volume/engines/packets/packet_axes_inl.h"
+#include "render/volume/engines/packets/packet_axes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {

@@ -7,7 +7,7 @@
 #define SG_PACKET_AXES_INL_H
 #endif
 
-#include "render/volume/engines/packets/packet_around_inl.h"
+#include "render/volume/engines/packets/packet_around-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {

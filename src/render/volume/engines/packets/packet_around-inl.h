@@ -7,7 +7,7 @@
 #define SG_PACKET_AROUND_INL_H
 #endif
 
-#include "render/volume/engines/packets/packet_cubic_inl.h"
+#include "render/volume/engines/packets/packet_cubic-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {

@@ -7,7 +7,7 @@
 #define SG_PACKET_WALK_INL_H
 #endif
 
-#include "render/volume/engines/packets/packet_cells_inl.h"
+#include "render/volume/engines/packets/packet_cells-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {

@@ -9,7 +9,7 @@
 #define SG_PACKET_CELL_LIGHT_INL_H
 #endif
 
-#include "render/volume/engines/packets/packet_light_inl.h"
+#include "render/volume/engines/packets/packet_light-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {

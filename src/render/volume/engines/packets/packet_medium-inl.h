@@ -7,7 +7,7 @@
 #define SG_PACKET_MEDIUM_INL_H
 #endif
 
-#include "render/volume/engines/packets/packets_inl.h"
+#include "render/volume/engines/packets/packets-inl.h"
 #include "render/volume/medium/medium.h"
 
 HWY_BEFORE_NAMESPACE();

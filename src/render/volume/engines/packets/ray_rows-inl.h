@@ -10,7 +10,7 @@
 
 #include <cstdint>
 
-#include "render/volume/engines/packets/packet_around_inl.h"
+#include "render/volume/engines/packets/packet_around-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {

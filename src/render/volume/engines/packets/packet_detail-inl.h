@@ -9,7 +9,7 @@
 #endif
 
 #include "render/volume/engines/packets/detail_table.h"
-#include "render/volume/engines/packets/packet_cells_inl.h"
+#include "render/volume/engines/packets/packet_cells-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
