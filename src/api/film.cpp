@@ -31,8 +31,8 @@ sg::FilmParams film_params(const std::string& output, Params params, std::initia
 
 // May a film show it otherwise at other times?
 bool may_move(const Made& made, sg::Context& context) {
-  if (made.operation == sg::memory_step) return false;
-  if (made.operation == "read") {
+  if (sg::step_kind(made.operation) == sg::StepKind::memory) return false;
+  if (sg::step_kind(made.operation) == sg::StepKind::read) {
     sg::ReadParams params;
     sg::Schema schema = sg::schema_of(params);
     sg::set_params(schema, made.words, "read");

@@ -112,8 +112,8 @@ void write_image(const std::string& path, const Image& image) {
   for (const ImageFormat& f : image_formats)
     if (f.extension == extension) format = &f;
   if (!format)
-    fail_usage(extension.empty() ? "the picture's name has no extension" : fmt::format("cannot write pictures as '.{}'", extension),
-               path, "use .png, .jpg or .webp");
+    fail_usage(extension.empty() ? "the picture's name has no extension" : fmt::format("cannot write pictures as '.{}'", extension), path,
+               "use .png, .jpg or .webp");
   if (image.width < 1 || image.height < 1) fail_usage("the picture has no pixels", path);
   format->write(path, image);
 }

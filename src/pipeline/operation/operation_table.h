@@ -11,9 +11,9 @@
 //   R f(const std::vector<Data>&, const P&, Context&)              any number of inputs
 //   R f(const Series&, const P&, Context&)                         all time steps of the input, one at a time
 //   R f(const Series&, const std::vector<Data>&, const P&, Context&)  the same, and further inputs as they are
-// Behind the sentence come hooks: op_version<2>, op_inputs<1, -1>, needs_only_named_fields, lists_fields("fields"), shows_moment, takes(KINDS),
-// makes(KINDS), or any callable that changes an Operation&. Kinds are in pipeline/operation/data_kinds.h: without these two an operation
-// takes any mesh and gives the same kind; a source makes a uniform grid.
+// Behind the sentence come hooks: op_version<2>, op_inputs<1, -1>, needs_only_named_fields, lists_fields("fields"), shows_moment,
+// takes(KINDS), makes(KINDS), or any callable that changes an Operation&. Kinds are in pipeline/operation/data_kinds.h: without these two
+// an operation takes any mesh and gives the same kind; a source makes a uniform grid.
 #pragma once
 #include <tuple>
 #include <type_traits>

@@ -20,7 +20,7 @@ void add_names_in(const std::string& expression, Request& up) {
 void ask_of_shape(const ImplicitParams& p, Request& up) {
   if (p.function.empty()) return;
   add_names_in(p.function, up);
-  for (const char* name : {"x", "y", "z"}) add_field(up, name);
+  add_field(up, "x"), add_field(up, "y"), add_field(up, "z");
 }
 
 // A plane whose place is not stated goes through the middle of the data.
@@ -112,7 +112,7 @@ void ask_of_extract(const ParamSet& params, const Request&, size_t, Request& up)
 // The pixels of a picture have values, other seeds are places alone.
 void ask_of_seeds(const ParamSet& params, const Request&, size_t input, Request& up) {
   const ParamDecl* seeds = params.schema.find("seeds");
-  if (input > 0 && seeds && param_text(*seeds) == "pixels") up.all_fields = true;
+  if (input > 0 && seeds && value_of_word<SeedKind>(param_text(*seeds)) == SeedKind::pixels) up.all_fields = true;
 }
 
 // The field of the picture, where there is one.
@@ -133,7 +133,7 @@ void ask_of_advect(const ParamSet& params, const Request&, size_t input, Request
 
 void ask_of_glyphs(const ParamSet& params, const Request&, size_t, Request& up) {
   const auto& p = params.as<GlyphsParams>();
-  if (p.size_by != "auto" && p.size_by != "length" && p.size_by != "constant") add_field(up, p.size_by);
+  if (p.size_by && !value_of_word<GlyphSize>(*p.size_by)) add_field(up, *p.size_by);
 }
 
 // In a file of gradient images their b-values and directions are fields, unless files are named.

@@ -266,8 +266,7 @@ class Preparation {
     }
     set.instances = glyph_instances(s.data, s.rule, s.shapes.size());
     set.in_pixels = s.in_pixels;
-    if (set.instances->standing > 1000)
-      set.order = derived(s.data, "glyph order", [&] { return glyph_order(*set.instances); });
+    if (set.instances->standing > 1000) set.order = derived(s.data, "glyph order", [&] { return glyph_order(*set.instances); });
     const size_t n = set.instances->count();
     for (const auto& [kind, most] : {std::pair{PreparedItem::Kind::surface, triangles}, std::pair{PreparedItem::Kind::lines, segments}}) {
       if (most == 0 || set.instances->standing == 0) continue;

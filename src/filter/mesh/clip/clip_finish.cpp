@@ -163,8 +163,7 @@ DatasetPtr finish(const Job& job, Build b) {
   out.mesh = std::move(mesh);
   const Shares shares{b, t};
   for (const Field& f : in.fields())
-    if (f.association == Association::point)
-      out.fields.add(f.with(carried(f.array, shares, is_direction(f))));
+    if (f.association == Association::point) out.fields.add(f.with(carried(f.array, shares, is_direction(f))));
   carry_gathered(out.fields, in.fields(), Association::cell, b.source, Association::cell);
   carry_whole(out.fields, in.fields());
   if (!in.fields().find("original_cell", Association::cell))

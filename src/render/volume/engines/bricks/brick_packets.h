@@ -21,8 +21,8 @@ struct BrickPlan {
   bool in_steps;  ///< fixed steps, else within the tolerance
 };
 
-/// One volume alone. Draws what single rays through the source draw, except where two levels meet: there the levels are mixed at the samples
-/// and linear between them.
+/// One volume alone. Draws what single rays through the source draw, except where two levels meet: there the levels are mixed at the
+/// samples and linear between them.
 class BrickPackets {
  public:
   /// Whether this can be drawn so: as in_packets(), and lattice_key() can distinguish the bricks.
