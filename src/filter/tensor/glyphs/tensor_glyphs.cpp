@@ -331,7 +331,7 @@ DatasetPtr tensor_glyphs(const DatasetPtr& in, const TensorGlyphsParams& p, Cont
   const TensorField t = read_tensors(*in, p.tensors, "tensor_glyphs", ctx);
   const TensorShape shape = p.shape;
   const bool lobes = shape == TensorShape::reynolds || shape == TensorShape::hwy, shear = shape == TensorShape::hwy;
-  const std::optional<TensorColor> color = p.color ? value_of_word<TensorColor>(*p.color) : std::nullopt;
+  const std::optional<TensorColor> color = value_of_word<TensorColor>(p.color.value_or(""));
   const bool named = p.color && !color;
   if (named) in->fields().require(*p.color, t.field.association);
   const Chosen c = choose(in, t, p, ctx);
