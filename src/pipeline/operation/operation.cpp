@@ -79,7 +79,7 @@ std::string ops_help(std::string_view name, std::span<const Operation> table) {
     else if (o.max_inputs < 0) r += "  Takes any number of inputs.\n";
     r += "  " + kinds_help(o) + "\n";
     const std::string help = params_help(params.schema);
-    return r + (help.empty() ? "\nIt has no parameters.\n" : "\nParameters (key=value):\n" + help) + words_help(o);
+    return r + (help.empty() ? "\nNo parameters.\n" : "\nParameters (key=value):\n" + help) + words_help(o);
   }
   std::vector<std::string_view> families;
   size_t width = 0;

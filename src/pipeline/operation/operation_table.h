@@ -100,7 +100,7 @@ constexpr void put_names(FieldNeeds::Names& to, Names... names) {
 
 }  // namespace detail
 
-/// Hook: the numbers changed N-1 times.
+/// Hook: result version, part of the cache key; raise it when equal parameters give other numbers.
 template <int N>
 constexpr auto op_version = [](Operation& o) { o.version = N; };
 // What an operation reads of its inputs. Without a hook: the fields wanted of its result, which it is taken to carry, and those that its

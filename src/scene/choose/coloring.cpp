@@ -13,14 +13,14 @@ namespace sg {
 void describe(Schema& s, ColoringParams& p) {
   s("field", p.field, "Field to colour by; default: the active scalar; 'none' for one colour.");
   s("component", p.component, "Component of a field with several; -1 is the magnitude.").range(-1, 1e6);
-  s("map", p.map, "Colour map (see: sightglass colormap), or a file: FILE.cpt, FILE.json:NAME; 'auto' looks at the data.");
+  s("map", p.map, "Colour map (see: sightglass colormap), or a file: FILE.cpt, FILE.json:NAME; 'auto' chooses by the data.");
   s("range", p.range, "Values at the two ends of the map; default: the range of the data.").unit("@field");
-  s("scale", p.scale, "How values spread over the map.");
-  s("linear_threshold", p.linear_threshold, "symlog: linear between minus and plus this; 0 chooses a thousandth of the range.").at_least(0);
+  s("scale", p.scale, "How values are mapped to colours.");
+  s("linear_threshold", p.linear_threshold, "symlog: linear between minus and plus this; 0: a thousandth of the range.").at_least(0);
   s("below", p.below, "Colour of values below the range; default: the first colour.");
   s("above", p.above, "Colour of values above the range; default: the last colour.");
   s("nan", p.nan, "Colour where there is no value.");
-  s("clamp", p.clamp, "Values out of range take the end colours; false leaves them out of the picture.");
+  s("clamp", p.clamp, "Clamp values outside the range to the end colours; false leaves them out of the picture.");
   s("color", p.color, "One colour instead of a field: #rrggbb, r,g,b or a name.");
 }
 

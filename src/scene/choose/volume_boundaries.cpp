@@ -103,7 +103,7 @@ std::string show_boundaries(const std::vector<MaterialBoundary>& found, double l
   detail.second = SecondAxis::gradient;
   detail.second_factor.points = {{0, 0}, {0.25 * weakest, 0}, {0.8 * weakest, 1}};
   return fmt::format("{} at {} (where the mean gradient peaks); the inside of materials is left out",
-                     found.size() == 1 ? "a border of materials" : "borders of materials", values);
+                     found.size() == 1 ? "a material boundary" : "material boundaries", values);
 }
 
 }  // namespace sg

@@ -27,7 +27,7 @@ TEST_CASE("operations: help of one operation is made from its declaration") {
         "  by     Factor. [number, from -1000 to 1000, in units of 'field', default 2]\n"
         "  mode   How. [plain|fancy, default plain]\n");
   CHECK(ops_help("whole", test::operations()) ==
-        "whole (parts filter)\n  Passes everything on.\n  Takes: a mesh; makes: the same kind of mesh.\n\nIt has no parameters.\n");
+        "whole (parts filter)\n  Passes everything on.\n  Takes: a mesh; makes: the same kind of mesh.\n\nNo parameters.\n");
   CHECK(ops_help("add", test::operations()).find("Takes 2 inputs.") != std::string::npos);
   CHECK(ops_help("ramp", test::operations()).starts_with("ramp (source)\n"));
 }

@@ -327,7 +327,7 @@ TEST_CASE("volume: automatic looks say in one line what was chosen and why") {
   CHECK(says(show(ct(), {}).notes, "CT"));
   CHECK_FALSE(says(show(ct(), {"transfer=histogram"}).notes, "CT"));
   const Made b = show(test::cube_of(49, "f", test::nested_balls), {"transfer=boundaries"});
-  CHECK(says(b.notes, "borders of materials"));
+  CHECK(says(b.notes, "material boundaries"));
   CHECK(b.item.detail.second == SecondAxis::gradient);
   CHECK(std::count(b.notes.begin(), b.notes.end(), '\n') == 1);
   // White noise has no borders: the histogram decides, and it says so.
