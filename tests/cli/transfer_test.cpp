@@ -106,7 +106,7 @@ TEST_CASE("transfer functions: files that are none are refused with the line") {
 TEST_CASE("transfer functions: what was chosen and why reaches the screen, once") {
   must({"convert", "--source", "hydrogen size=24", "-o", "transfer.vti"});
   CHECK(says(must(render("volume", "a.png")).err, "values above"));
-  CHECK(says(must(render("volume transfer=boundaries", "a.png")).err, "of materials"));
+  CHECK(says(must(render("volume transfer=boundaries", "a.png")).err, "material bound"));
   CHECK(says(must(render("volume preset=density", "a.png")).err, "preset density"));
   const auto plain = must({"render", "transfer.vti", "--size", "240x180", "-o", "a.png"});
   const std::string all = plain.out + plain.err;
