@@ -170,3 +170,13 @@ TEST_CASE("append: inputs without points add nothing and take nothing away, wher
   CHECK(none->point_count() == 0);
   CHECK(none->fields().find("v", Association::point));
 }
+
+TEST_CASE("unstructured: a cloud becomes vertices, and loses fields on cells that it did not have") {
+  DatasetParts parts;
+  parts.mesh = PointCloud{{Array::from_vector(std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0}, 3), {}}};
+  parts.fields.add({"p", Association::point, Array::from_vector(std::vector<float>{1, 2, 3}), "", Role::none});
+  parts.fields.add({"c", Association::cell, Array::from_vector(std::vector<float>{}), "", Role::none});
+  const DatasetPtr cells = to_unstructured(make_dataset(std::move(parts)));
+  CHECK(cells->cell_count() == 3);
+  CHECK(cells->fields().names() == std::vector<std::string>{"p"});
+}
