@@ -23,7 +23,8 @@ inline void describe(Schema& s, CellToPointParams& p) { s("fields", p.fields, "C
 DatasetPtr point_to_cell(const DatasetPtr& in, const PointToCellParams& p, Context& ctx);
 
 /// Adds for each cell field a point field of the same name: the mean over the cells that use the point; hidden and refined
-/// cells do not count, duplicates do, so that pieces with ghost layers agree. Points without a cell get NaN. Exact for linear fields inside regular grids.
+/// cells do not count, duplicates do, so that pieces with ghost layers agree. Points without a cell get NaN. Exact for linear fields inside
+/// regular grids.
 DatasetPtr cell_to_point(const DatasetPtr& in, const CellToPointParams& p, Context& ctx);
 
 }  // namespace sg
