@@ -1,10 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/property.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 
 namespace sg::test {
+
+namespace {
+std::atomic<uint64_t> all_compared, all_over, all_beside;
+}
+
+void count_pixels(uint64_t compared, uint64_t over, uint64_t beside) {
+  [[maybe_unused]] static const int told = std::atexit([] {
+    fmt::print("property: {} pixels compared, {} over what is allowed, {} within it only just beside\n", all_compared.load(),
+               all_over.load(), all_beside.load());
+  });
+  all_compared += compared, all_over += over, all_beside += beside;
+}
 
 std::vector<uint64_t> property_seeds(int cases) {
   uint64_t first = 1;

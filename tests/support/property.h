@@ -20,6 +20,10 @@ namespace sg::test {
 /// Seeds of the cases to try: 1..cases, or $SG_PROPERTY_CASES of them from $SG_PROPERTY_SEED on.
 std::vector<uint64_t> property_seeds(int cases);
 
+/// Counts pixels that a property test compared: all, those beyond what is allowed, and those within it only where the truth just beside
+/// them is taken. The program prints the sums in one line when it ends.
+void count_pixels(uint64_t compared, uint64_t over, uint64_t beside);
+
 /// A stream of random choices that follow from a seed.
 class Random {
  public:

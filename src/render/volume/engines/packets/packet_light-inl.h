@@ -84,6 +84,11 @@ template <class D>
 HWY_INLINE Mask<D> grazing(const FieldSurface<D>& a, const FieldSurface<D>& b) {
   return min(abs(a.along), abs(b.along)) < turn_between(a, b);
 }
+/// The same where the gradient may leave the straight line between them by `astray`, told as weights of surfaces.
+template <class D>
+HWY_INLINE Mask<D> grazing(const FieldSurface<D>& a, const FieldSurface<D>& b, Float<D> astray) {
+  return grazing(a, b) | (min(abs(a.along) * a.weight, abs(b.along) * b.weight) < astray);
+}
 
 /// The lamps of a picture and the rays that they are seen along.
 template <class D>

@@ -56,17 +56,17 @@ struct LitPlace {
   }
 };
 
-/// How straight the gradient goes along a ray, told from the last two places.
+/// How straight the gradient goes along a ray, told from the last places: by what share of its change from one to the next it may leave
+/// the straight line between them.
 template <class D>
 class GradientPath {
   using F = Float<D>;
 
  public:
-  HWY_INLINE GradientPath() : length_(set(D(), 0)) {
+  HWY_INLINE GradientPath() : length_(set(D(), 0)), recent_(set(D(), unknown)) {
     for (F& c : change_) c = set(D(), 0);
   }
-  /// By what share of its change from here to p2, so far away, it may leave the straight line between them. Where there is nothing to
-  /// compare with, what rough fields do.
+  /// Told from here, p2, so far away, and the place before. Where there is nothing to compare with, what rough fields do.
   HWY_INLINE F swerve(const LitPlace<D>& here, const LitPlace<D>& p2, F length) const {
     const F ratio = length / max(length_, 1e-30f);
     F change[3], bend[3];
@@ -78,13 +78,17 @@ class GradientPath {
     const F off = share * sqrt(Lighting<D>::dot(bend, bend) / size);
     return select(known(), off, unknown);
   }
-  HWY_INLINE void go(const LitPlace<D>& here, const LitPlace<D>& p2, F length, Mask<D> which) {
+  /// The same of the places of the last cell, too: the gradient bends at faces, and what is told within a cell knows nothing of the next.
+  HWY_INLINE F recent(F swerve) const { return max(swerve, recent_); }
+  HWY_INLINE void go(const LitPlace<D>& here, const LitPlace<D>& p2, F length, F swerve, F per_cell, Mask<D> which) {
     F change[3];
     step(here, p2, change);
     for (int a = 0; a < 3; ++a) change_[a] = select(which, change[a], change_[a]);
     length_ = select(which, length, length_);
+    const F left = max(set(D(), 0), neg_mul_add(length, per_cell, 1.0f));
+    recent_ = select(which, max(swerve, left * recent_), recent_);
   }
-  HWY_INLINE void forget(Mask<D> which) { length_ = only(!which, length_); }
+  HWY_INLINE void forget(Mask<D> which) { length_ = only(!which, length_), recent_ = select(which, unknown, recent_); }
   /// The lanes in which there is something to compare with.
   HWY_INLINE Mask<D> known() const { return length_ > 0; }
 
@@ -94,6 +98,7 @@ class GradientPath {
     for (int i = 0; i < 3; ++i) change[i] = b.surface.normal[i] * b.surface.weight - a.surface.normal[i] * a.surface.weight;
   }
   F change_[3], length_;  // of the gradient, up to here; 0: not known
+  F recent_;              // the largest share of the last cell, less the farther away
 };
 
 /// a + b x + c x^2 with x = -1, 0, 1 at the three places.
@@ -142,9 +147,9 @@ struct StrideLight {
     l.error = select(kinked(p0.sides, p2.sides), 1.0f, l.error);
     return l;
   }
-  /// A parabola through the ends and the middle of strides of this optical depth.
+  /// A parabola through the ends and the middle of strides of this optical depth, of which the gradient may go `astray` (grazing).
   static HWY_INLINE StrideLight curved(const Lighting<D>& lighting, const LitPlace<D>& p0, const LitPlace<D>& p1, const LitPlace<D>& p2,
-                                       F depth) {
+                                       F depth, F astray) {
     const D d;
     StrideLight l{Parabola<D>::through(p0.light.diffuse, p1.light.diffuse, p2.light.diffuse),
                   Parabola<D>::through(p0.light.specular, p1.light.specular, p2.light.specular), set(d, 0)};
@@ -166,14 +171,15 @@ struct StrideLight {
     l.error = max(bend * share, aside + (jump(p0, p1) + jump(p1, p2)));
     // Between places on one side of the surface's edge, but so near to it, the other may be seen.
     const auto there_and_back = [&](const LitPlace<D>& a, const LitPlace<D>& b)
-                                    HWY_ATTR { return grazing(a.surface, b.surface) & !kinked(a.sides, b.sides); };
+                                    HWY_ATTR { return grazing(a.surface, b.surface, 0.5f * astray) & !kinked(a.sides, b.sides); };
     l.error = select(there_and_back(p0, p1) | there_and_back(p1, p2), 1.0f, l.error);
     return l;
   }
   /// Where the surface turns over between the ends, and nothing else is a kink: each face on its part of the way, lit by a straight line
-  /// between what it has at the ends. `sigma_t` at the ends and the middle tells how much is taken on either part.
+  /// between what it has at the ends. `sigma_t` at the ends and the middle tells how much is taken on either part; `swerve` as in
+  /// straight().
   static HWY_INLINE StrideLight turned_over(const Lighting<D>& lighting, const LitPlace<D>& p0, const LitPlace<D>& p2, const F sigma_t[3],
-                                            F depth) {
+                                            F depth, F swerve) {
     const D d;
     const LitLanes<D> back0 = lighting.on_back(p0.surface), back2 = lighting.on_back(p2.surface);
     const F zero = set(d, 0), one = set(d, 1.0f), half = set(d, 0.5f), third = set(d, 1.0f / 3), least = set(d, 1e-30f);
@@ -199,10 +205,13 @@ struct StrideLight {
     StrideLight l;
     l.diffuse = mean(p0.light.diffuse, back0.diffuse, p2.light.diffuse, back2.diffuse);
     l.specular = mean(p0.light.specular, back0.specular, p2.light.specular, back2.specular);
-    // The jump, where the turn is not even or what lies before hides more of the end.
+    // The jump, where the turn is not even or what lies before hides more of the end; and elsewhere, as the gradient leaves its line.
     const F jump = apart(p2.light, back2) + apart(p0.light, back0);
     const F turn = turn_between(p0.surface, p2.surface);
-    l.error = mul_add(jump, mul_add(share_hidden, depth, share_uneven * turn), turn * (lighting.most_bend() * (1.0f / 6)));
+    const F apart_0_2 = p0.surface.weight - p2.surface.weight;
+    const F change = sqrt(max(zero, mul_add(apart_0_2, apart_0_2, p0.surface.weight * p2.surface.weight * (turn + turn))));
+    const F beside = half * min(one, swerve * change / max(abs(fall), least));
+    l.error = mul_add(jump, mul_add(share_hidden, depth, mul_add(share_uneven, turn, beside)), turn * (lighting.most_bend() * (1.0f / 6)));
     const Fade<D> fade(p0.surface, p2.surface, turn);
     l.error = mul_add(fade.hollow * (2 * share_hollow), lighting.most_fade(), l.error);
     return l;

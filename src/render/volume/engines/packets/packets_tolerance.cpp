@@ -37,6 +37,8 @@ constexpr double least_lit_tolerance = 1.0 / 1024;
 constexpr float first_error = 0.005f;
 /// Radians by which the gradient may turn over two strides, told by Bends.
 constexpr float most_turned = 4;
+/// So much of that a gradient leaves its straight line by, near the edge of a surface: there it may turn over and back.
+constexpr float share_astray = 1.0f / 16;
 /// Of what is left so much may go for one stride.
 constexpr float share_at_once = 1.0f / 3;
 /// The next stride over this one is so much of what the error would allow, within these bounds. A stride that is refused costs a whole
@@ -181,26 +183,28 @@ class StridingPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
     const bool any_seen = any(seen);
     LitPlace<D> lit2;
     StrideLight<D> light;
+    [[maybe_unused]] F told = zero;
     // Light at the end, and its error where it is taken as straight between the ends.
     if constexpr (shaded)
       if (any_seen) {
         lit2 = light_ends(t, t2, lit_ahead ? &slope2 : nullptr, seen);
-        const F swerve = path_.swerve(here_lit_, lit2, t2 - t);
+        told = path_.swerve(here_lit_, lit2, t2 - t);
+        const F swerve = path_.recent(told), change = bend * cells * per_scale_, aside = share_astray * change;
         light = StrideLight<D>::straight(cells_.lighting, here_lit_, lit2, swerve);
         const auto over = (here_lit_.sides ^ lit2.sides) == cells_.lighting.turned_over();
         const M turned = seen & rebind(d, over);
         if (any(turned)) {
           const F sigma_t[3] = {here_.sigma_t, p1.sigma_t, p2.sigma_t};
-          light.take(StrideLight<D>::turned_over(cells_.lighting, here_lit_, lit2, sigma_t, s.depth), turned);
+          light.take(StrideLight<D>::turned_over(cells_.lighting, here_lit_, lit2, sigma_t, s.depth, swerve), turned);
         }
         // The middle only where the ends do not do.
         const F unknown = select(path_.known(), zero, first_error);
-        const M unsure = (mul_add(taken, light.error + unknown, error) > allowed) | grazing(here_lit_.surface, lit2.surface);
+        const M unsure = (mul_add(taken, light.error + unknown, error) > allowed) | grazing(here_lit_.surface, lit2.surface, aside);
         const M rough = seen & unsure & !turned;
-        if (any(rough)) light.take(StrideLight<D>::curved(cells_.lighting, here_lit_, lit_at(t1, rough), lit2, s.depth), rough);
+        if (any(rough)) light.take(StrideLight<D>::curved(cells_.lighting, here_lit_, lit_at(t1, rough), lit2, s.depth, aside), rough);
         // Three places tell little where the gradient may turn right round in between.
         const F gradient = max(here_lit_.surface.weight, lit2.surface.weight);
-        const M astray = bend * cells * per_scale_ > gradient;
+        const M astray = change > gradient;
         light.error = max(light.error, only(astray, one));
         error = error + only(seen, taken * light.error);
         // What the front of an uneven pair hides of the change of light.
@@ -230,7 +234,7 @@ class StridingPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
                          }
                        }
                      });
-      if constexpr (shaded) path_.go(here_lit_, lit2, t2 - t, drawn), here_lit_.take(lit2, drawn);
+      if constexpr (shaded) path_.go(here_lit_, lit2, t2 - t, told, speed_, drawn), here_lit_.take(lit2, drawn);
     }
     if constexpr (shaded) {
       lit_ = (lit_ & !good) | (seen & good);

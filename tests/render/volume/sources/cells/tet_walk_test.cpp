@@ -38,7 +38,8 @@ DatasetPtr random_tetrahedra(Random& random) {
 
 TEST_CASE("property: a line walks at most once through each of any tetrahedra, and through all whose open faces it crosses") {
   size_t walked = 0;
-  for (const uint64_t seed : property_seeds(300)) {
+  const std::vector<uint64_t> seeds = property_seeds(300);
+  for (const uint64_t seed : seeds) {
     CAPTURE(seed);
     Random random(seed);
     Context context;
@@ -65,5 +66,6 @@ TEST_CASE("property: a line walks at most once through each of any tetrahedra, a
       }
     }
   }
-  CHECK(walked > 0);
+  // A single mesh that a finding is repeated with need not be met.
+  CHECK((walked > 0 || seeds.size() < 10));
 }
