@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random volumes against the tests' own integral: transfer functions of ramps, steps and spikes, smooth to white fields of all types and
 // scales, every kind of mesh, cameras outside, inside, parallel, along axes and grazing.
+#include <fmt/core.h>
+
 #include "volume_property.h"
 
 using namespace sg;

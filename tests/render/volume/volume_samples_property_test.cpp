@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random volumes whose pixels are made of samples: the largest, the smallest and the mean value of a ray, and fixed steps.
+#include <fmt/core.h>
+
 #include "volume_property.h"
 
 using namespace sg;
