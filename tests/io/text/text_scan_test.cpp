@@ -111,5 +111,5 @@ TEST_CASE("text_scan: numbers of any layout, many threads") {
   CHECK(
       test::contains(test::error_of([] { parse_numbers("1      2", ElementType::f32, 3, 1, "here"); }), "has 2 numbers, but 3 are needed"));
   CHECK(test::contains(test::error_of([] { parse_numbers("1 2x 3", ElementType::f32, 3, 1, "here", 4); }), "line 5: '2x'"));
-  CHECK(test::contains(test::error_of([] { parse_numbers("1.5", ElementType::i32, 1, 1, "here"); }), "no i32"));
+  CHECK(test::contains(test::error_of([] { parse_numbers("1.5", ElementType::i32, 1, 1, "here"); }), "not a valid i32"));
 }

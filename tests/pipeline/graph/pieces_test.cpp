@@ -49,7 +49,7 @@ struct Kind {
   DatasetPtr mesh;
 };
 
-std::vector<Kind> kinds() {
+std::vector<Kind> sample_kinds() {
   std::vector<Kind> r;
   for (const MeshKind& k : every_mesh())
     for (const char* name : {"uniform", "curvilinear", "tetra", "bent hexahedron", "polyhedron", "mixed", "amr", "triangles"})
@@ -199,7 +199,7 @@ std::string compare(const DatasetPtr& whole, const std::vector<DatasetPtr>& piec
 }  // namespace
 
 TEST_CASE("pieces: of every operation that works by pieces, they are the whole: cells, integrals, values at every place") {
-  const std::vector<Kind> meshes = kinds();
+  const std::vector<Kind> meshes = sample_kinds();
   REQUIRE(meshes.size() >= 7);
   for (const Operation& o : operations()) {
     if (o.pieces.result != PieceWork::Result::of_piece) continue;
@@ -239,7 +239,7 @@ TEST_CASE("pieces: of every operation that works by pieces, they are the whole: 
 
 TEST_CASE("pieces: the surfaces of pieces close where they meet") {
   Context context;
-  for (const Kind& kind : kinds()) {
+  for (const Kind& kind : sample_kinds()) {
     if (kind.name == "triangles" || kind.name == "amr") continue;  // AMR: surfaces of levels meet without common edges
     CAPTURE(kind.name);
     Graph g;
@@ -258,7 +258,7 @@ TEST_CASE("pieces: the surfaces of pieces close where they meet") {
 
 TEST_CASE("pieces: a piece of what needs the whole is cut out of it, and the whole is computed once") {
   Graph g;
-  const NodeId data = g.add_data(kinds()[0].mesh);
+  const NodeId data = g.add_data(sample_kinds()[0].mesh);
   const NodeId node = g.add_operation("calc", {"expr=component+0"}, {g.add_operation("components", {}, {data})});
   Context context;
   size_t cells = 0;
@@ -291,7 +291,7 @@ TEST_CASE("pieces: layers of ghosts add up on the way to the reader, and what is
 
 TEST_CASE("pieces: files are read in pieces with the ghosts that an operation needs") {
   Context context;
-  for (const Kind& kind : kinds())
+  for (const Kind& kind : sample_kinds())
     for (const char* ending : {".vti", ".vtu", ".pvtu"}) {
       if ((kind.name == "uniform") != (std::string(ending) == ".vti") || kind.name == "amr" || kind.name == "triangles" ||
           kind.name == "curvilinear")
@@ -320,7 +320,7 @@ TEST_CASE("pieces: files are read in pieces with the ghosts that an operation ne
 
 TEST_CASE("pieces: each point belongs to one piece") {
   Context context;
-  for (const Kind& kind : kinds()) {
+  for (const Kind& kind : sample_kinds()) {
     if (kind.name == "amr") continue;
     CAPTURE(kind.name);
     Graph g;
