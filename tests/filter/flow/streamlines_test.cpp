@@ -227,7 +227,7 @@ TEST_CASE("streamlines: bad input is named") {
   parts.fields.add({"t", Association::point, Array::from_vector(std::vector<float>(125 * 6), 6), "", Role::none});
   p = {};
   p.field.name = "t";
-  CHECK(contains(error_with(make_dataset(std::move(parts)), p), "has 6 components, a velocity has 2 or 3"));
+  CHECK(contains(error_with(make_dataset(std::move(parts)), p), "has 6 components; a velocity has 2 or 3"));
   CHECK(contains(error_with(std::make_shared<const Table>(), {}), "table"));
   PointCloud cloud{{Array::from_vector(std::vector<float>(30), 3), {}}};
   FieldSet fields;
