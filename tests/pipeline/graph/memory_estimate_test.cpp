@@ -62,8 +62,8 @@ TEST_CASE("memory estimates: a thousand million seeds, places or glyphs are refu
   CHECK(has(error_of_steps({{"abc", {"size=9"}}, {"streamlines", {many}}}), {"seeds need", "--memory"}));
   for (const char* mode : {"random", "even"})
     CHECK(has(error_of_steps({{"abc", {"size=9"}}, {"glyph_points", {std::string("mode=") + mode, many}}}),
-              {"places need", "glyph_points", "--memory"}));
-  CHECK(has(error_of_steps({{"abc", {"size=9"}}, {"glyphs", {many}}}), {"places need", "--memory"}));
+              {"glyphs need", "glyph_points", "--memory"}));
+  CHECK(has(error_of_steps({{"abc", {"size=9"}}, {"glyphs", {many}}}), {"glyphs need", "--memory"}));
 }
 
 TEST_CASE("memory estimates: what a few words ask for is refused before the system promises more than the machine has") {

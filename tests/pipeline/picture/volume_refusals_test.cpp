@@ -131,7 +131,7 @@ TEST_CASE("component: a number that the field does not have is refused wherever 
         CHECK(text.find("leave out component") != std::string::npos);
       }
       for (const char* more : {"range=0,1", "mode=sum", "preset=xray", "transfer=boundaries", "second=gradient", "scale=log", "map=gray"})
-        CHECK(refusal(data, {named, component, more}).find("has 1 component, not") != std::string::npos);
+        CHECK(refusal(data, {named, component, more}).find("has 1 component; there is no component") != std::string::npos);
     }
   CHECK(refusal(data, {"field=v", "component=3"}).find("has 3 components; there is no component 3") != std::string::npos);
   CHECK(refusal(data, {"field=v", "component=3"}).find("0 to 2, or -1 for the magnitude") != std::string::npos);
