@@ -236,7 +236,7 @@ TEST_CASE("volume: what cannot be shown is said, with what would be right") {
   CHECK(error(v).find("g") != std::string::npos);
   v = item(d, grey(0, 1), {});
   v.component = 2;
-  CHECK(error(v).find("has 1 component,") != std::string::npos);
+  CHECK(error(v).find("has 1 component;") != std::string::npos);
   v.component = -1, v.sampling.step = -1;
   CHECK(error(v).find("step") != std::string::npos);
   v.sampling.step = 1e-9;
