@@ -87,5 +87,6 @@ TEST_CASE("surfels: bad input") {
   CHECK(test::error_of([&] { surfels(grid, {.field = {"g"}}, ctx); }).find("'g'") != std::string::npos);
   CHECK(test::error_of([&] { surfels(test::meshes::solid_box(CellType::tetra, 1), {}, ctx); }).find("grids") != std::string::npos);
   CHECK(test::error_of([&] { surfels(test::meshes::uniform_box(3, 3, 0), {}, ctx); }).find("solid") != std::string::npos);
-  CHECK(test::error_of([&] { surfels(test::meshes::uniform_box(3, 3, 3), {.field = {"c"}}, ctx); }).find("not a point field") != std::string::npos);
+  CHECK(test::error_of([&] { surfels(test::meshes::uniform_box(3, 3, 3), {.field = {"c"}}, ctx); }).find("not a point field") !=
+        std::string::npos);
 }
