@@ -49,10 +49,10 @@ DatasetPtr with_known_looks(const DatasetPtr& data) {
   DatasetParts parts;
   bool any = false;
   for (const Field& f : data->fields()) {
+    if (f.look != FieldLook{}) continue;  // stated
     FieldLook look = known_look(f.name);
     look.bands = look.bands && has_limits_of_bands(data->fields(), f);
-    look.result = f.look.result;
-    if (look == f.look || f.look != FieldLook{}) continue;
+    if (look == FieldLook{}) continue;
     if (!any) parts = data->parts();
     any = true;
     Field now = f;
