@@ -9,9 +9,9 @@ if(SG_CCACHE)
       CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_PCH_EXTSUM=1 CCACHE_DEPEND=1 ${SG_CCACHE})
   # The precompiled headers differ in every build folder, though their content does not: ccache is told what they stand for, which is the
   # text of all headers that they may include. CMake runs again when one of them changes, before anything is compiled.
-  foreach(target IN ITEMS sg_base sg_data sg_test_support)
+  foreach(target IN ITEMS sg_base sg_data sg_quick_pch sg_test_support)
     set(queue ${CMAKE_SOURCE_DIR}/src/base/pch.h)
-    if(target STREQUAL sg_data)
+    if(target MATCHES "sg_data|sg_quick_pch")
       set(queue ${CMAKE_SOURCE_DIR}/cmake/data_pch.h)
     elseif(target STREQUAL sg_test_support)
       set(queue ${CMAKE_SOURCE_DIR}/cmake/test_pch.h)

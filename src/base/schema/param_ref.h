@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // ParamRef: a member of a parameter struct, whatever its type, read and changed as a Value.
 #pragma once
-#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -39,11 +38,12 @@ enum class ParamType {
 
 namespace detail {
 
+// What is not a template itself is defined in param_ref.cpp: nearly every file includes this header, and would compile Value's copies.
 template <class T, ParamType Type, class Held = T>
 struct PlainParam {
   static constexpr ParamType type = Type;
-  static Value get(const T& v) { return Held(v); }
-  static T from(const Value& v) { return T(std::get<Held>(v)); }
+  static Value get(const T& v);
+  static T from(const Value& v);
 };
 
 template <class T>
@@ -57,8 +57,8 @@ struct ParamTraits<int64_t> : PlainParam<int64_t, ParamType::integer> {};
 template <>
 struct ParamTraits<size_t> {
   static constexpr ParamType type = ParamType::integer;
-  static Value get(const size_t& v) { return int64_t(std::min<size_t>(v, INT64_MAX)); }
-  static size_t from(const Value& v) { return size_t(std::get<int64_t>(v)); }
+  static Value get(const size_t& v);
+  static size_t from(const Value& v);
 };
 template <>
 struct ParamTraits<double> : PlainParam<double, ParamType::number> {};
@@ -73,24 +73,23 @@ struct ParamTraits<std::vector<std::string>> : PlainParam<std::vector<std::strin
 template <>
 struct ParamTraits<FieldName> {
   static constexpr ParamType type = ParamType::field;
-  static Value get(const FieldName& v) { return v.name; }
-  static FieldName from(const Value& v) { return {std::get<std::string>(v)}; }
+  static Value get(const FieldName& v);
+  static FieldName from(const Value& v);
 };
 template <>
 struct ParamTraits<Vec3> {
   static constexpr ParamType type = ParamType::point;
-  static Value get(const Vec3& v) { return std::vector<double>{v.x, v.y, v.z}; }
-  static Vec3 from(const Value& v) {
-    const auto& c = std::get<std::vector<double>>(v);
-    return {c[0], c[1], c[2]};
-  }
+  static Value get(const Vec3& v);
+  static Vec3 from(const Value& v);
 };
+Value value_of(std::string_view word);
+std::string_view word_in(const Value& value);
 template <WordedEnum E>
 struct ParamTraits<E> {
   static constexpr ParamType type = ParamType::word;
   using Enum = E;
-  static Value get(const E& v) { return std::string(word_of(v)); }
-  static E from(const Value& v) { return value_of_word<E>(std::get<std::string>(v)).value_or(E{}); }
+  static Value get(const E& v) { return value_of(word_of(v)); }
+  static E from(const Value& v) { return value_of_word<E>(word_in(v)).value_or(E{}); }
 };
 template <WordedEnum E>
 struct ParamTraits<std::vector<E>> {

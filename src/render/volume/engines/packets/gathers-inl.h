@@ -351,6 +351,12 @@ HWY_INLINE Pair<D> gather_pair(D d, const T* data, Int<D> at, const Integers<D>&
   gather_words_at(d, data, {0}, from, loads, &word);
   return pair_in<T>(d, bit_cast(IntTag<D>(), bit_cast(du, word) >> bit_cast(du, skipped)), integers);
 }
+/// gather_pairs() of small integers near the end of the array. Out of line: it is long and rarely taken.
+template <class D, class T, size_t n>
+HWY_NOINLINE void gather_last_pairs(D d, const T* data, const ptrdiff_t (&on)[n], const Int<D>& at, const Integers<D>& integers, bool loads,
+                                    Pair<D>* out) {
+  for (size_t r = 0; r < n; ++r) out[r] = gather_pair(d, data, at + int(on[r]), integers, loads);
+}
 /// gather_pairs() of small integers.
 template <class D, class T, size_t n, class At>
 HWY_INLINE void gather_pairs(D d, const T* data, const ptrdiff_t (&on)[n], At at, const Integers<D>& integers, bool loads, Pair<D>* out) {
@@ -360,8 +366,7 @@ HWY_INLINE void gather_pairs(D d, const T* data, const ptrdiff_t (&on)[n], At at
     for (size_t r = 0; r < n; ++r) out[r] = pair_in<T>(d, words[r], integers);
     return;
   }
-  const Int<D> first = in_vector(d, at);
-  for (size_t r = 0; r < n; ++r) out[r] = gather_pair(d, data, first + int(on[r]), integers, loads);
+  gather_last_pairs(d, data, on, in_vector(d, at), integers, loads, out);
 }
 /// gather_quads() of small integers.
 template <class D, class T, size_t n>

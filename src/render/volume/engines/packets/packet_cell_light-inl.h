@@ -42,7 +42,7 @@ class CellLight {
         take(slopes, from, way);
       }
   }
-  HWY_INLINE Error error(const Source<D, T>& source, const I cell[3], const F from[3], const F way[3]) {
+  HWY_NOINLINE Error error(const Source<D, T>& source, const I cell[3], const F from[3], const F way[3]) {
     const D d;
     const F zero = set(d, 0), one = set(d, 1.0f), half = set(d, 0.5f);
     // Gradient, surface and light at both ends and in the middle.

@@ -93,7 +93,7 @@ class DetailCells : public RayLanes<D, T, Axes> {
       if constexpr (shaded) surface.take(o.surface, which);
     }
   };
-  HWY_INLINE Spot spot(const Cubic<D>& f, F s) const {
+  HWY_NOINLINE Spot spot(const Cubic<D>& f, F s) const {
     Spot p;
     F g[3];
     p.value = f.at(s);
@@ -140,7 +140,7 @@ class DetailCells : public RayLanes<D, T, Axes> {
     }
   };
 
-  HWY_INLINE void integrate(const Cubic<D>& f, F t, F length, M look) {
+  HWY_NOINLINE void integrate(const Cubic<D>& f, F t, F length, M look) {
     const D d;
     const F zero = set(d, 0), one = set(d, 1.0f), half = set(d, 0.5f);
     const F stop = set(d, plan.budget.stop_below), tolerance = set(d, float(plan.budget.tolerance));
