@@ -229,7 +229,7 @@ void finish_raw(const RawText& raw, Options& o) {
   fail_usage(text, "sightglass " + command.get_name(), fmt::format("see: sightglass {} --help", command.get_name()));
 }
 
-const char* const overview =
+const char* const general_help =
     "Sightglass: trustworthy pictures from simulation and scanner data.\n\n"
     "  sightglass render IN... [-f 'OP key=value ...']... [--show 'surface|volume|lines|points|labels|glyphs|outline key=value ...']...\n"
     "             [--camera ...] [--size 1920x1080] [-o OUT.png]      render a picture; anything left open is chosen from the data\n"
@@ -348,7 +348,7 @@ Options parse_options(int argc, char** argv) {
   Options o;
   const std::string first = argc > 1 ? argv[1] : "--help";
   if (first == "--help" || first == "-h" || first == "help") {
-    std::fputs(overview, stdout);
+    std::fputs(general_help, stdout);
     return o;
   }
   if (first == "--version") {

@@ -2,13 +2,14 @@
 #include "color/cie.h"
 
 #include <algorithm>
+#include <numbers>
 
 namespace sg {
 namespace {
 
 constexpr double epsilon = 216.0 / 24389.0;
 constexpr double kappa = 24389.0 / 27.0;
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 constexpr double degree = pi / 180;
 
 constexpr Vec3 xyz_of(double x, double y) { return {x / y, 1, (1 - x - y) / y}; }
@@ -63,6 +64,9 @@ double linear_to_srgb(double l) {
 }
 
 Vec3 srgb_to_linear(Vec3 e) { return {srgb_to_linear(e.x), srgb_to_linear(e.y), srgb_to_linear(e.z)}; }
+Vec4f srgb_to_linear(Vec4f e) {
+  return {float(srgb_to_linear(double(e.x))), float(srgb_to_linear(double(e.y))), float(srgb_to_linear(double(e.z))), e.w};
+}
 Vec3 linear_to_srgb(Vec3 l) { return {linear_to_srgb(l.x), linear_to_srgb(l.y), linear_to_srgb(l.z)}; }
 
 Vec3 linear_to_xyz(Vec3 linear) { return matrices().to_xyz * linear; }

@@ -9,6 +9,8 @@ namespace sg {
 double srgb_to_linear(double encoded);
 double linear_to_srgb(double linear);
 Vec3 srgb_to_linear(Vec3 encoded);
+/// Alpha stays.
+Vec4f srgb_to_linear(Vec4f encoded);
 Vec3 linear_to_srgb(Vec3 linear);
 
 /// XYZ of linear sRGB, relative to Y = 1 of white. The matrix follows from the primaries (.64,.33), (.30,.60), (.15,.06)

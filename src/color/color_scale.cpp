@@ -54,10 +54,6 @@ size_t label_place(const std::vector<double>& labels, double v) {
 
 Vec4f opaque(Vec3f c) { return {c.x, c.y, c.z, 1}; }
 
-Vec4f to_linear(Vec4f c) {
-  return {float(srgb_to_linear(double(c.x))), float(srgb_to_linear(double(c.y))), float(srgb_to_linear(double(c.z))), c.w};
-}
-
 }  // namespace
 
 double ColorScale::position(double v) const {
@@ -127,10 +123,10 @@ ColorTable color_table(const ColorScale& scale, int size) {
   const size_t n = std::max({size_t(std::max(size, 2)), 2 * scale.labels.size() + 1});
   ColorTable table;
   table.linear.resize(n);
-  for (size_t i = 0; i < n; ++i) table.linear[i] = to_linear(scale.color_at(double(i) / double(n - 1)));
-  table.below = to_linear(scale.color_at(-1));
-  table.above = to_linear(scale.color_at(2));
-  table.nan = to_linear(scale.color_at(no_value));
+  for (size_t i = 0; i < n; ++i) table.linear[i] = srgb_to_linear(scale.color_at(double(i) / double(n - 1)));
+  table.below = srgb_to_linear(scale.color_at(-1));
+  table.above = srgb_to_linear(scale.color_at(2));
+  table.nan = srgb_to_linear(scale.color_at(no_value));
   return table;
 }
 
@@ -143,7 +139,7 @@ std::vector<double> color_knots(const ColorScale& scale) {
   const size_t n = c.size();
   std::vector<double> places{0, 1};  // on the map
   const auto change = [&](size_t i) {
-    const Vec4f a = to_linear(opaque(c[i])), b = to_linear(opaque(c[i + 1]));
+    const Vec4f a = srgb_to_linear(opaque(c[i])), b = srgb_to_linear(opaque(c[i + 1]));
     return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
   };
   if (scale.map.categorical()) {

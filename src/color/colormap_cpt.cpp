@@ -17,11 +17,11 @@ namespace {
 enum class Model { rgb, hsv, cmyk };
 
 // Names that mean something else than in CSS, or are not among ours, as X11 has them.
-struct Named {
+struct X11Color {
   std::string_view name;
   int r, g, b;
 };
-constexpr Named x11[] = {{"green", 0, 255, 0},          {"purple", 160, 32, 240},     {"brown", 165, 42, 42},
+constexpr X11Color x11[] = {{"green", 0, 255, 0},          {"purple", 160, 32, 240},     {"brown", 165, 42, 42},
                          {"gray", 190, 190, 190},       {"grey", 190, 190, 190},      {"darkorange", 255, 140, 0},
                          {"lightgray", 211, 211, 211},  {"lightgrey", 211, 211, 211}, {"lightblue", 173, 216, 230},
                          {"darkgreen", 0, 100, 0},      {"darkblue", 0, 0, 139},      {"darkred", 139, 0, 0},
@@ -65,7 +65,7 @@ struct CptParser {
     constexpr float shades[] = {1, 0.932f, 0.804f, 0.545f};
     const float shade = number ? shades[*number - 1] : 1;
     if (number && base == "darkorange") return of_bytes(255, 127, 0) * shade;
-    for (const Named& n : x11)
+    for (const X11Color& n : x11)
       if (n.name == base) return of_bytes(n.r, n.g, n.b) * shade;
     try {
       return parse_color(base, "") * shade;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "color/cie.h"
+#include "color/msh.h"
 
 namespace sg {
 
@@ -24,23 +25,6 @@ Hsv rgb_to_hsv(Vec3f c) {
   return {h / 6, d / hi, hi};
 }
 
-struct Msh {
-  double m, s, h;
-};
-
-Msh lab_to_msh(Vec3 lab) {
-  const double m = length(lab);
-  const double s = m > 1e-3 ? std::acos(std::clamp(lab.x / m, -1.0, 1.0)) : 0;
-  return {m, s, s > 1e-3 ? std::atan2(lab.z, lab.y) : 0};
-}
-
-// The hue that a grey takes so that the path to a saturated colour does not bend.
-double spun_hue(const Msh& saturated, double m) {
-  if (saturated.m >= m - 0.1) return saturated.h;
-  const double spin = saturated.s * std::sqrt(m * m - saturated.m * saturated.m) / (saturated.m * std::sin(saturated.s));
-  return saturated.h > -std::numbers::pi / 3 ? saturated.h + spin : saturated.h - spin;
-}
-
 Vec3 msh_between(Vec3 lab1, Vec3 lab2, double t) {
   Msh a = lab_to_msh(lab1), b = lab_to_msh(lab2);
   double turn = std::abs(a.h - b.h);
@@ -50,10 +34,9 @@ Vec3 msh_between(Vec3 lab1, Vec3 lab2, double t) {
     if (t < 0.5) b = {m, 0, 0}, t = 2 * t;
     else a = {m, 0, 0}, t = 2 * t - 1;
   }
-  if (a.s < 0.05 && b.s > 0.05) a.h = spun_hue(b, a.m);
-  else if (b.s < 0.05 && a.s > 0.05) b.h = spun_hue(a, b.m);
-  const double m = std::lerp(a.m, b.m, t), s = std::lerp(a.s, b.s, t), h = std::lerp(a.h, b.h, t);
-  return {m * std::cos(s), m * std::sin(s) * std::cos(h), m * std::sin(s) * std::sin(h)};
+  if (a.s < 0.05 && b.s > 0.05) a.h = adjusted_hue(b, a.m);
+  else if (b.s < 0.05 && a.s > 0.05) b.h = adjusted_hue(a, b.m);
+  return msh_to_lab({std::lerp(a.m, b.m, t), std::lerp(a.s, b.s, t), std::lerp(a.h, b.h, t)});
 }
 
 Vec3f clamped(Vec3 c) { return {float(std::clamp(c.x, 0.0, 1.0)), float(std::clamp(c.y, 0.0, 1.0)), float(std::clamp(c.z, 0.0, 1.0))}; }

@@ -2,13 +2,15 @@
 #include "color/map_construction.h"
 
 #include <algorithm>
+#include <numbers>
 
 #include "color/cie.h"
+#include "color/msh.h"
 
 namespace sg {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 Vec3 lch_to_lab(double l, double c, double h) { return {l, c * std::cos(h * pi / 180), c * std::sin(h * pi / 180)}; }
 
@@ -61,22 +63,6 @@ std::vector<double> even_steps(int n, LabAt&& lab_at) {
   return u;
 }
 
-struct Msh {
-  double m, s, h;
-};
-Msh to_msh(Vec3 lab) {
-  const double m = length(lab);
-  return {m, m > 0.001 ? std::acos(lab.x / m) : 0, std::atan2(lab.z, lab.y)};
-}
-Vec3 from_msh(Msh c) { return {c.m * std::cos(c.s), c.m * std::sin(c.s) * std::cos(c.h), c.m * std::sin(c.s) * std::sin(c.h)}; }
-
-/// Hue that the neutral end takes so that the path leaves it straight.
-double spun_hue(Msh saturated, double neutral_m) {
-  if (saturated.m >= neutral_m) return saturated.h;
-  const double spin = saturated.s * std::sqrt(neutral_m * neutral_m - saturated.m * saturated.m) / (saturated.m * std::sin(saturated.s));
-  return saturated.h > -pi / 3 ? saturated.h + spin : saturated.h - spin;
-}
-
 }  // namespace
 
 std::vector<Vec3f> sequential_path(double from, double to, std::span<const HueChroma> controls, int n) {
@@ -105,16 +91,16 @@ std::vector<Vec3f> diverging_path(double end_lightness, double middle_lightness,
 }
 
 std::vector<Vec3f> moreland_diverging(Vec3 srgb1, Vec3 srgb2, int n) {
-  const Msh end1 = to_msh(srgb_to_lab(srgb1)), end2 = to_msh(srgb_to_lab(srgb2));
+  const Msh end1 = lab_to_msh(srgb_to_lab(srgb1)), end2 = lab_to_msh(srgb_to_lab(srgb2));
   const double middle = std::max({end1.m, end2.m, 88.0});
   std::vector<Vec3f> colors;
   for (int i = 0; i < n; ++i) {
     const double x = double(i) / (n - 1);
     const Msh& end = x < 0.5 ? end1 : end2;
     const double t = std::abs(2 * x - 1);  // 0 at the middle
-    const double h = spun_hue(end, middle);
+    const double h = adjusted_hue(end, middle);
     const Msh c{middle + (end.m - middle) * t, end.s * t, h + (end.h - h) * t};
-    colors.push_back(to_float(t == 1 ? (i == 0 ? srgb1 : srgb2) : lab_to_srgb(from_msh(c))));
+    colors.push_back(to_float(t == 1 ? (i == 0 ? srgb1 : srgb2) : lab_to_srgb(msh_to_lab(c))));
   }
   return colors;
 }

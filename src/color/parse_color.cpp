@@ -12,12 +12,12 @@ namespace sg {
 
 namespace {
 
-struct Named {
+struct CssColor {
   std::string_view name;
   uint32_t rgb;
 };
 // A few names of the CSS list: enough to try things out.
-constexpr Named named[] = {
+constexpr CssColor named[] = {
     {"black", 0x000000},  {"white", 0xffffff}, {"gray", 0x808080},   {"grey", 0x808080}, {"silver", 0xc0c0c0},    {"red", 0xff0000},
     {"green", 0x008000},  {"blue", 0x0000ff},  {"yellow", 0xffff00}, {"cyan", 0x00ffff}, {"magenta", 0xff00ff},   {"orange", 0xffa500},
     {"tomato", 0xff6347}, {"gold", 0xffd700},  {"navy", 0x000080},   {"teal", 0x008080}, {"purple", 0x800080},    {"brown", 0xa52a2a},
@@ -57,7 +57,7 @@ Vec3f parse_color(std::string_view text, std::string_view where) {
     if (good) return c;
   }
   std::vector<std::string> names;
-  for (const Named& n : named) {
+  for (const CssColor& n : named) {
     if (n.name == t) return from_hex(n.rgb);
     names.emplace_back(n.name);
   }

@@ -19,10 +19,6 @@ double bit_exp(double a) {
   return double(std::bit_cast<float>(int32_t(std::clamp(std::lround(a * 0x1p23), -0x3F800000L, 0x3FFFFFFFL)) + 0x3F800000));
 }
 
-Vec4f to_linear(Vec4f c) {
-  return {float(srgb_to_linear(double(c.x))), float(srgb_to_linear(double(c.y))), float(srgb_to_linear(double(c.z))), c.w};
-}
-
 const OpacityCurve& checked(const OpacityCurve& c) {
   if (c.points.empty()) fail_usage("the opacity curve has no points", "opacity", "write position:opacity pairs, e.g. 0:0,0.3:0.1,1:0.8");
   return c;
@@ -115,7 +111,7 @@ TransferFunction::Colors::Colors(const ColorScale& s, double b) : scale(s), base
   per_axis = hi > lo ? float(table_size / (hi - lo)) : 0;
   for (int i = 0; i < table_size; ++i)
     table.push_back(
-        to_linear(s.color(std::clamp(value_on_axis(lo + (hi - lo) * (i + 0.5) / table_size), std::min(s.lo, s.hi), std::max(s.lo, s.hi)))));
+        srgb_to_linear(s.color(std::clamp(value_on_axis(lo + (hi - lo) * (i + 0.5) / table_size), std::min(s.lo, s.hi), std::max(s.lo, s.hi)))));
   const auto mark = [&](int i) { table[size_t(std::clamp(i, 0, table_size - 1))].w = not_even; };
   const std::vector<Vec4f> plain = table;
   for (size_t i = 0; i + 1 < plain.size(); ++i)
@@ -140,12 +136,12 @@ double TransferFunction::Colors::value_on_axis(double a) const {
 
 Vec4f TransferFunction::Colors::at(float v) const {
   if (v != v) return nan;
-  if (!scale.labels.empty()) return to_linear(scale.color(double(v) + base));
+  if (!scale.labels.empty()) return srgb_to_linear(scale.color(double(v) + base));
   const float place = (axis(v) - first) * per_axis;
   if (place >= 0 && place <= float(table_size)) {
     const Vec4f& c = table[size_t(std::min(int(place), table_size - 1))];
     return c.w == not_even
-               ? to_linear(scale.color(std::clamp(double(v) + base, std::min(scale.lo, scale.hi), std::max(scale.lo, scale.hi))))
+               ? srgb_to_linear(scale.color(std::clamp(double(v) + base, std::min(scale.lo, scale.hi), std::max(scale.lo, scale.hi))))
                : c;
   }
   return place < 0 ? below : above;
@@ -170,7 +166,7 @@ TransferFunction::TransferFunction(const ColorScale& scale, const OpacityCurve& 
     f.per_height = w.second_hi > w.second_lo ? float(1 / (w.second_hi - w.second_lo)) : 0;
     f.opacity = float(w.opacity);
     f.own_color = w.color.x >= 0 && w.color.y >= 0 && w.color.z >= 0;
-    const Vec4f c = to_linear({w.color.x, w.color.y, w.color.z, 1});
+    const Vec4f c = srgb_to_linear(Vec4f{w.color.x, w.color.y, w.color.z, 1});
     f.color = {c.x, c.y, c.z};
     widgets_.push_back(f);
   }

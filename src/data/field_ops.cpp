@@ -14,7 +14,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 1 << 15;
+constexpr size_t values_per_chunk = 1 << 15;
 
 template <class Id>
 Array gather_any(const Array& a, std::span<const Id> ids) {
@@ -24,7 +24,7 @@ Array gather_any(const Array& a, std::span<const Id> ids) {
     using T = std::remove_cvref_t<decltype(v[0])>;
     T* to = reinterpret_cast<T*>(out);
     const int n = v.components;
-    parallel_for(ids.size(), grain, [&](size_t begin, size_t end) {
+    parallel_for(ids.size(), values_per_chunk, [&](size_t begin, size_t end) {
       if (n == 1) {
         for (size_t i = begin; i < end; ++i) to[i] = v[size_t(ids[i])];
         return;
@@ -49,7 +49,7 @@ Array interpolate_directions(const Array& a, std::span<const EdgePoint> points) 
   dispatch(a, [&](auto v) {
     using T = std::remove_cvref_t<decltype(v[0])>;
     T* to = reinterpret_cast<T*>(out);
-    parallel_for(points.size(), grain, [&](size_t begin, size_t end) {
+    parallel_for(points.size(), values_per_chunk, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         const EdgePoint p = points[i];
         const Vec3 from(double(v(p.a, 0)), double(v(p.a, 1)), double(v(p.a, 2))),
@@ -84,7 +84,7 @@ Array interpolate(const Array& a, std::span<const EdgePoint> points) {
     using T = std::remove_cvref_t<decltype(v[0])>;
     T* to = reinterpret_cast<T*>(out);
     const int n = v.components;
-    parallel_for(points.size(), grain, [&](size_t begin, size_t end) {
+    parallel_for(points.size(), values_per_chunk, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         const EdgePoint p = points[i];
         for (int c = 0; c < n; ++c) {
@@ -103,7 +103,7 @@ Array combine(const Array& a, std::span<const int64_t> ids, std::span<const doub
   std::byte* out = nullptr;
   Array r = Array::make_raw(wide ? ElementType::f64 : ElementType::f32, count, a.components(), &out);
   dispatch(a, [&](auto v) {
-    parallel_for(count, grain, [&](size_t begin, size_t end) {
+    parallel_for(count, values_per_chunk, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i)
         for (int c = 0; c < v.components; ++c) {
           double sum = 0;
@@ -147,7 +147,7 @@ Array scalar_of(const Field& field, int component, ElementType type) {
   std::byte* out = nullptr;
   Array r = Array::make_raw(type, a.count(), 1, &out);
   dispatch(a, [&](auto v) {
-    parallel_for(v.count, grain, [&](size_t begin, size_t end) {
+    parallel_for(v.count, values_per_chunk, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         double sum = 0;
         for (int c = 0; c < v.components; ++c) sum += double(v(i, c)) * double(v(i, c));

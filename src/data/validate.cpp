@@ -27,17 +27,17 @@ void check_dims(const std::array<size_t, 3>& d) {
     if (__builtin_mul_overflow(n, std::max<size_t>(a, 1), &n) || n > (size_t(1) << 62)) fail_data("the grid has too many points to count");
 }
 
-constexpr size_t none = SIZE_MAX;
+constexpr size_t no_index = SIZE_MAX;
 
-// The first index for which bad(i) holds, found in parallel; `none` when there is no such index.
+// The first index for which bad(i) holds, found in parallel; `no_index` when there is no such index.
 template <class Bad>
 size_t first_bad(size_t n, Bad bad) {
   return parallel_reduce(
-      n, 1 << 17, none,
+      n, 1 << 17, no_index,
       [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i)
           if (bad(i)) return i;
-        return none;
+        return no_index;
       },
       [](size_t a, size_t b) { return std::min(a, b); });
 }
@@ -46,14 +46,14 @@ template <class T>
 size_t first_outside(const T* ids, size_t n, size_t points) {
   using U = std::make_unsigned_t<T>;
   return parallel_reduce(
-      n, 1 << 18, none,
+      n, 1 << 18, no_index,
       [&](size_t begin, size_t end) {
         U most = 0;  // as unsigned, a negative id is a huge one
         for (size_t i = begin; i < end; ++i) most = std::max(most, U(ids[i]));
-        if (size_t(most) < points) return none;
+        if (size_t(most) < points) return no_index;
         for (size_t i = begin; i < end; ++i)
           if (size_t(U(ids[i])) >= points) return i;
-        return none;
+        return no_index;
       },
       [](size_t a, size_t b) { return std::min(a, b); });
 }
@@ -70,7 +70,7 @@ void check_cells(const CellArray& a, size_t limit, const char* what) {
     const IndexView at = index_view(a.offsets);
     const size_t n = a.offsets.count();
     if (at[0] != 0) fail_data(fmt::format("{}: the first offset is {}, not 0", what, at[0]));
-    if (const size_t i = first_bad(n - 1, [&](size_t k) { return at[k + 1] < at[k]; }); i != none)
+    if (const size_t i = first_bad(n - 1, [&](size_t k) { return at[k + 1] < at[k]; }); i != no_index)
       fail_data(fmt::format("{}: offsets decrease from {} to {} at cell {}", what, at[i], at[i + 1], i));
     if (size_t(at[n - 1]) > ids.count())
       fail_data(fmt::format("{}: offsets end at {} but there are {} indices", what, at[n - 1], ids.count()));
@@ -79,7 +79,7 @@ void check_cells(const CellArray& a, size_t limit, const char* what) {
   index_view(ids);
   const size_t bad = ids.type() == ElementType::i64 ? first_outside(ids.view<int64_t>().data, ids.count(), limit)
                                                     : first_outside(ids.view<int32_t>().data, ids.count(), limit);
-  if (bad != none)
+  if (bad != no_index)
     fail_data(fmt::format("{}: point id {} at index {} is not in 0..{}", what, index_view(ids)[bad], bad, int64_t(limit) - 1));
 }
 
@@ -116,7 +116,7 @@ void check_orders(const UnstructuredMesh& m) {
     if (form == CellType::wedge && (o[0] != o[1] || nodes == 21)) return nodes == 21;
     return lattice_nodes(type, o) == nodes;
   };
-  if (const size_t c = first_bad(n, [&](size_t i) { return !fits(i); }); c != none)
+  if (const size_t c = first_bad(n, [&](size_t i) { return !fits(i); }); c != no_index)
     fail_data(fmt::format("cell {} is a {} of {} points, which do not fit its orders {}, {}, {}", c, cell_type_info(m.type(c)).name,
                           cells.size(c), order(c, 0), order(c, 1), order(c, 2)),
               {}, "orders are 1 to 10 and their lattice has as many points as the cell; the first two of a wedge are equal");
@@ -129,7 +129,7 @@ void check_weights(const UnstructuredMesh& m) {
                           element_name(m.weights.type()), m.points.count()),
               {}, "they must be one f64 per point");
   const auto weight = m.weights.view<double>();
-  if (const size_t p = first_bad(weight.count, [&](size_t i) { return !std::isfinite(weight[i]); }); p != none)
+  if (const size_t p = first_bad(weight.count, [&](size_t i) { return !std::isfinite(weight[i]); }); p != no_index)
     fail_data(fmt::format("the rational weight of point {} is {}", p, weight[p]));
 }
 
@@ -173,7 +173,7 @@ struct Checker {
       const CellsView v = cells_view(m.cells);
       const int points = cell_type_info(m.single_type).points;
       if (!m.cells.fixed && points >= 0)
-        if (const size_t c = first_bad(n, [&](size_t i) { return v.size(i) != size_t(points); }); c != none)
+        if (const size_t c = first_bad(n, [&](size_t i) { return v.size(i) != size_t(points); }); c != no_index)
           check_type(c, uint8_t(m.single_type));
     } else if (n > 0) {
       // Sizes of every type in one table: one look per cell.
@@ -185,8 +185,8 @@ struct Checker {
         const int w = want[types[c]];
         return w == -2 || (w >= 0 && v.size(c) != size_t(w));
       });
-      if (bad != none) check_type(bad, types[bad]);
-      polyhedra = first_bad(n, [&](size_t c) { return types[c] == uint8_t(CellType::polyhedron); }) != none;
+      if (bad != no_index) check_type(bad, types[bad]);
+      polyhedra = first_bad(n, [&](size_t c) { return types[c] == uint8_t(CellType::polyhedron); }) != no_index;
     }
     if (polyhedra && m.polyhedron_faces.count() != n + 1) fail_data("the polyhedra have no faces");
     if (m.polyhedron_faces.count() > 0) {
@@ -195,7 +195,7 @@ struct Checker {
         fail_data("face lists of polyhedra do not fit the cells");
       const auto at = m.polyhedron_faces.view<int64_t>();
       if (at[0] != 0 || size_t(at[n]) > m.faces.size()) fail_data("face lists of polyhedra extend beyond the faces");
-      if (const size_t c = first_bad(n, [&](size_t i) { return at[i + 1] < at[i]; }); c != none)
+      if (const size_t c = first_bad(n, [&](size_t i) { return at[i + 1] < at[i]; }); c != no_index)
         fail_data(fmt::format("offsets of polyhedron faces decrease at cell {}", c));
     }
     check_orders(m);

@@ -10,7 +10,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 8192;
+constexpr size_t cells_per_chunk = 8192;
 constexpr double growth = 1e-7;  // of a box's largest side: see CellTree
 
 Vec3 center_of(const Box3& b) {
@@ -34,7 +34,7 @@ void set_record(TreeRecord& r, Vec3 lo, Vec3 hi, Vec3 center, size_t cell) {
 template <class T>
 void boxes_of_lists(const CellsView& cells, const View<T>& xyz, Vec3 origin, Vec3 center, size_t first, TreeRecord* out, Context& context) {
   parallel_for(
-      cells.count, grain,
+      cells.count, cells_per_chunk,
       [&](size_t begin, size_t end) {
         for (size_t c = begin; c < end; ++c) {
           T lo[3], hi[3];
@@ -64,7 +64,7 @@ void boxes_of_lists(const CellArray& cells, const Points& points, Vec3 center, s
 void boxes_by_reader(const DatasetPtr& d, Vec3 center, Plane<TreeRecord>& out, Context& context) {
   const CellReader model(d);
   parallel_for(
-      out.size(), grain,
+      out.size(), cells_per_chunk,
       [&](size_t begin, size_t end) {
         CellReader reader = model;
         for (size_t c = begin; c < end; ++c) {
@@ -121,7 +121,7 @@ CellTree::CellTree(DatasetPtr dataset, Context& context) {
     boxes_by_reader(dataset, center_, records, context);
   }
   if (!dataset->cell_ghost().empty() || !dataset->point_ghost().empty())
-    parallel_for(n, grain, [&](size_t begin, size_t end) {
+    parallel_for(n, cells_per_chunk, [&](size_t begin, size_t end) {
       for (size_t c = begin; c < end; ++c)
         if (reader.hidden(c)) set_empty(records[c]);
     });
@@ -132,7 +132,7 @@ CellTree::CellTree(DatasetPtr dataset, Context& context) {
 CellTree::CellTree(std::span<const Box3> boxes, Context& context) {
   if (boxes.size() >= size_t(1) << 31) fail_usage("2^31 boxes or more", "cell tree");
   const Box3 all = parallel_reduce(
-      boxes.size(), grain, Box3{},
+      boxes.size(), cells_per_chunk, Box3{},
       [&](size_t begin, size_t end) {
         Box3 b;
         for (size_t i = begin; i < end; ++i) b.add(boxes[i]);
@@ -144,7 +144,7 @@ CellTree::CellTree(std::span<const Box3> boxes, Context& context) {
       });
   center_ = center_of(all);
   Plane<TreeRecord> records(boxes.size());
-  parallel_for(boxes.size(), grain, [&](size_t begin, size_t end) {
+  parallel_for(boxes.size(), cells_per_chunk, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) set_record(records[i], boxes[i].lo, boxes[i].hi, center_, i);
   });
   remove_empty(records);

@@ -16,7 +16,7 @@ using V4i = int32_t __attribute__((vector_size(16)));
 constexpr uint32_t max_leaf = 8;        // a node of more cells is always split
 constexpr float cost_of_node = 1.5f;    // in units of one cell's test
 constexpr uint32_t task_cells = 32768;  // nodes of more cells are split by all threads
-constexpr size_t grain = 16384;
+constexpr size_t boxes_per_chunk = 16384;
 constexpr int sah_depth = 52;  // deeper nodes are halved: at most 32 more levels, whatever the boxes are
 constexpr int max_bins = 32;
 
@@ -191,10 +191,10 @@ void build_subtree(TreeRecord* records, NodeRange root, std::vector<TreeNode>& n
 // depends only on chunk borders.
 template <class Left>
 size_t partition_parallel(TreeRecord* r, size_t n, Left&& is_left) {
-  const size_t chunks = (n + grain - 1) / grain;
+  const size_t chunks = (n + boxes_per_chunk - 1) / boxes_per_chunk;
   std::vector<size_t> lefts(chunks);
-  parallel_for(n, grain,
-               [&](size_t begin, size_t end) { lefts[begin / grain] = size_t(std::partition(r + begin, r + end, is_left) - (r + begin)); });
+  parallel_for(n, boxes_per_chunk,
+               [&](size_t begin, size_t end) { lefts[begin / boxes_per_chunk] = size_t(std::partition(r + begin, r + end, is_left) - (r + begin)); });
   size_t total = 0;
   for (size_t l : lefts) total += l;
   struct Run {
@@ -203,14 +203,14 @@ size_t partition_parallel(TreeRecord* r, size_t n, Left&& is_left) {
   std::vector<Run> rights, wrong_lefts;  // right cells before `total`, left cells behind it
   size_t nr = 0, nl = 0;
   for (size_t c = 0; c < chunks; ++c) {
-    const size_t begin = c * grain, end = std::min(n, begin + grain), middle = begin + lefts[c];
+    const size_t begin = c * boxes_per_chunk, end = std::min(n, begin + boxes_per_chunk), middle = begin + lefts[c];
     if (middle < std::min(end, total)) rights.push_back({middle, std::min(end, total) - middle, nr}), nr += rights.back().count;
     if (middle > std::max(begin, total)) {
       const size_t from = std::max(begin, total);
       wrong_lefts.push_back({from, middle - from, nl}), nl += wrong_lefts.back().count;
     }
   }
-  parallel_for(nr, grain, [&](size_t begin, size_t end) {
+  parallel_for(nr, boxes_per_chunk, [&](size_t begin, size_t end) {
     auto run_of = [&](const std::vector<Run>& runs) {
       return size_t(std::upper_bound(runs.begin(), runs.end(), begin, [](size_t v, const Run& x) { return v < x.before; }) - runs.begin()) -
              1;
@@ -242,7 +242,7 @@ void build_top(TreeRecord* records, uint32_t count, std::vector<TreeNode>& nodes
     context.check();
     TreeRecord* first = records + r.begin;
     const Extent e = parallel_reduce(
-        n, grain, Extent{}, [&](size_t begin, size_t end) { return extent_of(first + begin, end - begin); },
+        n, boxes_per_chunk, Extent{}, [&](size_t begin, size_t end) { return extent_of(first + begin, end - begin); },
         [](Extent a, const Extent& b) {
           a.box.add(b.box), a.centers.add(b.centers);
           return a;
@@ -250,7 +250,7 @@ void build_top(TreeRecord* records, uint32_t count, std::vector<TreeNode>& nodes
     set_box(nodes[r.node], e.box);
     const Binning binning(e.centers, n);
     const Bins bins = parallel_reduce(
-        n, grain * 4, Bins{},
+        n, boxes_per_chunk * 4, Bins{},
         [&](size_t begin, size_t end) {
           Bins b;
           binning.fill(first + begin, end - begin, b);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/error.h"
 #include "base/parallel.h"
 
 namespace sg {
@@ -96,6 +97,17 @@ void WriteLosses::keeps_only(const Dataset& d, const Field& kept, bool keeps_uni
   for (const Field& f : d.fields())
     if (&f != &kept) leaves_out(f);
   if (!keeps_unit) drops_unit(kept);
+}
+
+const Field& WriteLosses::one_point_field(const Dataset& d, bool keeps_unit) {
+  const Field* chosen = nullptr;
+  for (const Field& f : d.fields())
+    if (f.association == Association::point && (!chosen || (f.role == Role::scalars && chosen->role != Role::scalars))) chosen = &f;
+  if (!chosen)
+    fail_usage("there is no point field to write", path_,
+               fmt::format("a {} file holds one array of numbers at the points of a uniform grid", format_));
+  keeps_only(d, *chosen, keeps_unit);
+  return *chosen;
 }
 
 void WriteLosses::rounds(const Field& f, ElementType type) {

@@ -28,6 +28,9 @@ class WriteLosses {
   void leaves_out(const Dataset& d, Association a);
   /// All fields but one, and its unit unless the format keeps it.
   void keeps_only(const Dataset& d, const Field& kept, bool keeps_unit);
+  /// The point field that a file of one array at the points of a uniform grid keeps: the active scalar, or else the first. Throws
+  /// Error(usage) where there is none.
+  const Field& one_point_field(const Dataset& d, bool keeps_unit);
   /// Says so when values change.
   void rounds(const Field& f, ElementType type);
   void rounds(std::string_view what, ElementType from, ElementType to);

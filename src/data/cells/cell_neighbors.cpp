@@ -15,7 +15,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 4096;  // cells per chunk
+constexpr size_t cells_per_chunk = 4096;  // cells per chunk
 
 // Cells as lists of faces, faces as sets of corners.
 class FaceSource {
@@ -116,10 +116,10 @@ class FaceSource {
 // Where each cell's faces start; a single number when all cells have as many.
 size_t lay_out(const FaceSource& source, CellNeighbors& out) {
   const size_t n = source.count();
-  std::vector<size_t> chunk((n + grain - 1) / grain);
+  std::vector<size_t> chunk((n + cells_per_chunk - 1) / cells_per_chunk);
   const size_t usual = n > 0 ? source.faces(0) : 0;
   const bool same = parallel_reduce(
-      n, grain, true,
+      n, cells_per_chunk, true,
       [&](size_t begin, size_t end) {
         bool all = true;
         size_t sum = 0;
@@ -127,7 +127,7 @@ size_t lay_out(const FaceSource& source, CellNeighbors& out) {
           const size_t faces = source.faces(c);
           sum += faces, all = all && faces == usual;
         }
-        chunk[begin / grain] = sum;
+        chunk[begin / cells_per_chunk] = sum;
         return all;
       },
       [](bool a, bool b) { return a && b; });
@@ -138,8 +138,8 @@ size_t lay_out(const FaceSource& source, CellNeighbors& out) {
   }
   out.begin.resize(n + 1);
   out.begin[n] = total;
-  parallel_for(n, grain, [&](size_t begin, size_t end) {
-    size_t at = chunk[begin / grain];
+  parallel_for(n, cells_per_chunk, [&](size_t begin, size_t end) {
+    size_t at = chunk[begin / cells_per_chunk];
     for (size_t c = begin; c < end; ++c) out.begin[c] = at, at += source.faces(c);
   });
   return total;

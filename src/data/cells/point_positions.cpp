@@ -8,7 +8,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 1 << 15;
+constexpr size_t points_per_chunk = 1 << 15;
 
 void put(Vec3 p, double* out) { out[0] = p.x, out[1] = p.y, out[2] = p.z; }
 
@@ -17,7 +17,7 @@ Array of_lattice(const Mesh& mesh) {
   const LatticeView& v = lattice.view();
   double* out = nullptr;
   Array a = Array::make<double>(v.points(), 3, &out);
-  parallel_for(v.points(), grain, [&](size_t begin, size_t end) {
+  parallel_for(v.points(), points_per_chunk, [&](size_t begin, size_t end) {
     for (size_t p = begin; p < end; ++p)
       put(v.position(p % v.dims[0], p / v.dims[0] % v.dims[1], p / (v.dims[0] * v.dims[1])), out + 3 * p);
   });
@@ -28,7 +28,7 @@ Array of_listed(const Points& points) {
   if (points.origin == Vec3{0, 0, 0} && points.xyz.type() == ElementType::f64) return points.xyz.made_packed();
   double* out = nullptr;
   Array a = Array::make<double>(points.count(), 3, &out);
-  parallel_for(points.count(), grain, [&](size_t begin, size_t end) {
+  parallel_for(points.count(), points_per_chunk, [&](size_t begin, size_t end) {
     for (size_t p = begin; p < end; ++p) put(points.at(p), out + 3 * p);
   });
   return a;

@@ -14,7 +14,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 1 << 15;
+constexpr size_t values_per_chunk = 1 << 15;
 
 // The named field, or the active one of any of the component counts in order of preference.
 const Field& chosen(const Dataset& in, const FieldName& name, std::initializer_list<int> components, const char* who, const char* kind) {
@@ -32,7 +32,7 @@ Array scaled(const Array& a, double factor, double offset) {
   Array r = Array::make<T>(a.count(), a.components(), &to);
   dispatch(a, [&](auto v) {
     const auto n = size_t(v.components);
-    parallel_for(v.count, grain, [&](size_t begin, size_t end) {
+    parallel_for(v.count, values_per_chunk, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i)
         for (size_t c = 0; c < n; ++c) to[i * n + c] = T(double(v(i, int(c))) * factor + offset);
     });

@@ -14,7 +14,7 @@ namespace sg {
 namespace {
 
 constexpr double metres_per_degree = 6371000 * M_PI / 180;
-constexpr size_t grain = 1 << 14;
+constexpr size_t points_per_chunk = 1 << 14;
 
 // "m s-1", "m/s", "m.s^-1" and the like as one word.
 std::string squeezed(std::string_view unit) {
@@ -57,7 +57,7 @@ Array changed(const Array& positions, const Array& velocity, F&& f) {
   Array r = Array::make<float>(n, v.components(), &out);
   const Array packed = at.made_packed();
   const double *x = packed.view<double>().data, *from = v.view<double>().data;
-  parallel_for(n, grain, [&](size_t begin, size_t end) {
+  parallel_for(n, points_per_chunk, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const Vec3 now = f(x[3 * i + 1], Vec3(from[i * m], from[i * m + 1], m > 2 ? from[i * m + 2] : 0.0));
       for (size_t a = 0; a < m; ++a) out[i * m + a] = float(now[int(a)]);

@@ -13,7 +13,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 1 << 10;
+constexpr size_t glyphs_per_chunk = 1 << 10;
 
 struct Shape {
   std::vector<float> xyz;
@@ -50,12 +50,12 @@ DatasetPtr glyph_geometry(const DatasetPtr& data, const GlyphRule& rule, const s
     return &shapes[instances->shape_numbers() ? instances->shape_numbers()[i] : 0];
   };
   // Where each chunk's points, lines and triangles go.
-  const size_t chunks = (n + grain - 1) / grain;
+  const size_t chunks = (n + glyphs_per_chunk - 1) / glyphs_per_chunk;
   std::vector<size_t> points(chunks), lines(chunks), triangles(chunks);
-  parallel_for(n, grain, [&](size_t begin, size_t end) {
+  parallel_for(n, glyphs_per_chunk, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       if (const Shape* s = shape_at(i))
-        points[begin / grain] += s->points(), lines[begin / grain] += s->lines.size(), triangles[begin / grain] += s->triangles.size();
+        points[begin / glyphs_per_chunk] += s->points(), lines[begin / glyphs_per_chunk] += s->lines.size(), triangles[begin / glyphs_per_chunk] += s->triangles.size();
   });
   const size_t all_points = exclusive_scan(points), all_lines = exclusive_scan(lines), all_triangles = exclusive_scan(triangles);
   double bytes = 12;
@@ -73,9 +73,9 @@ DatasetPtr glyph_geometry(const DatasetPtr& data, const GlyphRule& rule, const s
   if (all_triangles) mesh.polygons.connectivity = Array::make<int32_t>(all_triangles, 1, &corner), mesh.polygons.fixed = 3;
   std::vector<uint32_t> source(all_points);
   parallel_for(
-      n, grain,
+      n, glyphs_per_chunk,
       [&](size_t begin, size_t end) {
-        size_t p = points[begin / grain], l = lines[begin / grain], t = triangles[begin / grain];
+        size_t p = points[begin / glyphs_per_chunk], l = lines[begin / glyphs_per_chunk], t = triangles[begin / glyphs_per_chunk];
         for (size_t i = begin; i < end; ++i) {
           const Shape* s = shape_at(i);
           if (!s) continue;

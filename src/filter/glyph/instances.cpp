@@ -15,7 +15,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 1 << 13;
+constexpr size_t places_per_chunk = 1 << 13;
 
 // A point field as packed doubles, `least` to `most` components.
 Array numbers_of(const Dataset& d, const std::string& name, int least, int most, const char* what) {
@@ -84,7 +84,7 @@ GlyphInstances make_instances(const DatasetPtr& data, const GlyphRule& rule, siz
   if (!in.choice.empty()) out.shapes = Array::make<uint8_t>(n, 1, &shapes);
   const double* xyz = values(in.positions);
   out.standing = parallel_reduce<size_t>(
-      n, grain, 0,
+      n, places_per_chunk, 0,
       [&](size_t begin, size_t end) {
         size_t standing = 0;
         for (size_t i = begin; i < end; ++i) {
@@ -159,7 +159,7 @@ std::shared_ptr<const GlyphInstances> glyph_instances(const DatasetPtr& data, co
 
 Box3 glyph_bounds(const GlyphInstances& instances, const std::vector<Box3>& boxes) {
   Box3 all = parallel_reduce<Box3>(
-      instances.count(), grain, Box3{},
+      instances.count(), places_per_chunk, Box3{},
       [&](size_t begin, size_t end) {
         Box3 box;
         for (size_t i = begin; i < end; ++i) {

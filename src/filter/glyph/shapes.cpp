@@ -7,6 +7,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <numbers>
 #include <tuple>
 
 #include "base/error.h"
@@ -18,7 +19,7 @@ namespace sg {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 constexpr double plate = 0.012;  // half the thickness of flat shapes
 

@@ -12,7 +12,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 1 << 13;
+constexpr size_t cells_per_chunk = 1 << 13;
 
 void require_small(const SurfaceMesh& mesh) {
   if (mesh.points.count() >= UINT32_MAX || mesh.cell_count() >= UINT32_MAX)
@@ -42,20 +42,20 @@ Triangles triangles_of(const SurfaceMesh& mesh) {
   // A cell of n points makes n-2 triangles, so places are known before any cell is split.
   const size_t cells = polygons.count + strips.count;
   auto size_of = [&](size_t c) { return c < polygons.count ? polygons.size(c) : strips.size(c - polygons.count); };
-  std::vector<size_t> start((cells + grain - 1) / grain);
-  parallel_for(cells, grain, [&](size_t begin, size_t end) {
+  std::vector<size_t> start((cells + cells_per_chunk - 1) / cells_per_chunk);
+  parallel_for(cells, cells_per_chunk, [&](size_t begin, size_t end) {
     size_t n = 0;
     for (size_t c = begin; c < end; ++c) n += std::max<size_t>(size_of(c), 2) - 2;
-    start[begin / grain] = n;
+    start[begin / cells_per_chunk] = n;
   });
   const size_t total = exclusive_scan(start);
   r.indices.resize(3 * total);
   r.cells.resize(total);
   const PointReader at(mesh.points);
-  parallel_for(cells, grain, [&](size_t begin, size_t end) {
+  parallel_for(cells, cells_per_chunk, [&](size_t begin, size_t end) {
     std::vector<Vec3> corner;
     std::vector<uint32_t> local;
-    size_t t = start[begin / grain];
+    size_t t = start[begin / cells_per_chunk];
     for (size_t c = begin; c < end; ++c) {
       const bool strip = c >= polygons.count;
       const CellsView& v = strip ? strips : polygons;
@@ -96,10 +96,10 @@ std::vector<uint32_t> edges_of(const SurfaceMesh& mesh) {
   constexpr size_t buckets = 256;
   const size_t width = points / buckets + 1;
   const CellsView polygons = cells_view(mesh.polygons), strips = cells_view(mesh.strips);
-  const size_t cells = polygons.count + strips.count, chunks = (cells + grain - 1) / grain;
+  const size_t cells = polygons.count + strips.count, chunks = (cells + cells_per_chunk - 1) / cells_per_chunk;
   std::vector<std::vector<uint64_t>> found(chunks);
   std::vector<std::array<uint32_t, buckets + 1>> place(chunks);
-  parallel_for(cells, grain, [&](size_t begin, size_t end) {
+  parallel_for(cells, cells_per_chunk, [&](size_t begin, size_t end) {
     std::vector<uint64_t> all;
     auto add = [&](int64_t a, int64_t b) {
       if (a != b) all.push_back(uint64_t(std::min(a, b)) << 32 | uint64_t(std::max(a, b)));
@@ -113,11 +113,11 @@ std::vector<uint32_t> edges_of(const SurfaceMesh& mesh) {
         for (size_t k = 0; k + 2 < n; ++k) add(v.connectivity[first + k], v.connectivity[first + k + 2]);
       else if (n > 2) add(v.connectivity[first + n - 1], v.connectivity[first]);
     }
-    auto& at = place[begin / grain];
+    auto& at = place[begin / cells_per_chunk];
     at.fill(0);
     for (uint64_t e : all) ++at[size_t(e >> 32) / width + 1];
     for (size_t b = 0; b < buckets; ++b) at[b + 1] += at[b];
-    auto& out = found[begin / grain];
+    auto& out = found[begin / cells_per_chunk];
     out.resize(all.size());
     auto next = at;
     for (uint64_t e : all) out[next[size_t(e >> 32) / width]++] = e;

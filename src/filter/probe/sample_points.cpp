@@ -13,7 +13,7 @@ namespace sg {
 
 namespace {
 
-constexpr uint32_t none = UINT32_MAX;
+constexpr uint32_t no_cell = UINT32_MAX;
 using PointAt = std::function<Vec3(size_t)>;
 
 // Numbers of the points so that neighbours follow one another: sorted by cells of a coarse grid over their box, itself in Morton order.
@@ -155,7 +155,7 @@ class Claimer {
     if (s.type(cell) != CellType::tetra) {
       CellPlace place;
       each_point(scan_.box(reader_, cell), k0, k1, [&](size_t i, Vec3 x) {
-        if (cells_[i] != none || !probe_.holds(cell, x, place)) return;
+        if (cells_[i] != no_cell || !probe_.holds(cell, x, place)) return;
         cells_[i] = cell, rst_[i] = place.rst;
       });
       return;
@@ -171,7 +171,7 @@ class Claimer {
     const double scale = 1 / dot(u, vw);
     each_point(box, k0, k1, [&](size_t i, Vec3 x) {
       const Vec3 d = x - p[0], r = Vec3(dot(d, vw), dot(d, wu), dot(d, uv)) * scale;
-      if (in_tetra(r, tolerance) && cells_[i] == none) cells_[i] = cell, rst_[i] = r;
+      if (in_tetra(r, tolerance) && cells_[i] == no_cell) cells_[i] = cell, rst_[i] = r;
     });
   }
 
@@ -208,7 +208,7 @@ void sample_points(const DatasetPtr& from, size_t count, const PointAt& point, b
   const GridScan scan(from, buckets.grid);
   const size_t layers = buckets.dims[2], layer = buckets.dims[0] * buckets.dims[1], thickness = std::max<size_t>(1, layers / 32);
   const CellSlabs slabs = scan.slabs(thickness, true, context);
-  std::vector<uint32_t> cells(count, none);
+  std::vector<uint32_t> cells(count, no_cell);
   Plane<Vec3> rst(count);
   parallel_for(
       slabs.size(), 1,
@@ -220,7 +220,7 @@ void sample_points(const DatasetPtr& from, size_t count, const PointAt& point, b
         const size_t first = buckets.start[layer * k0], last = k1 == layers ? count : buckets.start[layer * k1];
         PlaceWriter writer(scan.probe(), scan.simplices, out);
         for (size_t i = first; i < last; ++i) {
-          if (cells[i] == none) writer.add_missing(buckets.order[i]);
+          if (cells[i] == no_cell) writer.add_missing(buckets.order[i]);
           else writer.add(buckets.order[i], cells[i], rst[i], buckets.at[i]);
         }
       },

@@ -27,7 +27,7 @@ void describe(Schema& s, MorphologyParams& p) {
 
 namespace {
 
-constexpr size_t grain = 1 << 16;
+constexpr size_t samples_per_chunk = 1 << 16;
 
 using Mask = Plane<uint8_t>;
 
@@ -43,14 +43,14 @@ struct Work {
     distance_transform(set.data(), image.at, squared.data(), nullptr, context);
     const double limit = r * r * (1 + 1e-5);
     Mask out(n);
-    parallel_for(n, grain, [&](size_t begin, size_t end) {
+    parallel_for(n, samples_per_chunk, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) out[i] = set[i] || (!unknown[i] && double(squared[i]) <= limit);
     });
     return out;
   }
   Mask opposite(const Mask& set) const {
     Mask out(set.size());
-    parallel_for(set.size(), grain, [&](size_t begin, size_t end) {
+    parallel_for(set.size(), samples_per_chunk, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) out[i] = !set[i] && !unknown[i];
     });
     return out;
@@ -97,7 +97,7 @@ DatasetPtr morphology(const DatasetPtr& in, const MorphologyParams& p, Context& 
   Mask set(n);
   Work work{image, context, Mask(n)};
   dispatch(image.field.array, [&](auto v) {
-    parallel_for(n, grain, [&](size_t begin, size_t end) {
+    parallel_for(n, samples_per_chunk, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) set[i] = codes.code[i] != 0, work.unknown[i] = image.hidden(i) || v[i] != v[i];
     });
   });
@@ -122,7 +122,7 @@ DatasetPtr morphology(const DatasetPtr& in, const MorphologyParams& p, Context& 
     using T = std::remove_cvref_t<decltype(v[0])>;
     T* to = reinterpret_cast<T*>(bytes);
     return parallel_reduce(
-        n, grain, Change{},
+        n, samples_per_chunk, Change{},
         [&](size_t begin, size_t end) {
           Change c;
           for (size_t i = begin; i < end; ++i) {

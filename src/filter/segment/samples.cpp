@@ -14,13 +14,13 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 1 << 15;
+constexpr size_t values_per_chunk = 1 << 15;
 
 std::vector<uint8_t> states_of_bits(const Array& ghost, uint8_t hidden_bits) {
   if (ghost.empty()) return {};
   std::vector<uint8_t> s(ghost.count());
   const auto v = ghost.view<uint8_t>();
-  parallel_for(s.size(), grain, [&](size_t begin, size_t end) {
+  parallel_for(s.size(), values_per_chunk, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       s[i] = v[i] & hidden_bits ? sample_hidden : v[i] & ghost_duplicate ? sample_duplicate : sample_seen;
   });
@@ -31,7 +31,7 @@ std::vector<uint8_t> states_of_bits(const Array& ghost, uint8_t hidden_bits) {
 std::vector<uint8_t> points_of_cells(const std::array<size_t, 3>& d, const std::vector<uint8_t>& cells) {
   std::vector<uint8_t> s(d[0] * d[1] * d[2]);
   const size_t c[3] = {std::max<size_t>(d[0], 2) - 1, std::max<size_t>(d[1], 2) - 1, std::max<size_t>(d[2], 2) - 1};
-  parallel_for(d[1] * d[2], std::max<size_t>(1, grain / d[0]), [&](size_t begin, size_t end) {
+  parallel_for(d[1] * d[2], std::max<size_t>(1, values_per_chunk / d[0]), [&](size_t begin, size_t end) {
     for (size_t row = begin; row < end; ++row)
       for (size_t i = 0; i < d[0]; ++i) {
         const size_t p[3] = {i, row % d[1], row / d[1]};
@@ -135,7 +135,7 @@ LabelCodes codes_by_table(const View<int64_t>& v, Wanted&& wanted) {
   r.table.erase(std::unique(r.table.begin(), r.table.end()), r.table.end());
   if (r.table.size() >= size_t(INT32_MAX)) fail_usage("more than two billion labels");
   r.code.resize(v.count);
-  parallel_for(v.count, grain, [&](size_t begin, size_t end) {
+  parallel_for(v.count, values_per_chunk, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       r.code[i] = wanted(i, v[i]) ? int32_t(std::lower_bound(r.table.begin(), r.table.end(), v[i]) - r.table.begin()) + 1 : 0;
   });
@@ -160,7 +160,7 @@ LabelCodes label_codes(const SampleImage& image, std::optional<double> backgroun
     if constexpr (sizeof(T) <= 2 || std::is_same_v<T, int8_t>) return Check{};
     else
       return parallel_reduce(
-          n, grain, Check{},
+          n, values_per_chunk, Check{},
           [&](size_t begin, size_t end) {
             Check c;
             for (size_t i = begin; i < end; ++i) {
@@ -202,7 +202,7 @@ LabelCodes label_codes(const SampleImage& image, std::optional<double> backgroun
   dispatch(image.field.array, [&](auto v) {
     using T = std::remove_cvref_t<decltype(v[0])>;
     parallel_for(
-        n, grain,
+        n, values_per_chunk,
         [&](size_t begin, size_t end) {
           T last{};
           int32_t code = 0;

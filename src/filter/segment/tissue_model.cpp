@@ -11,7 +11,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 2048;
+constexpr size_t voxels_per_chunk = 2048;
 constexpr int max_parts = 64;
 
 double normal_density(double z) { return std::exp(-0.5 * z * z) * 0.3989422804014327; }
@@ -188,7 +188,7 @@ void fit_tissues(TissueModel& m, const TissueSamples& s, const FitOptions& optio
     const int degree = std::min(top, round / rounds_per_degree);
     const size_t active = m.bias.terms_up_to(degree);
     Sums sums = parallel_reduce(
-        n, grain, Sums{}, [&](size_t begin, size_t end) { return expectation(m, s, active, begin, end); },
+        n, voxels_per_chunk, Sums{}, [&](size_t begin, size_t end) { return expectation(m, s, active, begin, end); },
         [](Sums a, const Sums& b) {
           a.add(b);
           return a;

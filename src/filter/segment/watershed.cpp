@@ -27,12 +27,12 @@ void describe(Schema& s, WatershedParams& p) {
 
 namespace {
 
-constexpr size_t grain = 1 << 16;
-constexpr uint32_t nobody = UINT32_MAX;
+constexpr size_t places_per_chunk = 1 << 16;
+constexpr uint32_t no_sample = UINT32_MAX;
 
-// f32 numbers as integers of the same order; no value is `nobody`.
+// f32 numbers as integers of the same order; no value is `no_sample`.
 uint32_t order_key(float x) {
-  if (x != x) return nobody;
+  if (x != x) return no_sample;
   const uint32_t bits = std::bit_cast<uint32_t>(x + 0.0f);
   return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
 }
@@ -42,7 +42,7 @@ float value_of_key(uint32_t key) { return std::bit_cast<float>(key & 0x80000000u
 Plane<float> values_of(const SampleImage& image) {
   Plane<float> f(image.count());
   dispatch(image.field.array, [&](auto v) {
-    parallel_for(f.size(), grain, [&](size_t begin, size_t end) {
+    parallel_for(f.size(), places_per_chunk, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) f[i] = image.hidden(i) ? NAN : float(v[i]);
     });
   });
@@ -97,7 +97,7 @@ std::vector<uint32_t> sorted_ids(const Plane<uint32_t>& key) {
   std::vector<uint32_t> ids, next;
   ids.reserve(key.size());
   for (size_t i = 0; i < key.size(); ++i)
-    if (key[i] != nobody) ids.push_back(uint32_t(i));
+    if (key[i] != no_sample) ids.push_back(uint32_t(i));
   next.resize(ids.size());
   for (int shift = 0; shift < 33; shift += 11) {
     std::vector<size_t> count(2049, 0);
@@ -113,7 +113,7 @@ std::vector<uint32_t> sorted_ids(const Plane<uint32_t>& key) {
 // higher minimum ends unless it is deep enough (its persistence).
 std::vector<uint32_t> deep_minima(const Plane<uint32_t>& key, const Neighbors& neighbors, double min_depth, const Context& context) {
   const std::vector<uint32_t> ids = sorted_ids(key);
-  std::vector<uint32_t> parent(key.size(), nobody);  // towards the lowest sample of the basin
+  std::vector<uint32_t> parent(key.size(), no_sample);  // towards the lowest sample of the basin
   std::vector<uint8_t> kept(key.size(), 0);
   const auto root = [&](uint32_t i) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
@@ -126,7 +126,7 @@ std::vector<uint32_t> deep_minima(const Plane<uint32_t>& key, const Neighbors& n
     parent[i] = i;
     kept[i] = 1;
     neighbors.each(i, [&](size_t near) {
-      if (parent[near] == nobody) return;
+      if (parent[near] == no_sample) return;
       uint32_t a = root(i), b = root(uint32_t(near));
       if (a == b) return;
       if (lower(b, a)) std::swap(a, b);
@@ -143,15 +143,15 @@ std::vector<uint32_t> deep_minima(const Plane<uint32_t>& key, const Neighbors& n
 // First in, first out among equal keys: lists by the upper half of the key, a heap for the list that is being emptied.
 class FloodQueue {
  public:
-  explicit FloodQueue(size_t samples) : next_(samples), head_(1 << 16, nobody), tail_(1 << 16, nobody) {}
+  explicit FloodQueue(size_t samples) : next_(samples), head_(1 << 16, no_sample), tail_(1 << 16, no_sample) {}
   void push(uint32_t key, uint32_t id) {
     const size_t b = key >> 16;
     if (b <= current_ && open_) {
       heap_.push({key, age_++, id});
       return;
     }
-    next_[id] = nobody;
-    if (tail_[b] == nobody) head_[b] = id;
+    next_[id] = no_sample;
+    if (tail_[b] == no_sample) head_[b] = id;
     else next_[tail_[b]] = id;
     tail_[b] = id;
     if (b < current_) current_ = b;
@@ -160,11 +160,11 @@ class FloodQueue {
   bool pop(const Plane<uint32_t>& keys, uint32_t& key, uint32_t& id) {
     while (heap_.empty()) {
       size_t b = open_ ? current_ + 1 : 0;
-      while (b < head_.size() && head_[b] == nobody) ++b;
+      while (b < head_.size() && head_[b] == no_sample) ++b;
       if (b == head_.size()) return false;
       current_ = b, open_ = true;
-      for (uint32_t i = head_[b]; i != nobody; i = next_[i]) heap_.push({keys[i], age_++, i});
-      head_[b] = tail_[b] = nobody;
+      for (uint32_t i = head_[b]; i != no_sample; i = next_[i]) heap_.push({keys[i], age_++, i});
+      head_[b] = tail_[b] = no_sample;
     }
     key = heap_.top().key, id = heap_.top().id;
     heap_.pop();
@@ -192,7 +192,7 @@ void flood(Plane<int32_t>& label, const Plane<uint32_t>& key, const std::vector<
   for (size_t n = 0; queue.pop(key, level, id); ++n) {
     if (n % (1 << 20) == 0) context.check();
     neighbors.each(id, [&](size_t near) {
-      if (label[near] != 0 || key[near] == nobody) return;
+      if (label[near] != 0 || key[near] == no_sample) return;
       label[near] = label[id];
       queue.push(std::max(key[near], level), uint32_t(near));
     });
@@ -206,12 +206,12 @@ DatasetPtr watershed(const DatasetPtr& in, const WatershedParams& p, Context& co
     fail_usage(fmt::format("{} is not a valid connectivity", p.connectivity), "watershed connectivity", "give 6, 18 or 26");
   const SampleImage image = sample_image(*in, p.field, "watershed");
   const size_t n = image.count();
-  if (n >= nobody) fail_usage("the grid has more than four billion samples", "watershed", "crop it first");
+  if (n >= no_sample) fail_usage("the grid has more than four billion samples", "watershed", "crop it first");
   Plane<uint32_t> key(n);
   {
     Plane<float> f = values_of(image);
     if (p.gradient) f = gradient_length(image, f);
-    parallel_for(n, grain, [&](size_t begin, size_t end) {
+    parallel_for(n, places_per_chunk, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) key[i] = order_key(f[i]);
     });
   }
@@ -226,7 +226,7 @@ DatasetPtr watershed(const DatasetPtr& in, const WatershedParams& p, Context& co
     marker_image.field = companion_field(*in, image, p.markers, "watershed");
     codes = label_codes(marker_image, 0.0, {}, "watershed", context);
     for (size_t i = 0; i < n; ++i)
-      if (codes.code[i] != 0 && key[i] != nobody) label[i] = codes.code[i], shore.push_back(uint32_t(i));
+      if (codes.code[i] != 0 && key[i] != no_sample) label[i] = codes.code[i], shore.push_back(uint32_t(i));
     if (shore.empty())
       fail_usage(fmt::format("field '{}' marks no sample", p.markers.name), "watershed markers", "markers must be labels other than 0");
   } else {

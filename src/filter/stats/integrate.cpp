@@ -12,7 +12,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 1 << 12;
+constexpr size_t cells_per_chunk = 1 << 12;
 
 struct Column {
   const Field* field;
@@ -35,7 +35,7 @@ std::vector<ExactSum> sums_of(const DatasetPtr& d, int dimension, const std::vec
   const size_t n = columns.size() + 1;
   using Sums = std::vector<ExactSum>;
   return parallel_reduce(
-      d->cell_count(), grain, Sums(n),
+      d->cell_count(), cells_per_chunk, Sums(n),
       [&](size_t begin, size_t end) {
         Sums sums(n);
         CellMap map(d);

@@ -17,7 +17,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 1 << 16;
+constexpr size_t values_per_chunk = 1 << 16;
 
 // Ghosts of the field's places; empty when there are none.
 const Array& ghosts_of(const DatasetPtr& in, const Field& f) {
@@ -65,7 +65,7 @@ Numbers numbers_of(const Array& a, int component, const Array& ghost) {
 template <class F>
 double exact_sum(const std::vector<double>& v, F&& f, const Context& ctx) {
   std::vector<ExactSum> sum{parallel_reduce(
-      v.size(), grain, ExactSum{},
+      v.size(), values_per_chunk, ExactSum{},
       [&](size_t begin, size_t end) {
         ExactSum p;
         for (size_t i = begin; i < end; ++i) p.add(f(v[i]));

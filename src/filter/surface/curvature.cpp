@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "base/error.h"
 #include "data/fields/known_looks.h"
@@ -15,7 +16,7 @@ namespace {
 
 using namespace surface;
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 struct PointSums {
   Vec3 laplacian;  // sum over edges of (cot + cot) * (x_i - x_j)

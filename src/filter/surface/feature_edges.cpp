@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/surface/feature_edges.h"
 
+#include <numbers>
+
 #include "base/error.h"
 #include "data/field_ops.h"
 #include "filter/mesh/append.h"
@@ -14,7 +16,7 @@ namespace {
 
 using namespace surface;
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 // Chosen edges as lines; `polygon` of each gives its cell fields.
 struct EdgeLines {

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -17,7 +18,7 @@ namespace {
 
 using namespace surface;
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 // Angle inside the polygon at a corner, also above 180 degrees.
 double corner_angle(Vec3 before, Vec3 here, Vec3 after, Vec3 normal) {

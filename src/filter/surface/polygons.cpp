@@ -16,7 +16,7 @@ namespace sg::surface {
 
 namespace {
 
-constexpr size_t grain = 1 << 13;
+constexpr size_t polygons_per_chunk = 1 << 13;
 
 // A surface of other cells: `cells` gives for each new cell the cell whose fields it has.
 DatasetPtr with_cells(const Dataset& in, SurfaceMesh mesh, const std::vector<int64_t>& cells) {
@@ -148,7 +148,7 @@ Edges edges_of_polygons(const CellsView& polygons, size_t points) {
 
 std::vector<Vec3> vector_areas(const CellsView& polygons, const std::vector<Vec3>& at) {
   std::vector<Vec3> areas(polygons.count);
-  parallel_for(polygons.count, grain, [&](size_t begin, size_t end) {
+  parallel_for(polygons.count, polygons_per_chunk, [&](size_t begin, size_t end) {
     for (size_t c = begin; c < end; ++c) {
       Vec3 sum;
       const size_t first = polygons.begin(c), last = polygons.end(c);

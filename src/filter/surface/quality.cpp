@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <numbers>
 #include <numeric>
 
 #include "base/error.h"
@@ -16,7 +17,7 @@ namespace sg {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 const double nan_value = std::nan("");
 
 double triple(Vec3 a, Vec3 b, Vec3 c) { return dot(a, cross(b, c)); }

@@ -56,11 +56,6 @@ std::vector<double> gauss_lobatto(int p) {
   return x;
 }
 
-double binomial(int n, int k) {
-  double r = 1;
-  for (int i = 1; i <= k; ++i) r = r * double(n - k + i) / i;
-  return r;
-}
 double power(double x, int n) {
   double r = 1;
   while (n-- > 0) r *= x;
@@ -210,6 +205,12 @@ std::vector<double> simplex_matrix(Geometry g, const std::vector<double>& points
 }
 
 }  // namespace
+
+double binomial(int n, int k) {
+  double r = 1;
+  for (int i = 1; i <= k; ++i) r = r * double(n - k + i) / i;
+  return r;
+}
 
 std::vector<double> basis_points(Basis basis, int p) {
   if (p == 0) return {0.5};

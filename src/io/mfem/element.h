@@ -48,6 +48,8 @@ struct FeCollection {
 /// Throws Error(data) naming `where` for a collection that is not read, or an order above 10.
 FeCollection parse_collection(std::string_view name, const std::string& where);
 
+double binomial(int n, int k);
+
 /// Degrees of freedom of one element (all of its own, for discontinuous ones).
 size_t element_dofs(Geometry g, const FeCollection& c);
 

@@ -9,6 +9,7 @@
 
 #include "base/bytes.h"
 #include "base/error.h"
+#include "io/mfem/element.h"
 #include "io/mfem/mesh_file.h"
 
 namespace sg::mfem {
@@ -173,12 +174,6 @@ struct Extraction {
   std::vector<Row> rows;  ///< spans * order + 1
   int from = 1;           ///< order of the spline: from + 1 weights count
 };
-
-double binomial(int n, int k) {
-  double r = 1;
-  for (int i = 1; i <= k; ++i) r = r * double(n - k + i) / i;
-  return r;
-}
 
 Extraction extract(const KnotVector& k, int order) {
   Extraction r;

@@ -13,16 +13,6 @@ namespace sg {
 
 namespace {
 
-const Field& field_to_write(const Dataset& d, const std::string& path, WriteLosses& losses) {
-  const Field* chosen = nullptr;
-  for (const Field& f : d.fields())
-    if (f.association == Association::point && (!chosen || (f.role == Role::scalars && chosen->role != Role::scalars))) chosen = &f;
-  if (!chosen)
-    fail_usage("there is no point field to write", path, "a MetaImage file holds one array of numbers at the points of a uniform grid");
-  losses.keeps_only(d, *chosen, false);
-  return *chosen;
-}
-
 std::vector<std::byte> pack_zlib(std::span<const std::byte> in) {
   const std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)> c(libdeflate_alloc_compressor(6),
                                                                                    libdeflate_free_compressor);
@@ -62,7 +52,7 @@ void write_metaimage(const std::string& path, const Data& data, const WriteOptio
   if (compression != Compression::none && compression != Compression::zlib)
     fail_usage(fmt::format("MetaImage cannot be compressed with '{}'", word_of(compression)), path, "use none or zlib");
   WriteLosses losses(path, "MetaImage");
-  const Field& f = field_to_write(*d, path, losses);
+  const Field& f = losses.one_point_field(*d, false);
   losses.renames(f, f.name.empty() || f.name.find('\n') != std::string::npos ? "MetaImage" : trim(f.name));
   const Array a = f.array.made_packed();
   std::span<const std::byte> bytes(a.raw(), a.bytes());

@@ -21,16 +21,6 @@ void put(std::byte* header, size_t byte, T v) {
   std::memcpy(header + byte, &v, sizeof v);
 }
 
-const Field& field_to_write(const Dataset& d, const std::string& path, WriteLosses& losses) {
-  const Field* chosen = nullptr;
-  for (const Field& f : d.fields())
-    if (f.association == Association::point && (!chosen || (f.role == Role::scalars && chosen->role != Role::scalars))) chosen = &f;
-  if (!chosen)
-    fail_usage("there is no point field to write", path, "a NIfTI file holds one array of numbers at the points of a uniform grid");
-  losses.keeps_only(d, *chosen, false);
-  return *chosen;
-}
-
 std::string note(const Dataset& d, std::string_view key) {
   for (const auto& [k, v] : d.notes())
     if (k == key) return v;
@@ -88,7 +78,7 @@ void write_nifti(const std::string& path, const Data& data, const WriteOptions&,
   if (lower.ends_with(".hdr") || lower.ends_with(".img") || lower.ends_with(".hdr.gz") || lower.ends_with(".img.gz"))
     fail_usage("pairs of .hdr and .img can be read but not written", path, "name it .nii or .nii.gz");
   WriteLosses losses(path, "NIfTI");
-  const Field& f = field_to_write(*d, path, losses);
+  const Field& f = losses.one_point_field(*d, false);
   for (const size_t n : {grid->dims[0], grid->dims[1], grid->dims[2], size_t(f.components())})
     if (n > 32767)
       fail_usage(fmt::format("NIfTI-1 cannot hold {} entries along an axis; the limit is 32767", n), path, "write NRRD instead");

@@ -78,7 +78,7 @@ void parse_type(NpyHeader& h, std::string_view descr, const std::string& where) 
             "supported: bool, int and uint of 8 to 64 bits, float of 16 to 64 bits, complex");
 }
 
-NpyHeader parse_header(const MappedFile& file) {
+NpyHeader parse_npy_header(const MappedFile& file) {
   const std::string& where = file.path();
   const auto* bytes = file.data();
   if (file.size() < 10 || std::memcmp(bytes, "\x93NUMPY", 6) != 0) fail_data("does not begin as a .npy file", where);
@@ -141,7 +141,7 @@ bool sniff_npy(std::span<const std::byte> head) { return head.size() >= 10 && st
 Data read_npy(const std::string& path, const ReadOptions& options, Context& context) {
   BrickPart file;
   file.file = MappedFile(path);
-  const NpyHeader h = parse_header(file.file);
+  const NpyHeader h = parse_npy_header(file.file);
   file.begin = h.data_begin;
   std::array<size_t, 4> n{1, 1, 1, 1};  // z, y, x, components
   const size_t axes = std::min<size_t>(h.shape.size(), 3);

@@ -199,17 +199,6 @@ Data read_nrrd(const std::string& path, const ReadOptions& options, Context& con
 
 namespace {
 
-// The one field that the file can hold.
-const Field& field_to_write(const Dataset& d, const std::string& path, WriteLosses& losses) {
-  const Field* chosen = nullptr;
-  for (const Field& f : d.fields())
-    if (f.association == Association::point && (!chosen || (f.role == Role::scalars && chosen->role != Role::scalars))) chosen = &f;
-  if (!chosen)
-    fail_usage("there is no point field to write", path, "a NRRD file holds one array of numbers at the points of a uniform grid");
-  losses.keeps_only(d, *chosen, true);
-  return *chosen;
-}
-
 std::string escaped(std::string_view s) {
   std::string r;
   for (const char c : s) r += c == '\\' ? "\\\\" : c == '\n' ? "\\n" : std::string(1, c);
@@ -266,7 +255,7 @@ void write_nrrd(const std::string& path, const Data& data, const WriteOptions& o
   if (extension_of(path) == "nhdr") fail_usage("detached NRRD headers can be read but not written", path, "name it .nrrd");
   const UniformGrid placed = with_long_axes(*grid);
   WriteLosses losses(path, "NRRD");
-  const Field& f = field_to_write(*d, path, losses);
+  const Field& f = losses.one_point_field(*d, true);
   const Array a = f.array.made_packed();
   const std::span<const std::byte> bytes(a.raw(), a.bytes());
   const bool gzip = compression == Compression::gzip;

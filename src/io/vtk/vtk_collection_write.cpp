@@ -14,12 +14,6 @@ namespace sg {
 namespace vtk {
 namespace {
 
-std::string attributes_text(const XmlAttributes& attributes) {
-  std::string r;
-  for (const auto& [name, value] : attributes) r += fmt::format(" {}=\"{}\"", name, escaped_xml(value));
-  return r;
-}
-
 class BlockWriter {
  public:
   BlockWriter(const std::string& path, const WriteOptions& options, Context& context)
@@ -70,8 +64,6 @@ class BlockWriter {
   std::string text_;
   size_t parts_ = 0;
 };
-
-std::string three(Vec3 v) { return fmt::format("{} {} {}", exact_number(v.x), exact_number(v.y), exact_number(v.z)); }
 
 // One patch as image data, with its share of the fields. Refined cells are found again by every reader, so their bit is left out.
 DatasetPtr patch_dataset(const Dataset& d, const AmrGrid& grid, const AmrGrid::Level& level, const AmrGrid::Patch& patch,
@@ -129,11 +121,11 @@ void write_vtk_amr(const std::string& path, const Data& data, const WriteOptions
   std::string text = fmt::format(
       "<VTKFile type=\"vtkOverlappingAMR\" version=\"1.1\" byte_order=\"LittleEndian\">\n"
       "  <vtkOverlappingAMR origin=\"{}\" grid_description=\"{}\">\n",
-      vtk::three(grid->origin), grid->dimension == 2 ? "XY" : "XYZ");
+      vtk::point_text(grid->origin), grid->dimension == 2 ? "XY" : "XYZ");
   size_t part = 0;
   for (size_t l = 0; l < grid->levels.size(); ++l) {
     const AmrGrid::Level& level = grid->levels[l];
-    text += fmt::format("    <Block level=\"{}\" spacing=\"{}\">\n", l, vtk::three(level.spacing));
+    text += fmt::format("    <Block level=\"{}\" spacing=\"{}\">\n", l, vtk::point_text(level.spacing));
     for (size_t p = 0; p < level.patches.size(); ++p, ++part) {
       const AmrGrid::Patch& box = level.patches[p];
       vtk::write_dataset(folder.file(part, "vti"), *vtk::patch_dataset(*d, *grid, level, box, ghost), options, context);

@@ -12,10 +12,6 @@
 
 namespace sg::vtk {
 
-namespace {
-bool blank(char c) { return static_cast<unsigned char>(c) <= ' '; }
-}  // namespace
-
 void LegacyText::fail(std::string problem, std::string hint) const {
   const size_t at = std::min(at_, all_.size());
   if (binary) fail_data(std::move(problem), fmt::format("{}: byte {}", file_.path(), at), std::move(hint));

@@ -17,8 +17,6 @@ namespace {
 constexpr size_t chunk_bytes = size_t(1) << 18;
 constexpr size_t chunks_per_window = 64;
 
-inline bool blank(char c) { return static_cast<unsigned char>(c) <= ' '; }
-
 // Words that start in [begin, end) of the text.
 size_t word_starts(std::string_view text, size_t begin, size_t end) {
   size_t n = 0;

@@ -21,6 +21,9 @@ struct NumbersEnd {
 /// ("1e3", "+2", "nan", "-inf", "1.#QNAN"). The text is cut at multiples of a fixed size, so threads do not matter.
 NumbersEnd parse_numbers(std::string_view text, ElementType type, size_t count, std::byte* out);
 
+/// White space as VTK's readers take it.
+inline bool blank(char c) { return static_cast<unsigned char>(c) <= ' '; }
+
 /// Words in the text.
 size_t count_words(std::string_view text);
 

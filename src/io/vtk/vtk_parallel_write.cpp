@@ -29,12 +29,6 @@ constexpr Form forms[] = {{"vti", "PImageData", true},
                           {"vtu", "PUnstructuredGrid", false},
                           {"vtp", "PPolyData", false}};
 
-std::string attributes_text(const XmlAttributes& attributes) {
-  std::string r;
-  for (const auto& [name, value] : attributes) r += fmt::format(" {}=\"{}\"", name, escaped_xml(value));
-  return r;
-}
-
 std::string array_text(ElementType type, std::string_view name, int components) {
   return fmt::format("      <PDataArray{}/>\n", attributes_text({{"type", std::string(xml_type_name(type))},
                                                                  {"Name", std::string(name)},
@@ -184,8 +178,6 @@ std::string extent_text(const Whole& w, const Index3& lo, const Index3& hi) {
   return fmt::format("{} {} {} {} {} {}", a[0], b[0], a[1], b[1], a[2], b[2]);
 }
 
-std::string three(Vec3 v) { return fmt::format("{} {} {}", exact_number(v.x), exact_number(v.y), exact_number(v.z)); }
-
 // Data that shapes high-order cells, if a mesh has it (write_dataset writes it as f64 besides the fields).
 Array shaping_of(const Dataset& d, Association association) {
   const auto* u = d.as<UnstructuredMesh>();
@@ -310,7 +302,7 @@ void write_vtk_parallel(const std::string& path, const Data& data, const WriteOp
   if (auto* g = pieces[0].data->as<UniformGrid>()) {
     std::string direction;
     for (int i = 0; i < 9; ++i) direction += (i ? " " : "") + exact_number(g->direction.m[i / 3][i % 3]);
-    attributes.insert(attributes.end(), {{"Origin", three(whole.zero)}, {"Spacing", three(g->spacing)}, {"Direction", direction}});
+    attributes.insert(attributes.end(), {{"Origin", point_text(whole.zero)}, {"Spacing", point_text(g->spacing)}, {"Direction", direction}});
   }
   PartsFolder folder(path);
   std::string text = fmt::format("<VTKFile type=\"{}\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n  <{}{}>\n",

@@ -23,7 +23,6 @@ namespace xdmf {
 
 namespace {
 
-constexpr int deepest = 16;
 
 std::string grid_type(pugi::xml_node grid) {
   const std::string type = to_lower(attribute(grid, "GridType", "Type"));

@@ -10,6 +10,9 @@
 
 namespace sg::xdmf {
 
+/// Levels of grids in grids, and of references that lead to others.
+constexpr int deepest = 16;
+
 /// Values of a DataItem: one component, the last dimension fastest.
 struct Item {
   Array values;

@@ -12,8 +12,6 @@ namespace sg::xdmf {
 
 namespace {
 
-constexpr int deepest = 16;
-
 std::string_view local_name(const char* name) {
   const std::string_view n(name);
   const size_t colon = n.find(':');

@@ -11,7 +11,7 @@ namespace sg::raster {
 
 namespace {
 
-constexpr size_t grain = 1 << 15;
+constexpr size_t places_per_chunk = 1 << 15;
 
 bool hidden(const uint8_t* ghost, size_t cell) {
   return ghost && (ghost[cell] & (ghost_duplicate | ghost_hidden_cell | ghost_refined_cell));
@@ -85,7 +85,7 @@ Positions packed_positions(const DatasetPtr& data, const Points& points) {
     float* out = nullptr;
     Positions p{Array::make<float>(points.count(), 3, &out), middle};
     dispatch(points.xyz, [&](auto v) {
-      parallel_for(v.count, grain, [&](size_t begin, size_t end) {
+      parallel_for(v.count, places_per_chunk, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i)
           for (int c = 0; c < 3; ++c) out[3 * i + size_t(c)] = float(double(v(i, c)) + shift[c]);
       });

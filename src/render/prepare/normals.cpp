@@ -9,7 +9,7 @@ namespace sg::raster {
 
 namespace {
 
-constexpr size_t grain = 1 << 13;
+constexpr size_t triangles_per_chunk = 1 << 13;
 
 Vec3f position(const float* xyz, uint32_t i) { return {xyz[3 * size_t(i)], xyz[3 * size_t(i) + 1], xyz[3 * size_t(i) + 2]}; }
 
@@ -39,7 +39,7 @@ NormalSet smooth_normals(const TriangleSet& set, double feature_angle) {
   const float* xyz = set.xyz();
   std::vector<Vec3f> face(n);
   std::vector<float> weight(3 * n);  // angle of the corner
-  parallel_for(n, grain, [&](size_t begin, size_t end) {
+  parallel_for(n, triangles_per_chunk, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const Vec3f p[3] = {position(xyz, t[3 * i]), position(xyz, t[3 * i + 1]), position(xyz, t[3 * i + 2])};
       const Vec3f c = cross(p[1] - p[0], p[2] - p[0]);
@@ -58,7 +58,7 @@ NormalSet smooth_normals(const TriangleSet& set, double feature_angle) {
   // A point is split when two of its faces differ by more than the angle from its mean normal's side of the fan.
   std::vector<Vec3f> mean(points);
   std::vector<uint8_t> split(points);
-  parallel_for(points, grain, [&](size_t begin, size_t end) {
+  parallel_for(points, triangles_per_chunk, [&](size_t begin, size_t end) {
     for (size_t p = begin; p < end; ++p) {
       Vec3f sum;
       const uint32_t from = around.start[p], to = around.start[p + 1];
@@ -84,7 +84,7 @@ NormalSet smooth_normals(const TriangleSet& set, double feature_angle) {
     std::copy(t, t + 3 * n, corners);
   }
   auto put = [&](size_t at, Vec3f v) { normals[3 * at] = v.x, normals[3 * at + 1] = v.y, normals[3 * at + 2] = v.z; };
-  parallel_for(points, grain, [&](size_t begin, size_t end) {
+  parallel_for(points, triangles_per_chunk, [&](size_t begin, size_t end) {
     for (size_t p = begin; p < end; ++p) {
       put(p, mean[p]);
       if (!split[p]) continue;

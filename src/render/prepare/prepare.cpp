@@ -33,7 +33,7 @@ const Vec4f& ColorSource::of(float stored) const {
 
 namespace {
 
-constexpr size_t grain = 1 << 15;
+constexpr size_t values_per_chunk = 1 << 15;
 
 const Field& color_field(const Dataset& data, const FieldColor& c, const char* where) {
   if (c.association == Association::whole) fail_usage("colours need a point or cell field, not one of the whole dataset", where);
@@ -52,7 +52,7 @@ Array direct_colors(const Field& f, bool& any_alpha) {
   const int n = f.components();
   any_alpha = dispatch(f.array, [&](auto v) {
     return parallel_reduce<bool>(
-        v.count, grain, false,
+        v.count, values_per_chunk, false,
         [&](size_t begin, size_t end) {
           bool alpha = false;
           for (size_t i = begin; i < end; ++i) {
@@ -100,7 +100,7 @@ Scalars scalars_of(const Field& f, int component) {
   if (!std::isfinite(s.offset)) s.offset = 0;
   float* out = nullptr;
   s.values = Array::make<float>(v.count, 1, &out);
-  parallel_for(v.count, grain, [&](size_t begin, size_t end) {
+  parallel_for(v.count, values_per_chunk, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) out[i] = float(v[i] - s.offset);
   });
   return s;

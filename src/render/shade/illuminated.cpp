@@ -2,13 +2,14 @@
 #include "render/shade/illuminated.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "render/shade/blinn_phong.h"
 
 namespace sg::raster {
 
 void light_line(const Material& m, std::span<const Lamp> lamps, Vec3 tangent, Vec3 view, float& light, float& gloss) {
-  constexpr double pi = 3.14159265358979323846;
+  using std::numbers::pi;
   light = 1, gloss = 0;
   if (!m.lit) return;
   const double vt = std::clamp(dot(view, tangent), -1.0, 1.0), v_across = std::sqrt(1 - vt * vt);

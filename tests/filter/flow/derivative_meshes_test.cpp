@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Divergence, curl and vortex measures on every kind of mesh (correctness.md F4).
 #include "filter/every_mesh.h"
+
+#include <numbers>
 #include "filter/field/derivatives/derivatives.h"
 #include "filter/flow/vortex/measures.h"
 #include "filter/stats/integrate.h"
@@ -10,7 +12,7 @@ using namespace sg::test;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 Vec3 abc(Vec3 p) {
   const double a = std::sqrt(3.0), b = std::sqrt(2.0);

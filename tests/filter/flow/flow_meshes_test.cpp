@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lines through every kind of mesh (correctness.md F1, F2).
 #include "filter/every_mesh.h"
+
+#include <numbers>
 #include "filter/flow/streamlines.h"
 
 using namespace sg;
@@ -9,7 +11,7 @@ using namespace sg::test::flow;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 // A spiral about the z axis: x' = A x with x(t) = e^{-t/10} R(t) x0, z(t) = z0 e^{-t/5}.
 Vec3 spiral(Vec3 p) { return {-0.1 * p.x - p.y, p.x - 0.1 * p.y, -0.2 * p.z}; }

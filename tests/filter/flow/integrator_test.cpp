@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/integrator.h"
 
+#include <numbers>
+
 #include "base/context.h"
 #include "filter/flow/flow_field.h"
 #include "filter/flow/trace.h"
@@ -11,7 +13,7 @@ using namespace sg;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 // A flow whose velocity depends on place and time and whose path is known: a spiral around the z axis whose pitch is driven by cos t,
 // x = e^{-t/10} (cos t, sin t), z = sin t.

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <numbers>
 
 #include "base/parallel.h"
 #include "base/random.h"
@@ -15,7 +16,7 @@ using sg::test::error_of;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 DatasetPtr shape(const std::string& name, int sides = 64, double alpha = 1, double beta = 1) {
   Context context;

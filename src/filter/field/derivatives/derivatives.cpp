@@ -17,7 +17,7 @@ namespace sg {
 namespace {
 
 constexpr const char* scratch = "derivatives of it";  // a field that lives between two steps
-constexpr size_t grain = 1 << 14;
+constexpr size_t values_per_chunk = 1 << 14;
 
 const Field& choose(const DatasetPtr& in, const FieldName& name, int components, const char* who) {
   const Field* f = name.empty() ? nullptr : &in->fields().require(name.name);
@@ -44,7 +44,7 @@ DatasetPtr from_derivatives(const DatasetPtr& in, const Field& field, std::strin
   dispatch(g.array, [&](const auto& v) {
     using T = std::remove_cvref_t<decltype(v[0])>;
     T* to = reinterpret_cast<T*>(bytes);
-    parallel_for(v.count, grain, [&](size_t begin, size_t end) {
+    parallel_for(v.count, values_per_chunk, [&](size_t begin, size_t end) {
       double d[9], r[9] = {};
       for (size_t i = begin; i < end; ++i) {
         for (int k = 0; k < v.components; ++k) d[k] = double(v(i, k));
@@ -67,7 +67,7 @@ Array tangential_parts(const Mesh& mesh, bool of_cells, const Array& tensors) {
   dispatch(tensors, [&](const auto& v) {
     using T = std::remove_cvref_t<decltype(v[0])>;
     T* to = reinterpret_cast<T*>(bytes);
-    parallel_for(v.count, grain, [&](size_t begin, size_t end) {
+    parallel_for(v.count, values_per_chunk, [&](size_t begin, size_t end) {
       for (size_t p = begin; p < end; ++p) {
         const size_t at[3] = {p % frame.dims[0], p / frame.dims[0] % frame.dims[1], p / frame.dims[0] / frame.dims[1]};
         const Mat3 m = frame.metric(p, at);  // its first columns span the tangents

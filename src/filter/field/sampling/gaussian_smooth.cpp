@@ -16,7 +16,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 1 << 16;
+constexpr size_t values_per_chunk = 1 << 16;
 
 /// Shares of the samples at `at` around each of them, not divided by their sum.
 std::vector<AxisSum> gaussian_sums(const std::vector<double>& at, double sigma) {
@@ -66,7 +66,7 @@ DatasetPtr gaussian_smooth(const DatasetPtr& in, const GaussianSmoothParams& p, 
   const double base = range.empty() ? 0 : 0.5 * range.lo + 0.5 * range.hi;
   std::vector<float> value(n), weight(n), other(n);
   dispatch(image.field.array, [&](auto v) {
-    parallel_for(n, grain, [&](size_t begin, size_t end) {
+    parallel_for(n, values_per_chunk, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         const double x = double(v[i]);
         const bool known = std::isfinite(x) && !image.hidden(i);
@@ -88,7 +88,7 @@ DatasetPtr gaussian_smooth(const DatasetPtr& in, const GaussianSmoothParams& p, 
   Field out = image.field;
   if (!p.name.empty()) out.name = p.name;
   const auto write = [&](auto* to) {
-    parallel_for(n, grain, [&](size_t begin, size_t end) {
+    parallel_for(n, values_per_chunk, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i)
         to[i] = known[i] > 0 ? std::remove_reference_t<decltype(*to)>(base + double(value[i]) / double(weight[i])) : NAN;
     });

@@ -13,7 +13,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 1 << 14;
+constexpr size_t cells_per_chunk = 1 << 14;
 
 std::vector<Field> chosen_fields(const DatasetPtr& in, const std::vector<std::string>& names, Association from) {
   std::vector<Field> chosen;
@@ -39,7 +39,7 @@ Array means(const Array& a, size_t n, MakeLists&& make_lists, Context& ctx) {
   Array result = Array::make_raw(type, n, m, &bytes);
   dispatch(a, [&](const auto& v) {
     parallel_for(
-        n, grain,
+        n, cells_per_chunk,
         [&](size_t begin, size_t end) {
           auto lists = make_lists();
           for (size_t i = begin; i < end; ++i) {

@@ -20,7 +20,7 @@ namespace sg {
 namespace {
 
 using Dims = std::array<size_t, 3>;
-constexpr size_t grain = 1 << 16;
+constexpr size_t samples_per_chunk = 1 << 16;
 
 /// Places of `to` results among `from` samples.
 struct AxisPlaces {
@@ -93,7 +93,7 @@ Array picked(const Array& a, const std::vector<size_t>& ids) {
   Array r = Array::make_raw(a.type(), ids.size(), a.components(), &to);
   const Array from = a.made_packed();
   const size_t size = element_size(a.type()) * size_t(a.components());
-  parallel_for(ids.size(), grain, [&](size_t begin, size_t end) {
+  parallel_for(ids.size(), samples_per_chunk, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) std::copy_n(from.raw() + ids[i] * size, size, to + i * size);
   });
   return r;
@@ -107,7 +107,7 @@ void resize_component(const Array& a, const std::vector<uint8_t>& state, const s
   Dims dims{p[0].from, p[1].from, p[2].from};
   std::vector<float> value(a.count()), next;
   dispatch(a, [&](auto v) {
-    parallel_for(v.count, grain, [&](size_t begin, size_t end) {
+    parallel_for(v.count, samples_per_chunk, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) value[i] = !state.empty() && state[i] == sample_hidden ? NAN : float(double(v[i]) - base);
     });
   });

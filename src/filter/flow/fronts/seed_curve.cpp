@@ -4,13 +4,14 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "filter/flow/lines/line_frames.h"
 
 namespace sg {
 
 namespace {
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 }
 
 void describe(Schema& s, SeedCurveParams& p) {

@@ -11,7 +11,7 @@ namespace sg::texture {
 
 namespace {
 
-constexpr size_t grain = 1 << 16;
+constexpr size_t values_per_chunk = 1 << 16;
 constexpr int bins = 4096;
 
 struct Extent {
@@ -23,7 +23,7 @@ struct Extent {
 void set_contrast(std::span<float> v, Contrast kind, bool from_zero, const Context& context) {
   if (kind == Contrast::none) return;
   const Extent e = parallel_reduce(
-      v.size(), grain, Extent(),
+      v.size(), values_per_chunk, Extent(),
       [&](size_t begin, size_t end) {
         Extent r;
         for (size_t i = begin; i < end; ++i) {
@@ -42,7 +42,7 @@ void set_contrast(std::span<float> v, Contrast kind, bool from_zero, const Conte
   auto bin = [&](float x) { return std::clamp(int((x - e.lo) * per_bin), 0, bins - 1); };
   using Counts = std::vector<uint64_t>;
   const Counts counts = parallel_reduce(
-      v.size(), std::max(grain, v.size() / 64 + 1), Counts(bins, 0),
+      v.size(), std::max(values_per_chunk, v.size() / 64 + 1), Counts(bins, 0),
       [&](size_t begin, size_t end) {
         Counts c(bins, 0);
         for (size_t i = begin; i < end; ++i)
@@ -61,7 +61,7 @@ void set_contrast(std::span<float> v, Contrast kind, bool from_zero, const Conte
     std::vector<float> below(bins + 1, 0);
     uint64_t sum = 0;
     for (int b = 0; b < bins; ++b) below[size_t(b) + 1] = float(double(sum += counts[size_t(b)]) / double(total));
-    parallel_for(v.size(), grain, [&](size_t begin, size_t end) {
+    parallel_for(v.size(), values_per_chunk, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         if (!(v[i] == v[i])) continue;
         const size_t b = size_t(bin(v[i]));
@@ -84,7 +84,7 @@ void set_contrast(std::span<float> v, Contrast kind, bool from_zero, const Conte
   const float lo = from_zero ? 0.0f : value_below_which(0.01), hi = value_below_which(from_zero ? 0.95 : 0.99);
   if (!(lo < hi)) return;
   const float scale = 1 / (hi - lo);
-  parallel_for(v.size(), grain, [&](size_t begin, size_t end) {
+  parallel_for(v.size(), values_per_chunk, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       if (v[i] == v[i]) v[i] = std::clamp((v[i] - lo) * scale, 0.0f, 1.0f);
   });

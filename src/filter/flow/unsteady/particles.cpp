@@ -9,7 +9,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 256;
+constexpr size_t particles_per_chunk = 256;
 
 void add(Way& way, size_t i, const Particle& p) {
   way.particle.push_back(i), way.x.push_back(p.x), way.v.push_back(p.v), way.t.push_back(p.t);
@@ -49,11 +49,11 @@ void advance_some(const UnsteadyFlow& flow, std::span<Particle> particles, size_
 void advance(const UnsteadyFlow& flow, std::span<Particle> particles, double until, int sign, const TraceOptions& options, Context& context,
              Way* way) {
   const auto job = lattice_advance::job_of(flow, options);
-  std::vector<Way> parts(way ? (particles.size() + grain - 1) / grain : 0);
+  std::vector<Way> parts(way ? (particles.size() + particles_per_chunk - 1) / particles_per_chunk : 0);
   parallel_for(
-      particles.size(), grain,
+      particles.size(), particles_per_chunk,
       [&](size_t begin, size_t end) {
-        Way* part = way ? &parts[begin / grain] : nullptr;
+        Way* part = way ? &parts[begin / particles_per_chunk] : nullptr;
         const auto some = particles.subspan(begin, end - begin);
         if (job && flat_advance::takes(*job)) flat_advance::run(*job, some, begin, until, sign, options, part);
         else if (job) lattice_advance::run(*job, some, begin, until, sign, options, part);
@@ -118,7 +118,7 @@ void CarriedFields::sample(const UnsteadyFlow& flow, std::span<const Vec3> x, st
     column.values.resize(first[c] + x.size() * size_t(column.components), NAN);
   }
   parallel_for(
-      x.size(), grain,
+      x.size(), particles_per_chunk,
       [&](size_t begin, size_t end) {
         UnsteadyCursor cursor(flow);
         Vec3 v;

@@ -9,7 +9,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 64;
+constexpr size_t seeds_per_chunk = 64;
 constexpr int most_passes = 12;
 
 bool under_way(const Particle& p) { return p.started && !p.ended; }
@@ -130,7 +130,7 @@ void StreakFront::advance(const UnsteadyFlow& flow, double until, const TraceOpt
   if (!refinement) return;
   for (int pass = 0; pass < most_passes && !full_; ++pass) {
     std::vector<std::vector<Insertion>> more(seed_.size());
-    parallel_for(seed_.size(), grain, [&](size_t from, size_t to) {
+    parallel_for(seed_.size(), seeds_per_chunk, [&](size_t from, size_t to) {
       for (size_t s = from; s < to; ++s) more[s] = wanted(s, begin, until, *refinement);
     });
     std::vector<Particle> fresh;

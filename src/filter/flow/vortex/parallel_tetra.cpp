@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "filter/flow/eigen_general.h"
@@ -11,7 +12,7 @@ namespace sg::parallel {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 Mat3 columns(Vec3 a, Vec3 b, Vec3 c) {
   Mat3 m;

@@ -14,7 +14,7 @@ namespace sg::clipping {
 
 namespace {
 
-constexpr size_t grain = 1 << 14;
+constexpr size_t points_per_chunk = 1 << 14;
 
 struct Shares {
   const Build& build;
@@ -49,14 +49,14 @@ Array carried(const Array& a, const Shares& s, bool direction) {
     };
     if (s.build.rows) copy_lattice_points(a, s.build.rows->grid, s.build.rows->ranks, bytes);
     else
-      parallel_for(kept, grain, [&](size_t begin, size_t end) {
+      parallel_for(kept, points_per_chunk, [&](size_t begin, size_t end) {
         if (n == 1)
           for (size_t i = begin; i < end; ++i) out[i] = v[s.build.points[i]];
         else
           for (size_t i = begin; i < end; ++i)
             for (size_t c = 0; c < n; ++c) out[i * n + c] = v(s.build.points[i], int(c));
       });
-    parallel_for(cuts, grain, [&](size_t begin, size_t end) {
+    parallel_for(cuts, points_per_chunk, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         const uint64_t name = s.build.cuts[i], p = name >> 32, q = name & 0xffffffffu;
         for (size_t c = 0; c < n; ++c)
@@ -68,7 +68,7 @@ Array carried(const Array& a, const Shares& s, bool direction) {
         }
       }
     });
-    parallel_for(inner, grain, [&](size_t begin, size_t end) {
+    parallel_for(inner, points_per_chunk, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i)
         for (size_t c = 0; c < n; ++c) {
           const size_t first = s.build.inner_first[i];
@@ -99,10 +99,10 @@ Array places(const At& at, const Build& b, Plane<double>& t, const Job& job) {
   t.resize(cuts);
   if (b.rows) write_lattice_positions(Lattice(job.in->mesh()).view(), b.rows->grid, b.rows->ranks, xyz);
   else
-    parallel_for(kept, grain, [&](size_t begin, size_t end) {
+    parallel_for(kept, points_per_chunk, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) put(i, at(b.points[i]));
     });
-  parallel_for(cuts, grain, [&](size_t begin, size_t end) {
+  parallel_for(cuts, points_per_chunk, [&](size_t begin, size_t end) {
     std::vector<Vec3> from(end - begin), to(end - begin);
     for (size_t i = begin; i < end; ++i) {
       const uint64_t name = b.cuts[i], p = name >> 32, q = name & 0xffffffffu;
@@ -112,7 +112,7 @@ Array places(const At& at, const Build& b, Plane<double>& t, const Job& job) {
     if (job.curved) job.curved.refine(from, to, std::span(t.data() + begin, end - begin));
     for (size_t i = begin; i < end; ++i) put(kept + i, lerp(from[i - begin], to[i - begin], t[i]));
   });
-  parallel_for(inner, grain, [&](size_t begin, size_t end) {
+  parallel_for(inner, points_per_chunk, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const Vec3 base = at(b.inner_points[b.inner_first[i]]);
       Vec3 sum = base;

@@ -16,7 +16,7 @@ namespace sg::clipping {
 
 namespace {
 
-constexpr size_t grain = 64;  // rows
+constexpr size_t rows_per_chunk = 64;  // rows
 
 class LatticeClip {
  public:
@@ -60,7 +60,7 @@ class LatticeClip {
     const double level = job_.keep.level;
     auto rows = [&](const auto* v) {
       return parallel_reduce(
-          g_.rows(), grain, false,
+          g_.rows(), rows_per_chunk, false,
           [&](size_t begin, size_t end) {
             bool holes = false;
             for (size_t row = begin; row < end; ++row) {
@@ -84,7 +84,7 @@ class LatticeClip {
     holes_ = holes_ || !states.empty();
     whole_.resize(g_.size());
     cut_.resize(g_.size());
-    parallel_for(g_.rows(), grain, [&](size_t begin, size_t end) {
+    parallel_for(g_.rows(), rows_per_chunk, [&](size_t begin, size_t end) {
       for (size_t row = begin; row < end; ++row) {
         const size_t j = row % g_.ny, k = row / g_.ny;
         for (size_t w = 0; w < g_.words; ++w) {
@@ -115,7 +115,7 @@ class LatticeClip {
     used_points(g_, whole_, used_);
     used_points(g_, cut_, near);
     for (Bits& e : edges_) e.resize(g_.size());
-    parallel_for(g_.rows(), grain, [&](size_t begin, size_t end) {
+    parallel_for(g_.rows(), rows_per_chunk, [&](size_t begin, size_t end) {
       for (size_t row = begin; row < end; ++row) {
         const size_t j = row % g_.ny, k = row / g_.ny;
         for (size_t w = 0; w < g_.words; ++w) {
@@ -340,18 +340,18 @@ class LatticeClip {
   }
 
   Build write() {
-    const size_t chunks = (g_.rows() + grain - 1) / grain;
+    const size_t chunks = (g_.rows() + rows_per_chunk - 1) / rows_per_chunk;
     std::vector<size_t> cell(chunks);
     std::vector<PieceCounts> piece(chunks);
     std::vector<std::vector<uint16_t>> cases(chunks);
     parallel_for(
-        g_.rows(), grain,
+        g_.rows(), rows_per_chunk,
         [&](size_t begin, size_t end) {
           size_t n = 0, cut = 0;
           for (size_t w = begin * g_.words; w < end * g_.words; ++w) n += count_bits(whole_[w]), cut += count_bits(cut_[w]);
-          cell[begin / grain] = n;
-          cases[begin / grain].reserve(cut);
-          count_cut(begin, end, piece[begin / grain], cases[begin / grain]);
+          cell[begin / rows_per_chunk] = n;
+          cases[begin / rows_per_chunk].reserve(cut);
+          count_cut(begin, end, piece[begin / rows_per_chunk], cases[begin / rows_per_chunk]);
         },
         &job_.context);
     const size_t whole = exclusive_scan(cell);
@@ -370,9 +370,9 @@ class LatticeClip {
     uint8_t* types = nullptr;
     allocate(b, whole, 8 * whole, sum, &connectivity, &offsets, &types);
     parallel_for(
-        g_.rows(), grain,
+        g_.rows(), rows_per_chunk,
         [&](size_t begin, size_t end) {
-          const size_t chunk = begin / grain, first = cell[chunk], last = chunk + 1 < chunks ? cell[chunk + 1] : whole;
+          const size_t chunk = begin / rows_per_chunk, first = cell[chunk], last = chunk + 1 < chunks ? cell[chunk + 1] : whole;
           write_lattice_cells(g_, kind_, whole_, points_, begin, end, connectivity + 8 * first, b.source.data() + first);
           for (size_t c = first; c < last; ++c) offsets[c] = int32_t(8 * c);
           std::fill(types + first, types + last, uint8_t(kind_.type));
@@ -400,7 +400,7 @@ class LatticeClip {
     b.cuts.resize(cuts);
     const size_t step[3] = {1, g_.nx, g_.nx * g_.ny};
     for (size_t a = 0; a < 3; ++a)
-      parallel_for(g_.rows(), grain, [&](size_t begin, size_t end) {
+      parallel_for(g_.rows(), rows_per_chunk, [&](size_t begin, size_t end) {
         size_t at = cut_start_[a] + ranks_[a].before[begin * g_.words];
         for (size_t row = begin; row < end; ++row)
           for (size_t w = 0; w < g_.words; ++w)

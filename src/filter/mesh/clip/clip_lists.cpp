@@ -27,7 +27,7 @@ void allocate(Build& b, size_t whole_cells, size_t whole_ids, const PieceCounts&
 
 namespace {
 
-constexpr size_t grain = 1 << 13;  // a multiple of 64
+constexpr size_t cells_per_chunk = 1 << 13;  // a multiple of 64
 
 struct Chunk {
   std::vector<uint32_t> cut_cells;
@@ -49,7 +49,7 @@ class ListClip {
         values_(job.values()),
         used_(mesh_.points.count()),
         whole_((cells_.count + 63) / 64),
-        chunks_((cells_.count + grain - 1) / grain),
+        chunks_((cells_.count + cells_per_chunk - 1) / cells_per_chunk),
         cuts_(chunks_.size()),
         reader_(mesh_.points),
         tets_(mesh_.types.empty() && mesh_.single_type == CellType::tetra && cells_.fixed == 4 && !job.keep.between
@@ -61,7 +61,7 @@ class ListClip {
     classify_points();
     const std::vector<uint8_t> states = cell_states(*job_.in);
     parallel_for(
-        cells_.count, grain,
+        cells_.count, cells_per_chunk,
         [&](size_t begin, size_t end) {
           if (tets_) cells_.connectivity.wide ? find_tets<int64_t>(begin, end, states) : find_tets<int32_t>(begin, end, states);
           else find(begin, end, states);
@@ -118,8 +118,8 @@ class ListClip {
   }
 
   void find(size_t begin, size_t end, const std::vector<uint8_t>& states) {
-    Chunk& chunk = chunks_[begin / grain];
-    std::vector<uint64_t>& cuts = cuts_[begin / grain];
+    Chunk& chunk = chunks_[begin / cells_per_chunk];
+    std::vector<uint64_t>& cuts = cuts_[begin / cells_per_chunk];
     CellClipper clip = clipper();
     std::vector<int64_t> ids;
     std::vector<double> v;
@@ -155,8 +155,8 @@ class ListClip {
 
   template <class Id>
   void find_tets(size_t begin, size_t end, const std::vector<uint8_t>& states) {
-    Chunk& chunk = chunks_[begin / grain];
-    std::vector<uint64_t>& cuts = cuts_[begin / grain];
+    Chunk& chunk = chunks_[begin / cells_per_chunk];
+    std::vector<uint64_t>& cuts = cuts_[begin / cells_per_chunk];
     CellClipper clip = clipper();
     std::vector<int64_t> ids;
     std::vector<double> v;
@@ -259,13 +259,13 @@ class ListClip {
         chunks_.size(), 1,
         [&](size_t i, size_t) {
           size_t at = cell[i], to = id[i];
-          const size_t words = std::min(whole_.size(), (i + 1) * grain / 64);
+          const size_t words = std::min(whole_.size(), (i + 1) * cells_per_chunk / 64);
           if (tets_) {
             std::fill_n(types + at, chunks_[i].whole, uint8_t(CellType::tetra));
-            if (cells_.connectivity.wide) write_whole_tets<int64_t>(i * grain / 64, words, at, b, connectivity, offsets);
-            else write_whole_tets<int32_t>(i * grain / 64, words, at, b, connectivity, offsets);
+            if (cells_.connectivity.wide) write_whole_tets<int64_t>(i * cells_per_chunk / 64, words, at, b, connectivity, offsets);
+            else write_whole_tets<int32_t>(i * cells_per_chunk / 64, words, at, b, connectivity, offsets);
           }
-          for (size_t w = i * grain / 64; !tets_ && w < words; ++w)
+          for (size_t w = i * cells_per_chunk / 64; !tets_ && w < words; ++w)
             for (uint64_t left = whole_[w]; left; left &= left - 1) {
               const size_t c = w * 64 + size_t(std::countr_zero(left));
               b.source[at] = uint32_t(c);

@@ -10,7 +10,7 @@ namespace sg::detail {
 namespace {
 
 constexpr double field_tolerance = 4;  // times the tolerance: colours are coarser than shapes
-constexpr size_t grain = 256;
+constexpr size_t edges_per_chunk = 256;
 
 // Whether pictures may interpolate a field. Numberings and weights are not interpolated.
 bool blends(const Field& f) {
@@ -44,7 +44,7 @@ CurvedSkin::CurvedSkin(const Dataset& in, const UnstructuredMesh& mesh, std::vec
   for (uint32_t c = 0; c < found_.size(); ++c) add_sides(c, sides);
   join_edges(sides);
   parallel_for(
-      edges_.size(), grain,
+      edges_.size(), edges_per_chunk,
       [&](size_t begin, size_t end) {
         Work w;
         for (size_t e = begin; e < end; ++e) edges_[e].level = edge_level(edges_[e], w);

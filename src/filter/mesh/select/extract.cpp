@@ -16,18 +16,18 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 1 << 13;
+constexpr size_t ids_per_chunk = 1 << 13;
 
 // Chosen lists of a CellArray, their ids in a new numbering.
 template <class CellOf, class Number>
 CellArray chosen_lists(const CellsView& v, size_t count, const CellOf& cell_of, const Number& number, std::string_view who) {
   CellArray r;
   if (count == 0) return r;
-  std::vector<size_t> start((count + grain - 1) / grain);
-  parallel_for(count, grain, [&](size_t begin, size_t end) {
+  std::vector<size_t> start((count + ids_per_chunk - 1) / ids_per_chunk);
+  parallel_for(count, ids_per_chunk, [&](size_t begin, size_t end) {
     size_t n = 0;
     for (size_t i = begin; i < end; ++i) n += v.size(cell_of(i));
-    start[begin / grain] = n;
+    start[begin / ids_per_chunk] = n;
   });
   const size_t ids = exclusive_scan(start);
   if (ids > size_t(INT32_MAX)) fail_usage("the result has more than 2^31 corners", std::string(who), "take a part of the mesh first");
@@ -35,8 +35,8 @@ CellArray chosen_lists(const CellsView& v, size_t count, const CellOf& cell_of, 
   r.connectivity = Array::make<int32_t>(ids, 1, &to);
   if (v.fixed > 0) r.fixed = v.fixed;
   else r.offsets = Array::make<int32_t>(count + 1, 1, &offset);
-  parallel_for(count, grain, [&](size_t begin, size_t end) {
-    size_t at = start[begin / grain];
+  parallel_for(count, ids_per_chunk, [&](size_t begin, size_t end) {
+    size_t at = start[begin / ids_per_chunk];
     for (size_t i = begin; i < end; ++i) {
       const size_t c = cell_of(i);
       if (offset) offset[i] = int32_t(at);
@@ -48,7 +48,7 @@ CellArray chosen_lists(const CellsView& v, size_t count, const CellOf& cell_of, 
 }
 
 void mark_points(IdSet& used, const CellsView& v, std::span<const int64_t> cells, int64_t first) {
-  parallel_for(cells.size(), grain, [&](size_t begin, size_t end) {
+  parallel_for(cells.size(), ids_per_chunk, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const auto c = size_t(cells[i] - first);
       for (size_t k = v.begin(c); k < v.end(c); ++k) used.add(size_t(v.connectivity[k]));
@@ -184,7 +184,7 @@ void extract_boxes(const Dataset& in, std::span<const int64_t> cells, DatasetPar
   if (cells.size() * corners > size_t(INT32_MAX))
     fail_usage("the result has more than 2^31 corners", std::string(who), "take a part of the mesh first");
   IdSet used(in.point_count());
-  parallel_for(cells.size(), grain, [&](size_t begin, size_t end) {
+  parallel_for(cells.size(), ids_per_chunk, [&](size_t begin, size_t end) {
     int64_t ids[8];
     for (size_t i = begin; i < end; ++i) {
       box.read(size_t(cells[i]), ids);
@@ -198,7 +198,7 @@ void extract_boxes(const Dataset& in, std::span<const int64_t> cells, DatasetPar
   r.cells.connectivity = Array::make<int32_t>(cells.size() * corners, 1, &to);
   r.cells.fixed = int(corners);
   r.single_type = box.type();
-  parallel_for(cells.size(), grain, [&](size_t begin, size_t end) {
+  parallel_for(cells.size(), ids_per_chunk, [&](size_t begin, size_t end) {
     int64_t ids[8];
     for (size_t i = begin; i < end; ++i) {
       box.read(size_t(cells[i]), ids);
@@ -243,15 +243,15 @@ Array chosen_points(const Array& a, const BitRows& g, const BitRanks& rank) {
 
 // The cells whose byte is not zero, ascending.
 std::vector<int64_t> chosen_cells(const std::vector<uint8_t>& keep) {
-  std::vector<size_t> start((keep.size() + grain - 1) / grain);
-  parallel_for(keep.size(), grain, [&](size_t begin, size_t end) {
+  std::vector<size_t> start((keep.size() + ids_per_chunk - 1) / ids_per_chunk);
+  parallel_for(keep.size(), ids_per_chunk, [&](size_t begin, size_t end) {
     size_t n = 0;
     for (size_t c = begin; c < end; ++c) n += keep[c] != 0;
-    start[begin / grain] = n;
+    start[begin / ids_per_chunk] = n;
   });
   std::vector<int64_t> r(exclusive_scan(start));
-  parallel_for(keep.size(), grain, [&](size_t begin, size_t end) {
-    size_t at = start[begin / grain];
+  parallel_for(keep.size(), ids_per_chunk, [&](size_t begin, size_t end) {
+    size_t at = start[begin / ids_per_chunk];
     for (size_t c = begin; c < end; ++c)
       if (keep[c]) r[at++] = int64_t(c);
   });

@@ -9,7 +9,7 @@
 namespace sg {
 
 namespace {
-constexpr size_t grain = 64;  // rows
+constexpr size_t rows_per_chunk = 64;  // rows
 }
 
 LatticeCellKind lattice_cell_kind(const Mesh& mesh) {
@@ -31,7 +31,7 @@ LatticeCellKind lattice_cell_kind(const Mesh& mesh) {
 
 void used_points(const BitRows& g, const Bits& cells, Bits& points) {
   points.resize(g.size());
-  parallel_for(g.rows(), grain, [&](size_t begin, size_t end) {
+  parallel_for(g.rows(), rows_per_chunk, [&](size_t begin, size_t end) {
     for (size_t row = begin; row < end; ++row) {
       const size_t j = row % g.ny, k = row / g.ny;
       uint64_t carry = 0;
@@ -94,7 +94,7 @@ void copy_lattice_points(const Array& a, const BitRows& g, const BitRanks& point
   const Array packed = a.made_packed();
   const size_t size = element_size(a.type()) * size_t(a.components());
   const std::byte* from = packed.raw();
-  parallel_for(g.rows(), grain, [&](size_t begin, size_t end) {
+  parallel_for(g.rows(), rows_per_chunk, [&](size_t begin, size_t end) {
     std::byte* to = out + size * points.before[begin * g.words];
     for (size_t row = begin; row < end; ++row)
       for (size_t w = 0; w < g.words; ++w)
@@ -108,7 +108,7 @@ void copy_lattice_points(const Array& a, const BitRows& g, const BitRanks& point
 void write_lattice_positions(const LatticeView& v, const BitRows& g, const BitRanks& points, double* xyz) {
   Plane<Vec3> along(v.mode == LatticeView::Mode::affine ? g.nx : 0);
   for (size_t i = 0; i < along.size(); ++i) along[i] = v.origin + v.step[0] * double(i);
-  parallel_for(g.rows(), grain, [&](size_t begin, size_t end) {
+  parallel_for(g.rows(), rows_per_chunk, [&](size_t begin, size_t end) {
     double* to = xyz + 3 * size_t(points.before[begin * g.words]);
     auto put = [&](Vec3 p) { to[0] = p.x, to[1] = p.y, to[2] = p.z, to += 3; };
     for (size_t row = begin; row < end; ++row) {

@@ -20,7 +20,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 1 << 14;
+constexpr size_t values_per_chunk = 1 << 14;
 
 using Ranges = std::vector<std::pair<double, double>>;
 
@@ -49,7 +49,7 @@ std::vector<uint8_t> in_range(const Field& field, const ThresholdParams& p, cons
   const bool magnitude = p.component < 0 && components > 1;
   const int c = std::max(p.component, 0);
   dispatch(field.array, [&](auto v) {
-    parallel_for(v.count, grain, [&](size_t begin, size_t end) {
+    parallel_for(v.count, values_per_chunk, [&](size_t begin, size_t end) {
       if (!magnitude && v.stride == 1 && ranges.size() == 1) {
         const auto [lo, hi] = ranges[0];
         const auto* x = v.data;
@@ -79,14 +79,14 @@ bool passes(bool all, const std::vector<uint8_t>& ok, ForEachPoint for_each) {
 }
 
 void cells_of_lists(const CellsView& v, size_t first, bool all, const std::vector<uint8_t>& ok, std::vector<uint8_t>& keep) {
-  parallel_for(v.count, grain, [&](size_t begin, size_t end) {
+  parallel_for(v.count, values_per_chunk, [&](size_t begin, size_t end) {
     (all ? all_of_corners : any_of_corners)(v, begin, end, ok.data(), keep.data() + first + begin);
   });
 }
 
 void cells_of_box(std::array<size_t, 3> cells, std::array<size_t, 3> points, size_t first_cell, size_t first_point, bool all,
                   const std::vector<uint8_t>& ok, std::vector<uint8_t>& keep) {
-  parallel_for(cells[1] * cells[2], std::max<size_t>(1, grain / cells[0]), [&](size_t begin, size_t end) {
+  parallel_for(cells[1] * cells[2], std::max<size_t>(1, values_per_chunk / cells[0]), [&](size_t begin, size_t end) {
     for (size_t row = begin; row < end; ++row)
       for (size_t i = 0; i < cells[0]; ++i) {
         const size_t j = row % cells[1], k = row / cells[1];
@@ -223,7 +223,7 @@ DatasetPtr threshold(const DatasetPtr& in, const ThresholdParams& p, Context& ct
     for (size_t c = 0; c < keep.size(); ++c) keep[c] &= also[c];
   }
   if (p.invert || !states.empty())
-    parallel_for(keep.size(), grain, [&](size_t begin, size_t end) {
+    parallel_for(keep.size(), values_per_chunk, [&](size_t begin, size_t end) {
       for (size_t c = begin; c < end; ++c) keep[c] = (keep[c] != 0) != p.invert && (states.empty() || states[c] == cell_visible);
     });
   return tell(extract_marked(in, keep, "threshold"));

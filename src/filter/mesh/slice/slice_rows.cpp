@@ -16,7 +16,7 @@ namespace sg::detail {
 
 namespace {
 
-constexpr size_t grain = 64;  // rows
+constexpr size_t rows_per_chunk = 64;  // rows
 
 class RowSlice {
  public:
@@ -41,7 +41,7 @@ class RowSlice {
       bool zero = false, behind = false;
     };
     const Found found = parallel_reduce(
-        rows, grain, Found(),
+        rows, rows_per_chunk, Found(),
         [&](size_t begin, size_t end) {
           Found f;
           for (size_t r = begin; r < end; ++r) {
@@ -120,16 +120,16 @@ class RowSlice {
   void number_vertices() {
     const size_t rows = turn_.size();
     first_.resize(rows);
-    std::vector<size_t> start((rows + grain - 1) / grain);
-    parallel_for(rows, grain, [&](size_t begin, size_t end) {
+    std::vector<size_t> start((rows + rows_per_chunk - 1) / rows_per_chunk);
+    parallel_for(rows, rows_per_chunk, [&](size_t begin, size_t end) {
       size_t n = 0;
       for (size_t r = begin; r < end; ++r) n += runs(r).count();
-      start[begin / grain] = n;
+      start[begin / rows_per_chunk] = n;
     });
     vertices_ = exclusive_scan(start);
     if (vertices_ > size_t(INT32_MAX)) fail_usage("the cut has more than 2^31 points", "slice", "take a part of the mesh first");
-    parallel_for(rows, grain, [&](size_t begin, size_t end) {
-      auto n = uint32_t(start[begin / grain]);
+    parallel_for(rows, rows_per_chunk, [&](size_t begin, size_t end) {
+      auto n = uint32_t(start[begin / rows_per_chunk]);
       for (size_t r = begin; r < end; ++r) {
         first_[r] = n;
         n += runs(r).count();
@@ -141,7 +141,7 @@ class RowSlice {
     double* xyz = nullptr;
     Array r = Array::make<double>(vertices_, 3, &xyz);
     const size_t nx = v_.dims[0], ny = v_.dims[1];
-    parallel_for(turn_.size(), grain, [&](size_t begin, size_t end) {
+    parallel_for(turn_.size(), rows_per_chunk, [&](size_t begin, size_t end) {
       for (size_t row = begin; row < end; ++row) {
         const Runs n = runs(row);
         if (n.count() == 0) continue;
@@ -197,13 +197,13 @@ class RowSlice {
 
   CellArray make_polygons(std::vector<int64_t>& cells) const {
     const clipping::ClipTable& table = *clipping::clip_table(CellType::voxel);
-    const size_t ny = v_.dims[1] - 1, rows = ny * (v_.dims[2] - 1), chunks = (rows + grain - 1) / grain;
+    const size_t ny = v_.dims[1] - 1, rows = ny * (v_.dims[2] - 1), chunks = (rows + rows_per_chunk - 1) / rows_per_chunk;
     std::vector<size_t> polygon(chunks), id(chunks);
-    parallel_for(rows, grain, [&](size_t begin, size_t end) {
+    parallel_for(rows, rows_per_chunk, [&](size_t begin, size_t end) {
       size_t n = 0, ids = 0;
       for (size_t r = begin; r < end; ++r)
         each_loop(table, r % ny, r / ny, [&](size_t, const auto& loop, const uint32_t*) { ++n, ids += loop.size(); });
-      polygon[begin / grain] = n, id[begin / grain] = ids;
+      polygon[begin / rows_per_chunk] = n, id[begin / rows_per_chunk] = ids;
     });
     const size_t polygons = exclusive_scan(polygon), ids = exclusive_scan(id);
     int32_t *connectivity = nullptr, *offsets = nullptr;
@@ -212,8 +212,8 @@ class RowSlice {
     r.offsets = Array::make<int32_t>(polygons + 1, 1, &offsets);
     offsets[polygons] = int32_t(ids);
     cells.resize(polygons);
-    parallel_for(rows, grain, [&](size_t begin, size_t end) {
-      size_t n = polygon[begin / grain], at = id[begin / grain];
+    parallel_for(rows, rows_per_chunk, [&](size_t begin, size_t end) {
+      size_t n = polygon[begin / rows_per_chunk], at = id[begin / rows_per_chunk];
       for (size_t row = begin; row < end; ++row)
         each_loop(table, row % ny, row / ny, [&](size_t cell, const auto& loop, const uint32_t* vertex) {
           cells[n] = int64_t(cell);

@@ -17,7 +17,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 1 << 14;
+constexpr size_t cells_per_chunk = 1 << 14;
 
 // places[k]: which of the old nodes becomes node k; empty: the cell stays.
 using Places = std::vector<uint32_t>;
@@ -89,7 +89,7 @@ CellArray permuted(const CellArray& a, PlacesOf&& places_for) {
   CellArray r = a;
   std::byte* out = nullptr;
   r.connectivity = Array::make_raw(a.connectivity.type(), a.connectivity.count(), 1, &out);
-  parallel_for(v.count, grain, [&](size_t begin, size_t end) {
+  parallel_for(v.count, cells_per_chunk, [&](size_t begin, size_t end) {
     auto places = places_for();
     for (size_t c = begin; c < end; ++c) {
       const size_t first = v.begin(c), n = v.size(c);

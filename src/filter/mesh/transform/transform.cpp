@@ -15,7 +15,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 1 << 14;
+constexpr size_t points_per_chunk = 1 << 14;
 
 struct Affine {
   Mat3 linear;
@@ -94,7 +94,7 @@ Points moved(const Points& in, const Affine& t) {
     using T = std::remove_cvref_t<decltype(v[0])>;
     if constexpr (std::is_floating_point_v<T>) {
       T* to = reinterpret_cast<T*>(out);
-      parallel_for(v.count, grain, [&](size_t begin, size_t end) {
+      parallel_for(v.count, points_per_chunk, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
           const Vec3 p = t.linear * Vec3(double(v(i, 0)), double(v(i, 1)), double(v(i, 2))) + inside;
           for (int c = 0; c < 3; ++c) to[3 * i + size_t(c)] = T(p[c]);
@@ -112,7 +112,7 @@ CurvilinearGrid as_curvilinear(const Mesh& mesh, const Affine& t) {
   r.dims = v.dims;
   double* to = nullptr;
   r.points.xyz = Array::make<double>(v.points(), 3, &to);
-  parallel_for(v.dims[1] * v.dims[2], std::max<size_t>(1, grain / std::max<size_t>(v.dims[0], 1)), [&](size_t begin, size_t end) {
+  parallel_for(v.dims[1] * v.dims[2], std::max<size_t>(1, points_per_chunk / std::max<size_t>(v.dims[0], 1)), [&](size_t begin, size_t end) {
     for (size_t row = begin; row < end; ++row)
       for (size_t i = 0; i < v.dims[0]; ++i) {
         const Vec3 p = t(v.position(i, row % v.dims[1], row / v.dims[1]));

@@ -15,7 +15,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 1 << 13;
+constexpr size_t values_per_chunk = 1 << 13;
 
 bool listed(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -98,7 +98,7 @@ Array changed(const Array& a, int wanted, const Context& ctx, F&& f) {
   Array r = Array::make_raw(type, a.count(), wanted, &to);
   dispatch(a, [&](auto v) {
     parallel_for(
-        v.count, grain,
+        v.count, values_per_chunk,
         [&](size_t begin, size_t end) {
           double in[9], out[9];
           for (size_t i = begin; i < end; ++i) {

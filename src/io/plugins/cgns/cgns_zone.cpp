@@ -16,7 +16,7 @@ namespace sg::cg {
 
 namespace {
 
-constexpr size_t grain = 1 << 15;
+constexpr size_t points_per_chunk = 1 << 15;
 
 /// Sizes of a zone: points and cells along each index, as many as it has.
 struct ZoneSize {
@@ -92,7 +92,7 @@ Array grouped(const std::vector<Array>& members, bool header_only = false) {
   Array r = Array::make_raw(type, n, int(width), &out);
   std::vector<Array> from;
   for (const Array& a : members) from.push_back(a.converted(type));
-  parallel_for(n, grain, [&](size_t begin, size_t end) {
+  parallel_for(n, points_per_chunk, [&](size_t begin, size_t end) {
     for (size_t c = 0; c < width; ++c)
       for (size_t i = begin; i < end; ++i) {
         std::byte* to = out + (i * width + c) * size;

@@ -14,7 +14,7 @@ namespace sg {
 namespace {
 
 constexpr uint32_t undefined = 0xffffffff, item_tag = 0xfffee000, item_end = 0xfffee00d, sequence_end = 0xfffee0dd;
-constexpr uint32_t pixel_tag = 0x7fe00010, shared_groups = 0x52009229, frame_groups = 0x52009230;
+constexpr uint32_t shared_groups = 0x52009229, frame_groups = 0x52009230;
 
 struct Walker {
   DicomElements& d;

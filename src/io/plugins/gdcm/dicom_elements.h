@@ -12,6 +12,8 @@
 
 namespace sg {
 
+constexpr uint32_t pixel_tag = 0x7fe00010;
+
 struct DicomElement {
   uint32_t tag = 0;                      ///< group << 16 | element
   size_t begin = 0, value = 0, end = 0;  ///< bytes: header, value, behind the value

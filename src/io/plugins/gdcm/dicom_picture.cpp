@@ -25,7 +25,6 @@ namespace sg {
 
 namespace {
 
-constexpr uint32_t pixel_tag = 0x7fe00010;
 
 bool vector_of(const std::vector<double>& n, size_t at, Vec3& v) {
   if (n.size() < at + 3) return false;

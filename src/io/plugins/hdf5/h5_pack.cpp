@@ -13,7 +13,7 @@ namespace sg::h5 {
 
 namespace {
 
-using Sizes = std::vector<hsize_t>;
+using Extents = std::vector<hsize_t>;
 
 struct Compressor {
   libdeflate_compressor* c;
@@ -23,11 +23,11 @@ struct Compressor {
 };
 
 // The numbers of the chunk that begins at `at`; what lies outside the dataset is 0.
-void gather(const std::byte* values, const Sizes& dims, const Sizes& chunk, const Sizes& at, size_t size, std::vector<std::byte>& out) {
+void gather(const std::byte* values, const Extents& dims, const Extents& chunk, const Extents& at, size_t size, std::vector<std::byte>& out) {
   std::fill(out.begin(), out.end(), std::byte(0));
   const size_t rank = dims.size(), last = rank - 1;
   const size_t run = size_t(std::min(chunk[last], dims[last] - at[last])) * size;
-  Sizes i(rank, 0);
+  Extents i(rank, 0);
   for (;;) {
     hsize_t from = 0, to = 0;
     for (size_t a = 0; a < rank; ++a) from = from * dims[a] + at[a] + i[a], to = to * chunk[a] + i[a];
@@ -52,9 +52,9 @@ void shuffle(std::vector<std::byte>& data, size_t size) {
 
 }  // namespace
 
-bool write_packed(hid_t set, const std::byte* values, const Sizes& dims, const Sizes& chunk, size_t element_size, int level,
+bool write_packed(hid_t set, const std::byte* values, const Extents& dims, const Extents& chunk, size_t element_size, int level,
                   const Context& context) {
-  Sizes counts(dims.size());
+  Extents counts(dims.size());
   size_t bytes = element_size, chunks = 1;
   for (size_t a = 0; a < dims.size(); ++a) {
     counts[a] = (dims[a] + chunk[a] - 1) / chunk[a];
@@ -62,7 +62,7 @@ bool write_packed(hid_t set, const std::byte* values, const Sizes& dims, const S
   }
   const size_t batch = 64;
   std::vector<std::vector<std::byte>> packed(batch);
-  std::vector<Sizes> places(batch);
+  std::vector<Extents> places(batch);
   for (size_t begin = 0; begin < chunks; begin += batch) {
     const size_t n = std::min(batch, chunks - begin);
     parallel_for(
@@ -72,7 +72,7 @@ bool write_packed(hid_t set, const std::byte* values, const Sizes& dims, const S
           if (!compressor.c) fail_data("there is not enough memory to compress chunks");
           std::vector<std::byte> data(bytes);
           for (size_t k = from; k < to; ++k) {
-            Sizes& at = places[k];
+            Extents& at = places[k];
             at.resize(dims.size());
             for (size_t a = dims.size(), rest = begin + k; a-- > 0; rest /= counts[a]) at[a] = rest % counts[a] * chunk[a];
             data.resize(bytes);

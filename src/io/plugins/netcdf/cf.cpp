@@ -16,7 +16,7 @@ namespace sg::nc {
 
 namespace {
 
-constexpr size_t grain = 1 << 15;
+constexpr size_t points_per_chunk = 1 << 15;
 
 // Numbers in the file's order of dimensions (lengths n, slowest first) to the mesh's: order[a] is the dimension along axis a.
 Array permuted(const Array& a, const std::vector<size_t>& n, const std::vector<int>& order) {
@@ -36,7 +36,7 @@ Array permuted(const Array& a, const std::vector<size_t>& n, const std::vector<i
   std::byte* out = nullptr;
   Array r = Array::make_raw(a.type(), a.count(), 1, &out);
   const size_t size = element_size(a.type());
-  parallel_for(count[1] * count[2], std::max<size_t>(1, grain / std::max<size_t>(count[0], 1)), [&](size_t begin, size_t end) {
+  parallel_for(count[1] * count[2], std::max<size_t>(1, points_per_chunk / std::max<size_t>(count[0], 1)), [&](size_t begin, size_t end) {
     for (size_t row = begin; row < end; ++row) {
       const size_t from = row % count[1] * stride[1] + row / count[1] * stride[2];
       for (size_t i = 0; i < count[0]; ++i) std::memcpy(out + (row * count[0] + i) * size, a.raw() + (from + i * stride[0]) * size, size);

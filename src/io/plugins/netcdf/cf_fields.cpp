@@ -9,7 +9,7 @@ namespace sg::nc {
 
 namespace {
 
-constexpr size_t grain = 1 << 16;
+constexpr size_t numbers_per_chunk = 1 << 16;
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 
 struct Coding {
@@ -44,7 +44,7 @@ Array decode(const View<T>& in, const Coding& c) {
       missing.push_back(T(m));
   Out* out = nullptr;
   Array r = Array::make<Out>(in.count, 1, &out);
-  parallel_for(in.count, grain, [&](size_t begin, size_t end) {
+  parallel_for(in.count, numbers_per_chunk, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const T v = in[i];
       bool good = double(v) >= c.lo && double(v) <= c.hi;

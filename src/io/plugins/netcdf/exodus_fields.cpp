@@ -14,7 +14,7 @@ namespace sg::nc {
 
 namespace {
 
-constexpr size_t grain = 1 << 15;
+constexpr size_t nodes_per_chunk = 1 << 15;
 
 /// Rows `nodes` of an array.
 Array gathered(const Array& all, const std::vector<int64_t>& nodes) {
@@ -22,7 +22,7 @@ Array gathered(const Array& all, const std::vector<int64_t>& nodes) {
   Array r = Array::make_raw(all.type(), nodes.size(), all.components(), &out);
   const size_t row = size_t(all.components()) * element_size(all.type());
   const std::byte* from = all.raw();
-  parallel_for(nodes.size(), grain, [&](size_t begin, size_t end) {
+  parallel_for(nodes.size(), nodes_per_chunk, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) std::memcpy(out + i * row, from + size_t(nodes[i]) * row, row);
   });
   return r;
@@ -67,7 +67,7 @@ Array ExodusMesh::grouped(const std::vector<Array>& members) const {
   if (options_.header_only) return unread_values(ElementType::f64, n, int(width));
   double* out = nullptr;
   Array r = Array::make<double>(n, int(width), &out);
-  parallel_for(n, grain, [&](size_t begin, size_t end) {
+  parallel_for(n, nodes_per_chunk, [&](size_t begin, size_t end) {
     for (size_t c = 0; c < width; ++c) {
       const double* from = c < members.size() ? members[c].view<double>().data : nullptr;
       for (size_t i = begin; i < end; ++i) out[i * width + c] = from ? from[i] : 0;
@@ -166,7 +166,7 @@ Points ExodusMesh::points_of(const std::vector<int64_t>* nodes) {
   const size_t n = nodes ? nodes->size() : nodes_;
   const auto fill = [&](auto* out) {
     using T = std::remove_pointer_t<decltype(out)>;
-    parallel_for(n, grain, [&](size_t begin, size_t end) {
+    parallel_for(n, nodes_per_chunk, [&](size_t begin, size_t end) {
       for (size_t a = 0; a < 3; ++a) {
         const T* from = axes_[a].count() == nodes_ && nodes_ > 0 ? axes_[a].view<T>().data : nullptr;
         for (size_t i = begin; i < end; ++i) out[3 * i + a] = from ? from[nodes ? size_t((*nodes)[i]) : i] : T(0);

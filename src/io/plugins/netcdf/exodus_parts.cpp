@@ -12,7 +12,7 @@ namespace sg::nc {
 
 namespace {
 
-constexpr size_t grain = 1 << 15;
+constexpr size_t elements_per_chunk = 1 << 15;
 
 }  // namespace
 
@@ -73,7 +73,7 @@ template <class T>
 void ordered_cells(const T* from, size_t elements, size_t per, std::span<const uint8_t> order, std::vector<int64_t>& out) {
   const size_t n = order.size();
   out.resize(elements * n);
-  parallel_for(elements, grain, [&](size_t begin, size_t end) {
+  parallel_for(elements, elements_per_chunk, [&](size_t begin, size_t end) {
     for (size_t e = begin; e < end; ++e)
       for (size_t k = 0; k < n; ++k) out[e * n + k] = zero_based(from[e * per + order[k]]);
   });
@@ -206,7 +206,7 @@ DatasetPtr ExodusMesh::finish(UnstructuredMesh mesh, std::vector<int64_t> ids, F
     int32_t* narrow = nullptr;
     int64_t* wide = nullptr;
     Array a = nodes_ <= size_t(INT32_MAX) ? Array::make<int32_t>(n, 1, &narrow) : Array::make<int64_t>(n, 1, &wide);
-    parallel_for(n, grain, [&](size_t begin, size_t end) {
+    parallel_for(n, elements_per_chunk, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         int64_t id = from[i];
         if (used) id = place.empty() ? std::lower_bound(used->begin(), used->end(), id) - used->begin() : place[size_t(id)];

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/parallel.h"
+#include "base/text/text.h"
 #include "base/text/utf8.h"
 #include "io/vtk/vtk_numbers.h"
 
@@ -19,6 +20,14 @@ constexpr uint64_t alignment = 64;
 constexpr size_t header_bytes = 8;  // header_type UInt64
 
 }  // namespace
+
+std::string attributes_text(const XmlAttributes& attributes) {
+  std::string r;
+  for (const auto& [name, value] : attributes) r += fmt::format(" {}=\"{}\"", name, escaped_xml(value));
+  return r;
+}
+
+std::string point_text(Vec3 v) { return fmt::format("{} {} {}", exact_number(v.x), exact_number(v.y), exact_number(v.z)); }
 
 std::string escaped_xml(std::string_view s) {
   // Bytes that are not UTF-8 can only be Latin-1; control characters other than tab and line ends are not allowed in XML 1.0, not even as

@@ -15,6 +15,11 @@ namespace sg::vtk {
 /// Attributes in order; values are escaped.
 using XmlAttributes = std::vector<std::pair<std::string_view, std::string>>;
 
+/// As they follow the name of an element.
+std::string attributes_text(const XmlAttributes& attributes);
+/// Three exact numbers.
+std::string point_text(Vec3 v);
+
 /// With the characters reserved by XML escaped.
 std::string escaped_xml(std::string_view text);
 

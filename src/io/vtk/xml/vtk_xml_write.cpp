@@ -114,7 +114,7 @@ constexpr struct {
   const char* element;
   const char* count;
   CellArray SurfaceMesh::*list;
-} surface_lists[] = {{"Verts", "NumberOfVerts", &SurfaceMesh::vertices},
+} written_lists[] = {{"Verts", "NumberOfVerts", &SurfaceMesh::vertices},
                      {"Lines", "NumberOfLines", &SurfaceMesh::lines},
                      {"Strips", "NumberOfStrips", &SurfaceMesh::strips},
                      {"Polys", "NumberOfPolys", &SurfaceMesh::polygons}};
@@ -268,7 +268,7 @@ void write_dataset(const std::string& path, const Dataset& d, const WriteOptions
   Header h = surface ? Header{} : header_of(d, cells.cells.size(), place);
   if (surface) {
     h.piece.emplace_back("NumberOfPoints", std::to_string(d.point_count()));
-    for (const auto& kind : surface_lists) h.piece.emplace_back(kind.count, std::to_string((lists.*kind.list).size()));
+    for (const auto& kind : written_lists) h.piece.emplace_back(kind.count, std::to_string((lists.*kind.list).size()));
   }
   xml.begin("VTKFile",
             {{"type", std::string(element->second)}, {"version", "1.0"}, {"byte_order", "LittleEndian"}, {"header_type", "UInt64"}});
@@ -279,7 +279,7 @@ void write_dataset(const std::string& path, const Dataset& d, const WriteOptions
   write_fields(xml, d, Association::cell, d.cell_ghost());
   if (surface) {
     write_points(xml, lists.points);
-    for (const auto& kind : surface_lists) {
+    for (const auto& kind : written_lists) {
       xml.begin(kind.element);
       write_cell_list(xml, lists.*kind.list);
       xml.end();

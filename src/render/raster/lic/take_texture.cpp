@@ -14,14 +14,14 @@ namespace raster {
 
 namespace {
 
-constexpr size_t grain = 1 << 15;
+constexpr size_t numbers_per_chunk = 1 << 15;
 
 Array packed_vectors(const Field& f) {
   if (f.components() == 3 && f.array.type() == ElementType::f32 && f.array.packed()) return f.array;
   float* out = nullptr;
   Array a = Array::make<float>(f.array.count(), 3, &out);
   dispatch(f.array, [&](auto v) {
-    parallel_for(v.count, grain, [&](size_t begin, size_t end) {
+    parallel_for(v.count, numbers_per_chunk, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i)
         for (int c = 0; c < 3; ++c) out[3 * i + size_t(c)] = c < f.components() ? float(v(i, c)) : 0.0f;
     });
@@ -33,7 +33,7 @@ Array packed_vectors(const Field& f) {
 float largest_of(const Array& a) {
   const View<float> v = a.view<float>();
   return parallel_reduce<float>(
-      v.count, grain, 0.0f,
+      v.count, numbers_per_chunk, 0.0f,
       [&](size_t begin, size_t end) {
         float most = 0;
         for (size_t i = begin; i < end; ++i)

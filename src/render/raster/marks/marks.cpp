@@ -12,7 +12,7 @@ namespace sg::raster {
 
 namespace {
 
-constexpr size_t grain = 1 << 13;
+constexpr size_t marks_per_chunk = 1 << 13;
 
 Vec3 eye_point(const PreparedItem& item, const Projection& p, uint32_t i) {
   const float* q = reinterpret_cast<const float*>(item.positions.raw()) + 3 * size_t(i);
@@ -72,13 +72,13 @@ PixelBox mark_box(const MarkRecord& m, int width, int height) {
 }
 
 std::vector<MarkRecord> mark_records(const PreparedItem& item, uint32_t number, const Projection& projection, double pixel_scale) {
-  const size_t n = item.primitives, chunks = (n + grain - 1) / grain;
+  const size_t n = item.primitives, chunks = (n + marks_per_chunk - 1) / marks_per_chunk;
   std::vector<std::vector<MarkRecord>> parts(chunks);
-  parallel_for(n, grain, [&](size_t begin, size_t end) {
+  parallel_for(n, marks_per_chunk, [&](size_t begin, size_t end) {
     MarkRecord m;
     m.half = float(0.5 * item.width * pixel_scale), m.halo = float(item.halo * pixel_scale), m.item = number;
     for (size_t i = begin; i < end; ++i)
-      if (make_record(item, projection, i, m)) parts[begin / grain].push_back(m);
+      if (make_record(item, projection, i, m)) parts[begin / marks_per_chunk].push_back(m);
   });
   std::vector<MarkRecord> all;
   for (const auto& p : parts) all.insert(all.end(), p.begin(), p.end());

@@ -2,11 +2,13 @@
 #include "render/volume/methods/footprint.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace sg::volume {
 
 KernelTable::KernelTable() {
-  constexpr double pi = 3.14159265358979323846, reach = kernel_reach, square = reach * reach;
+  using std::numbers::pi;
+  constexpr double reach = kernel_reach, square = reach * reach;
   const double edge = exp_negative(0.5 * square);
   per_e_ = float(count / square), per_z_ = float(count / (2 * reach));
   across_.resize(count + 2), before_.resize(count + 2);

@@ -13,7 +13,7 @@ namespace {
 
 using Four = float __attribute__((vector_size(16)));
 
-struct Job {
+struct WarpJob {
   const Stage& stage;
   const Factors& factors;
   const EncodedVolume* encoded = nullptr;  // composite
@@ -31,7 +31,7 @@ struct Limit {
 /// A few rows of the intermediate picture.
 class Rows {
  public:
-  Rows(const Job& job, int v0, int v1) : j_(job), f_(job.factors), s_(job.stage), v0_(v0), v1_(v1) {
+  Rows(const WarpJob& job, int v0, int v1) : j_(job), f_(job.factors), s_(job.stage), v0_(v0), v1_(v1) {
     const size_t n = size_t(f_.width) * size_t(v1 - v0);
     sums_.resize(n);
     ni_ = s_.volume.voxels.dims[size_t(f_.axes.i)], nj_ = s_.volume.voxels.dims[size_t(f_.axes.j)];
@@ -284,7 +284,7 @@ class Rows {
     return table[size_t(i)] + (at - float(i)) * (table[size_t(i) + 1] - table[size_t(i)]);
   }
 
-  const Job& j_;
+  const WarpJob& j_;
   const Factors& f_;
   const Stage& s_;
   int v0_, v1_;
@@ -309,9 +309,9 @@ bool cut_by_surfaces(const Stage& s) {
 }
 
 /// Tables of the view: colour and alpha of the entries, light by direction, lengths.
-Job make_job(const Stage& s, const Factors& f) {
+WarpJob make_job(const Stage& s, const Factors& f) {
   const Volume& v = s.volume;
-  Job job{s, f, nullptr, {}, {}, 1, cut_by_surfaces(s)};
+  WarpJob job{s, f, nullptr, {}, {}, 1, cut_by_surfaces(s)};
   const Vec3 centre = (v.lo + v.hi) * 0.5, along = v.to_q * s.sight(s.world(centre));
   job.length = 1 / std::abs(along[f.axes.k]);
   if (s.item.mode != RayFunction::composite) return job;
@@ -367,7 +367,7 @@ void each_ray(const Stage& s, const Factors& f, Layer& layer, F&& draw) {
       &s.context);
 }
 
-void draw_composite(const Job& job, const Factors& f, Layer& layer) {
+void draw_composite(const WarpJob& job, const Factors& f, Layer& layer) {
   std::vector<Gathered> picture(size_t(f.width) * size_t(f.height));
   parallel_for(
       size_t(f.height), 16,
@@ -386,7 +386,7 @@ void draw_composite(const Job& job, const Factors& f, Layer& layer) {
   });
 }
 
-void draw_extremes(const Job& job, const Factors& f, Layer& layer) {
+void draw_extremes(const WarpJob& job, const Factors& f, Layer& layer) {
   std::vector<float> best(size_t(f.width) * size_t(f.height), NAN);
   parallel_for(
       size_t(f.height), 16, [&](size_t begin, size_t end) { Rows(job, int(begin), int(end)).extremes(best); }, &job.stage.context);
@@ -408,7 +408,7 @@ Layer shear_warp(const LayerInput& input, const ShearWarpOptions& options) {
   layer.rgba.assign(4 * stage.pixels(), 0.0f);
   if (stage.empty) return layer;
   const Factors factors = factorise(stage, options);
-  Job job = make_job(stage, factors);
+  WarpJob job = make_job(stage, factors);
   if (input.item.mode != RayFunction::composite) {
     draw_extremes(job, factors, layer);
     return layer;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/core.h>
 
@@ -15,7 +16,7 @@ namespace sg::volume {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 constexpr size_t lanes = 4;  // series that are transformed at once
 using Lanes = float __attribute__((vector_size(16)));
 

@@ -14,7 +14,7 @@ namespace {
 constexpr int most_cuts = 14;
 /// Optical depth from which on a part is cut whatever its samples say, times the light that it takes; and from which on samples may all lie
 /// behind what is seen, so that they agree on nothing.
-constexpr double deep = 1, solid = 8;
+constexpr double most_depth = 1, blind_depth = 8;
 
 /// Gauss's three places in [0, 1], their weights, and those of the integral from 0 to each place of the parabola through all three
 /// (collocation: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, II.7).
@@ -178,8 +178,8 @@ class JointPart {
       const double allowed = tolerance_ * (0.25 * (to - from) / joint_[0].look->budget.length + 0.25 * pass * taken);
       // Nine places tell little of what depends on more than the value.
       const bool few = detailed_ && cuts < 3;
-      const bool hidden = both.depth > solid && pass > 0.1 * tolerance_;
-      if (few || hidden || pass * difference(one, both) > (detailed_ ? 0.3 : 1.0) * allowed || pass * taken * both.depth > deep ||
+      const bool hidden = both.depth > blind_depth && pass > 0.1 * tolerance_;
+      if (few || hidden || pass * difference(one, both) > (detailed_ ? 0.3 : 1.0) * allowed || pass * taken * both.depth > most_depth ||
           (detailed_ && overlook(from, to))) {
         part(from, middle, first, cuts + 1);
         if (state_.sum.transmittance < stop_) return;

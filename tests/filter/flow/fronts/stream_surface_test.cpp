@@ -5,6 +5,7 @@
 #include <cstring>
 #include <functional>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include "base/parallel.h"
@@ -16,7 +17,7 @@ using namespace sg;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 // In [-1,1]^3, n points a side.
 template <class F>

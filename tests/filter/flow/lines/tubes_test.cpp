@@ -2,6 +2,7 @@
 #include "filter/flow/lines/tubes.h"
 
 #include <cstring>
+#include <numbers>
 
 #include "base/parallel.h"
 #include "filter/flow/lines/line_frames.h"
@@ -12,7 +13,7 @@ using namespace sg;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 // One poly-line with a point field "size" from 0 to 1 along it and a cell field.
 DatasetPtr line_of(const std::vector<Vec3>& at, bool closed = false) {

@@ -2,6 +2,7 @@
 // LIC in object space: statistics (F9), circles, latitudes, seams, and what is refused.
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "base/parallel.h"
 #include "base/random.h"
@@ -13,7 +14,7 @@ using namespace sg;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 using Flow = std::function<Vec3(Vec3)>;
 
 DatasetPtr triangles(const std::vector<Vec3>& points, std::vector<int32_t> corners, const Flow& flow, Association on = Association::point) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/topology/closed_orbits.h"
 
+#include <numbers>
+
 #include "base/parallel.h"
 #include "filter/flow/topology/topology_support.h"
 #include "support/test.h"
@@ -10,7 +12,7 @@ using namespace sg::test::topology;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 // Balthasar van der Pol's oscillator of strength 1: a cycle of amplitude 2.00862 and period 6.66329 about a source.
 Vec3 van_der_pol(Vec3 x) { return {x.y, (1 - x.x * x.x) * x.y - x.x, 0}; }

@@ -2,6 +2,8 @@
 // Periodic orbits about holes and about several critical points.
 #include "filter/flow/topology/closed_orbits.h"
 
+#include <numbers>
+
 #include "filter/flow/topology/topology.h"
 #include "filter/flow/topology/topology_support.h"
 #include "support/test.h"
@@ -11,7 +13,7 @@ using namespace sg::test::topology;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// r' = r g(r), angle' = 1.
 template <class G>

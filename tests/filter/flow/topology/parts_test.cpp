@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Topology across blocks, levels and ghost cells.
 #include "base/parallel.h"
+
+#include <numbers>
 #include "data/cells/cell_reader.h"
 #include "filter/flow/flow_meshes.h"
 #include "filter/flow/topology/topology.h"
@@ -12,7 +14,7 @@ using namespace sg::test::topology;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 Data collection_of(std::vector<DatasetPtr> parts) {
   auto c = std::make_shared<Collection>();

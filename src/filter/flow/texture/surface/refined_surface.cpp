@@ -17,7 +17,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t grain = 1 << 14;
+constexpr size_t triangles_per_chunk = 1 << 14;
 using Triangle = std::array<uint32_t, 3>;
 
 struct Work {
@@ -123,7 +123,7 @@ std::vector<std::array<int32_t, 3>> neighbors(const std::vector<Triangle>& trian
     uint32_t place;  // 3 * triangle + the corner opposite
   };
   std::vector<Side> sides(3 * triangles.size());
-  parallel_for(triangles.size(), grain, [&](size_t begin, size_t end) {
+  parallel_for(triangles.size(), triangles_per_chunk, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       for (size_t k = 0; k < 3; ++k) {
         const uint32_t a = triangles[i][(k + 1) % 3], b = triangles[i][(k + 2) % 3];
@@ -149,7 +149,7 @@ Work start(const DatasetPtr& surface, Vec3 origin) {
   Work w;
   const Triangles t = triangles_of(mesh);
   w.points.resize(mesh.points.count());
-  parallel_for(w.points.size(), grain, [&](size_t begin, size_t end) {
+  parallel_for(w.points.size(), triangles_per_chunk, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) w.points[i] = mesh.points.at(i) - origin;
   });
   for (size_t i = 0; i < t.count(); ++i) {

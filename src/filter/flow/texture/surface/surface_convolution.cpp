@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -16,7 +17,7 @@ namespace sg {
 namespace {
 
 constexpr double most_edges_a_step = 32;
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// Weights of the samples, and the standard deviation of their mean when a line has `back` and `forward` of them.
 class Kernel {

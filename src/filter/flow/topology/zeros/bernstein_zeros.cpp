@@ -9,7 +9,6 @@ namespace sg {
 
 namespace {
 
-constexpr double border = 1e-9;        // zeros that far outside still count: the neighbour may miss them by rounding
 constexpr double same = 1e-8;          // zeros of one cell that are one
 constexpr double smallest_box = 1e-7;  // nothing is decided in a box of that size: a multiple zero
 constexpr double noise = 1e-14;        // rounding of coefficients, of the largest of them
@@ -241,7 +240,7 @@ bool BernsteinZeros::polish(Vec3& u) const {
 }
 
 void BernsteinZeros::add(Vec3 u, ZeroDomain domain, std::vector<Vec3>& zeros, size_t first) const {
-  if (outside_of(domain, dimension_, u) > border) return;
+  if (outside_of(domain, dimension_, u) > zero_margin) return;
   for (size_t i = first; i < zeros.size(); ++i)
     if (length(zeros[i] - u) < same) return;
   zeros.push_back(u);
@@ -255,7 +254,7 @@ bool BernsteinZeros::solve(ZeroDomain domain, std::vector<Vec3>& zeros, std::spa
   }
   // One equation that always holds leaves lines of zeros, or no zero at all.
   Box all;
-  for (int a = 0; a < dimension_; ++a) all.lo[a] = -border, all.hi[a] = 1 + border;
+  for (int a = 0; a < dimension_; ++a) all.lo[a] = -zero_margin, all.hi[a] = 1 + zero_margin;
   for (int c = 0; c < dimension_; ++c)
     if (!(largest_[size_t(c)] > 0)) {
       part_ = c_;
@@ -267,7 +266,7 @@ bool BernsteinZeros::solve(ZeroDomain domain, std::vector<Vec3>& zeros, std::spa
   while (!stack_.empty()) {
     Box box = stack_.back();
     stack_.pop_back();
-    if (domain != ZeroDomain::box && box.lo.x + box.lo.y + (domain == ZeroDomain::simplex && dimension_ == 3 ? box.lo.z : 0) > 1 + border)
+    if (domain != ZeroDomain::box && box.lo.x + box.lo.y + (domain == ZeroDomain::simplex && dimension_ == 3 ? box.lo.z : 0) > 1 + zero_margin)
       continue;
     if (--left < 0) {
       isolated = false;
@@ -282,7 +281,7 @@ bool BernsteinZeros::solve(ZeroDomain domain, std::vector<Vec3>& zeros, std::spa
       bool good = polish(u);
       double width = 0;
       for (int a = 0; a < dimension_; ++a) {
-        good = good && u[a] > box.lo[a] - border && u[a] < box.hi[a] + border;
+        good = good && u[a] > box.lo[a] - zero_margin && u[a] < box.hi[a] + zero_margin;
         width = std::max(width, box.hi[a] - box.lo[a]);
       }
       if (!good && width > 1e-10) stack_.push_back(box);  // Newton's method went elsewhere
@@ -305,7 +304,7 @@ bool BernsteinZeros::solve(ZeroDomain domain, std::vector<Vec3>& zeros, std::spa
       const Vec3 middle = 0.5 * (box.lo + box.hi);
       bool near = false;
       for (size_t i = first; i < zeros.size(); ++i) near = near || length(zeros[i] - middle) < 1e-5;
-      if (!near && outside_of(domain, dimension_, middle) <= border) zeros.push_back(middle);
+      if (!near && outside_of(domain, dimension_, middle) <= zero_margin) zeros.push_back(middle);
       continue;
     }
     Box upper = box;

@@ -13,6 +13,9 @@ namespace sg {
 /// Where zeros count: [0,1]^d, or the part of it with x+y(+z) <= 1, or the prism x+y <= 1.
 enum class ZeroDomain : uint8_t { box, simplex, prism };
 
+/// Zeros that far outside still count: the neighbour may miss them by rounding.
+constexpr double zero_margin = 1e-9;
+
 /// As many polynomials as variables, each of one degree in every variable, by Bernstein coefficients (of degree 1: the corners' values).
 /// A box is left out when the coefficients there have one sign, with the components as they are or after multiplication with the inverse
 /// of the mean gradient; it holds one zero at most when the gradients differ by less than 1 from the mean one (then Krawczyk's operator
@@ -25,7 +28,7 @@ class BernsteinZeros {
   size_t size() const { return size_; }  ///< (degree + 1)^dimension coefficients, x fastest
   std::span<double> coefficients(int component) { return std::span(c_).subspan(size_t(component) * size_, size_); }
 
-  /// Appends the zeros in the domain, or within 1e-9 of it; accurate to 1e-12 where the gradient is regular. `known`: segments on
+  /// Appends the zeros in the domain, or within zero_margin of it; accurate to 1e-12 where the gradient is regular. `known`: segments on
   /// which all components vanish; what lies about them is not searched below 1/32. False when zeros are not isolated (more boxes than
   /// isolated ones need); what was found until then has been appended.
   bool solve(ZeroDomain domain, std::vector<Vec3>& zeros, std::span<const std::array<Vec3, 2>> known = {});

@@ -7,13 +7,6 @@
 
 namespace sg {
 
-namespace {
-
-constexpr double border = 1e-9;     // zeros that far out are in the cell: neighbours may both miss them by rounding
-constexpr double on_border = 1e-6;  // zeros that near to the border may be another cell's too
-
-}  // namespace
-
 CellZeros::CellZeros(const FlowField& flow, const PlaneFrame* frame, double min_speed)
     : flow_(flow), frame_(frame), min_speed_(min_speed), map_(flow.dataset()) {}
 CellZeros::~CellZeros() = default;
@@ -93,7 +86,7 @@ void CellZeros::add(Vec3 rst, double outside, std::vector<CellZero>& out) {
   CellZero z;
   z.rst = rst;
   z.at = map_.position(rst);
-  z.border = outside > -on_border;
+  z.border = outside > -CellZero::on_border;
   Box3 box;
   for (const Vec3 p : map_.reader().at()) box.add(p);
   z.size = box.diagonal();
@@ -122,7 +115,7 @@ CellZeros::Result CellZeros::find_linear(std::vector<CellZero>& out) {
     const double det = b.x * c.y - b.y * c.x;
     if (!(std::abs(det) > 1e-14 * length(b) * length(c))) return Result::none;  // parallel: lines of zeros, or none
     const double r = (-a.x * c.y + a.y * c.x) / det, s = (-b.x * a.y + b.y * a.x) / det, outside = std::max({-r, -s, r + s - 1});
-    if (!(outside <= border)) return Result::none;
+    if (!(outside <= zero_margin)) return Result::none;
     add({r, s, 0}, outside, out);
     return Result::isolated;
   }
@@ -131,7 +124,7 @@ CellZeros::Result CellZeros::find_linear(std::vector<CellZero>& out) {
   if (!(std::abs(det) > 1e-14 * length(b) * length(c) * length(d))) return Result::none;
   const Vec3 rst(-dot(a, cd) / det, -dot(b, cross(a, d)) / det, -dot(b, cross(c, a)) / det);
   const double outside = std::max({-rst.x, -rst.y, -rst.z, rst.x + rst.y + rst.z - 1});
-  if (!(outside <= border)) return Result::none;
+  if (!(outside <= zero_margin)) return Result::none;
   add(rst, outside, out);
   return Result::isolated;
 }
@@ -181,7 +174,7 @@ CellZeros::Result CellZeros::find_bilinear(std::vector<CellZero>& out) {
     }
     if (swapped) std::swap(u.x, u.y);
     const double outside = std::max({-u.x, -u.y, u.x - 1, u.y - 1});
-    if (outside <= border) add(u, outside, out);
+    if (outside <= zero_margin) add(u, outside, out);
   }
   return out.size() > before ? Result::isolated : Result::none;
 }
@@ -215,7 +208,7 @@ CellZeros::Result CellZeros::find_strip(std::vector<CellZero>& out) {
     const double det = b.x * c.y - b.y * c.x;
     if (!(std::abs(det) > 1e-14 * length(b) * length(c))) continue;
     const double r = (-a.x * c.y + a.y * c.x) / det, s = (-b.x * a.y + b.y * a.x) / det;
-    if (!(std::max({-r, -s, r + s - 1}) <= border)) continue;
+    if (!(std::max({-r, -s, r + s - 1}) <= zero_margin)) continue;
     CellZero z;
     const Vec3 u = at[k + 1] - at[k], w = at[k + 2] - at[k], normal = cross(u, w);
     const double area2 = dot(normal, normal);

@@ -12,12 +12,14 @@
 namespace sg {
 
 struct CellZero {
+  static constexpr double on_border = 1e-6;  ///< zeros that near to the border may be another cell's too
+
   Vec3 rst;             ///< reference coordinates; polygons and polyhedra: unused
   Vec3 at;              ///< place
   Mat3 gradient;        ///< m[i][j] = dv_i/dx_j
   double size = 0;      ///< of the cell: diagonal of the box of its nodes
   double speed = 0;     ///< largest at the cell's points
-  bool border = false;  ///< on the cell's border (to 1e-6), where other cells may find it too
+  bool border = false;  ///< on the cell's border (to on_border), where other cells may find it too
   int64_t node = -1;    ///< the mesh point whose velocity is exactly zero, where the zero is one
 };
 

@@ -8,12 +8,6 @@
 
 namespace sg {
 
-namespace {
-
-constexpr double on_border = 1e-6;  // zeros that near to the border may be another cell's too
-
-}  // namespace
-
 // Sides of polygons and faces of polyhedra whose ends both are zero: lines of zeros.
 bool CellZeros::zero_sides(Result& result) {
   CellReader reader = map_.reader();
@@ -150,7 +144,7 @@ void CellZeros::add_sampled(Vec3 x, size_t before, std::vector<CellZero>& out) {
   Mat3 g;
   CellPlace place;
   if (!newton_from(x, z.at, g) || !map_.locate(z.at, place, 1e-7)) return;
-  z.border = place.outside > -on_border || frame_;
+  z.border = place.outside > -CellZero::on_border || frame_;
   // Rows back from the frame: dv/dx = sum of axis_i g_ij axis_j.
   z.gradient = g;
   if (frame_) {

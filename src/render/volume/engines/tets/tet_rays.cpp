@@ -9,7 +9,7 @@ namespace sg::volume {
 
 namespace {
 
-constexpr int slices = 2048;
+constexpr int slice_count = 2048;
 constexpr int block = 4;  // pixels of a packet along each side
 static_assert(block * block == TetPacket::lanes);
 
@@ -103,12 +103,12 @@ TetMedium::TetMedium(const Medium& medium, const Range& range, float tolerance) 
   long_moments = long_moments || long_sums;
 
   // Slice 0 lies below, the last one above, those between have equal width.
-  slice_lo = lo, per_slice = hi > lo ? float(slices) / (hi - lo) : 0;
+  slice_lo = lo, per_slice = hi > lo ? float(slice_count) / (hi - lo) : 0;
   if (!std::isfinite(per_slice)) per_slice = 0;
-  const size_t count = slices + 2;
+  const size_t count = slice_count + 2;
   first.assign(count, 0);
   std::vector<uint8_t> lit(count);
-  const double width = (double(hi) - double(lo)) / slices;
+  const double width = (double(hi) - double(lo)) / slice_count;
   for (size_t s = 0, i = 0; s < count; ++s) {
     const double begin = s < 2 ? -1e30 : double(lo) + (double(s) - 2) * width;
     while (i + 1 < intervals.size() && double(intervals[i].hi) <= begin) ++i;

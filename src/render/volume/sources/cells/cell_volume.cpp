@@ -19,13 +19,13 @@ namespace sg::volume {
 namespace {
 
 constexpr double straight_enough = 1.0 / 512;  // of the mesh's size
-constexpr int most_halvings = 5;
+constexpr int most_levels = 5;
 constexpr size_t most_parts = 1'000'000;
 
 /// How many cells tessellate() makes of the mesh at a level, and how many of the cells are curved.
 struct Parts {
   size_t curved = 0;
-  std::array<size_t, most_halvings + 1> at_level{};
+  std::array<size_t, most_levels + 1> at_level{};
 };
 Parts count_parts(const UnstructuredMesh& mesh) {
   size_t straight = 0, pyramids = 0, others = 0;
@@ -47,7 +47,7 @@ Parts count_parts(const UnstructuredMesh& mesh) {
 DatasetPtr divided(const DatasetPtr& data, const Parts& parts, Context& context) {
   TessellateParams p;
   p.tolerance = straight_enough, p.max_level = 0;
-  while (p.max_level < most_halvings && parts.at_level[size_t(p.max_level) + 1] <= most_parts) ++p.max_level;
+  while (p.max_level < most_levels && parts.at_level[size_t(p.max_level) + 1] <= most_parts) ++p.max_level;
   DatasetParts shape = data->parts();
   shape.fields = {};
   const DatasetPtr shapes = tessellate(make_dataset(std::move(shape)), p, context);

@@ -12,7 +12,7 @@ namespace sg::volume {
 
 namespace {
 
-constexpr size_t grain = 4096;
+constexpr size_t tets_per_chunk = 4096;
 constexpr uint32_t middle_bit = 0x80000000u;  // vertex is the middle of a polyhedron, numbered in its chunk
 constexpr size_t most_tets = size_t(1) << 29, most_points = size_t(1) << 30;
 
@@ -150,12 +150,12 @@ class Cutter {
 std::vector<Part> cut_cells(const DatasetPtr& dataset, const std::function<bool(const CellReader&)>& draws, Context& context) {
   const CellReader shared(dataset);
   const size_t n = dataset->cell_count();
-  std::vector<Part> parts((n + grain - 1) / grain);
+  std::vector<Part> parts((n + tets_per_chunk - 1) / tets_per_chunk);
   parallel_for(
-      n, grain,
+      n, tets_per_chunk,
       [&](size_t begin, size_t end) {
         CellReader reader = shared;
-        Part& part = parts[begin / grain];
+        Part& part = parts[begin / tets_per_chunk];
         Cutter cutter(reader, part);
         for (size_t c = begin; c < end; ++c) {
           reader.open(c);
@@ -228,11 +228,11 @@ void link(TetMesh& mesh, Context& context) {
   tets.single_type = CellType::tetra;
   const CellNeighbors across = cell_neighbors(tets, &context);
   const std::array<int, 4> opposite = opposite_corners();
-  std::vector<std::vector<TetMesh::Face>> faces((n + grain - 1) / grain);
+  std::vector<std::vector<TetMesh::Face>> faces((n + tets_per_chunk - 1) / tets_per_chunk);
   parallel_for(
-      n, grain,
+      n, tets_per_chunk,
       [&](size_t begin, size_t end) {
-        auto& open = faces[begin / grain];
+        auto& open = faces[begin / tets_per_chunk];
         for (size_t t = begin; t < end; ++t) {
           const Tet& v = mesh.corners[t];
           TetLink& l = mesh.links[t];

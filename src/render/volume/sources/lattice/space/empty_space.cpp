@@ -13,7 +13,7 @@ namespace sg::volume {
 
 namespace {
 
-constexpr int farthest = (1 << distance_planes) - 1;
+static_assert(farthest_told == (1 << distance_planes) - 1);
 constexpr size_t rows_at_once = 256, words_at_once = 512 * widen_words;
 
 /// One bit per brick. Behind each row at least one bit is zero, between two layers a row, and around them all whatever is near.
@@ -125,7 +125,7 @@ Distances distance_to_drawn(const FineBricks& bricks, const Transfer& transfer, 
 
   // Level by level the bricks around those that were reached, until all are. The level of a brick goes to planes, a bit each.
   std::vector<uint64_t> levels(distance_planes * lattice.words);
-  for (int level = 1; level < farthest && any_empty; ++level) {
+  for (int level = 1; level < farthest_told && any_empty; ++level) {
     uint64_t* planes[distance_planes];
     int count = 0;
     for (int k = 0; k < distance_planes; ++k)
@@ -142,7 +142,7 @@ Distances distance_to_drawn(const FineBricks& bricks, const Transfer& transfer, 
 
   Distances distance;
   distance.resize(bricks.size() + 3);
-  std::fill(distance.end() - 3, distance.end(), uint8_t(farthest));
+  std::fill(distance.end() - 3, distance.end(), farthest_told);
   parallel_for(rows, rows_at_once, [&](size_t begin, size_t end) {
     for (size_t r = begin; r < end; ++r) {
       const size_t at = lattice.at(r);

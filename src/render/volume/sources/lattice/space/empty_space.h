@@ -26,8 +26,11 @@ MinMaxBricks coarse_bricks(const FineBricks& fine);
 /// One byte per fine brick; the block is reused for the next transfer function.
 using Distances = Plane<uint8_t>;
 
+/// The longest distance in bricks that is told.
+constexpr uint8_t farthest_told = 15;
+
 /// For each fine brick the Chebyshev distance in bricks to the nearest one that may draw something: 0 for those themselves; d > 0 says
-/// that all bricks nearer than d are empty. At most 15. Three bytes follow the last one, so that each can be read as a word.
+/// that all bricks nearer than d are empty. At most farthest_told. Three bytes follow the last one, so that each can be read as a word.
 Distances distance_to_drawn(const FineBricks& bricks, const Transfer& transfer, bool& any_empty);
 
 }  // namespace sg::volume

@@ -10,7 +10,6 @@ namespace sg::volume {
 
 namespace {
 
-constexpr uint8_t farthest = 15;
 /// Behind both ends of a row: the cubes go on there.
 constexpr size_t beyond = 16;
 
@@ -19,7 +18,7 @@ constexpr size_t beyond = 16;
 class Octant {
  public:
   Octant(const uint8_t* distance, const std::array<size_t, 3>& dims, const std::array<bool, 3>& up, uint8_t* out)
-      : distance_(distance), n_(dims), up_(up), out_(out), row_(dims[0] + 2 * beyond, farthest), next_(row_) {}
+      : distance_(distance), n_(dims), up_(up), out_(out), row_(dims[0] + 2 * beyond, farthest_told), next_(row_) {}
 
   void find() {
     for (size_t k = 0; k < n_[2]; ++k)
@@ -32,7 +31,7 @@ class Octant {
   void find_row(size_t j, size_t k, bool any_j, bool any_k) {
     const size_t nx = n_[0], j1 = up_[1] ? j + 1 : j - 1, k1 = up_[2] ? k + 1 : k - 1;
     uint8_t *own = row(j, k), *a = row_.data() + beyond, *b = next_.data() + beyond;
-    std::fill_n(a, nx, farthest);
+    std::fill_n(a, nx, farthest_told);
     const auto nearer = [nx, a](const uint8_t* from) {
       for (size_t i = 0; i < nx; ++i) a[i] = std::min(a[i], from[i]);
     };
@@ -43,10 +42,10 @@ class Octant {
     ptrdiff_t on = up_[0] ? 1 : -1;
     for (size_t i = 0; i < nx; ++i) {
       const uint8_t least = std::min(a[i], a[ptrdiff_t(i) + on]);
-      b[i] = drawn[i] == 0 ? 0 : uint8_t(std::min<int>(least + 1, farthest));
+      b[i] = drawn[i] == 0 ? 0 : uint8_t(std::min<int>(least + 1, farthest_told));
     }
     // The next brick of the row itself: as from any further one, and so much longer.
-    for (int s = 1; s < farthest; s *= 2, on *= 2) {
+    for (int s = 1; s < farthest_told; s *= 2, on *= 2) {
       std::swap(a, b);
       for (size_t i = 0; i < nx; ++i) b[i] = std::min(a[i], uint8_t(a[ptrdiff_t(i) + on] + s));
     }
@@ -94,7 +93,7 @@ SpaceAhead::SpaceAhead(const Distances& distance, const std::array<size_t, 3>& d
   if (distance.size() != n + 3) fail_internal("space ahead: expected the distances of all bricks");
   if (octants * n >= size_t(1) << 31) fail_internal("space ahead: too many bricks");
   bricks.resize(octants * n + 3);
-  std::fill(bricks.end() - 3, bricks.end(), farthest);
+  std::fill(bricks.end() - 3, bricks.end(), farthest_told);
   size_t step = n;
   for (size_t a = 0; a < 3; ++a)
     if (ways.down[a] && ways.up[a]) up[a] = int32_t(step), step *= 2;
