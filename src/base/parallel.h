@@ -21,7 +21,7 @@ void run_chunks(size_t chunks, ChunkFn fn, void* body, const Context* context);
 }  // namespace detail
 
 /// Calls f(begin, end) for the chunks [i*grain, min(n, (i+1)*grain)) on all threads. With a context, each chunk polls its
-/// cancel flag first. The first exception of a chunk is rethrown.
+/// cancel flag first. Of the exceptions that chunks throw that of the lowest one is rethrown: the same on any number of threads.
 template <class F>
 void parallel_for(size_t n, size_t grain, F&& f, const Context* context = nullptr) {
   if (n == 0) return;

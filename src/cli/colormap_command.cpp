@@ -10,8 +10,8 @@
 #include "base/text/utf8.h"
 #include "cli/cli.h"
 #include "color/colormap.h"
-#include "color/colormap_file.h"
-#include "color/colormap_nodes.h"
+#include "color/map_files/colormap_file.h"
+#include "color/map_files/colormap_nodes.h"
 #include "color/parse_color.h"
 #include "image/codec.h"
 

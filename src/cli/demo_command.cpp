@@ -14,7 +14,7 @@
 #include "cli/chain.h"
 #include "cli/cli.h"
 #include "cli/say.h"
-#include "color/colormap_file.h"
+#include "color/map_files/colormap_file.h"
 #include "image/codec.h"
 #include "io/formats.h"
 #include "pipeline/picture/picture.h"

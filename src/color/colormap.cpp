@@ -9,8 +9,8 @@
 #include <mutex>
 
 #include "base/error.h"
-#include "color/colormap_file.h"
 #include "color/map_construction.h"
+#include "color/map_files/colormap_file.h"
 
 namespace sg {
 namespace {

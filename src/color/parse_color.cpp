@@ -7,22 +7,11 @@
 
 #include "base/error.h"
 #include "base/text/text.h"
+#include "color/css_colors.h"
 
 namespace sg {
 
 namespace {
-
-struct CssColor {
-  std::string_view name;
-  uint32_t rgb;
-};
-// A few names of the CSS list: enough to try things out.
-constexpr CssColor named[] = {
-    {"black", 0x000000},  {"white", 0xffffff}, {"gray", 0x808080},   {"grey", 0x808080}, {"silver", 0xc0c0c0},    {"red", 0xff0000},
-    {"green", 0x008000},  {"blue", 0x0000ff},  {"yellow", 0xffff00}, {"cyan", 0x00ffff}, {"magenta", 0xff00ff},   {"orange", 0xffa500},
-    {"tomato", 0xff6347}, {"gold", 0xffd700},  {"navy", 0x000080},   {"teal", 0x008080}, {"purple", 0x800080},    {"brown", 0xa52a2a},
-    {"pink", 0xffc0cb},   {"ivory", 0xfffff0}, {"beige", 0xf5f5dc},  {"tan", 0xd2b48c},  {"steelblue", 0x4682b4}, {"skyblue", 0x87ceeb},
-};
 
 Vec3f from_hex(uint32_t rgb) { return {float(rgb >> 16 & 255) / 255.f, float(rgb >> 8 & 255) / 255.f, float(rgb & 255) / 255.f}; }
 
@@ -57,14 +46,14 @@ Vec3f parse_color(std::string_view text, std::string_view where) {
     if (good) return c;
   }
   std::vector<std::string> names;
-  for (const CssColor& n : named) {
+  for (const CssColor& n : css_colors) {
     if (n.name == t) return from_hex(n.rgb);
     names.emplace_back(n.name);
   }
   const std::string near = nearest_name(t, names);
   fail_usage(fmt::format("'{}' is not a colour", text), std::string(where),
              (near.empty() ? "" : "did you mean '" + near + "'? ") +
-                 "write #rrggbb, three numbers from 0 to 1 like 0.9,0.2,0, or a name like white");
+                 "write #rrggbb, three numbers from 0 to 1 like 0.9,0.2,0, or a name of CSS such as steelblue");
 }
 
 std::string color_text(Vec3f c) {

@@ -8,7 +8,7 @@
 
 namespace sg {
 
-/// "#rrggbb", "#rgb", "r,g,b" with numbers from 0 to 1, or a plain name ("white", "grey", "tomato"...). sRGB-encoded.
+/// "#rrggbb", "#rgb", "r,g,b" with numbers from 0 to 1, or a name of CSS (css_colors.h). sRGB-encoded.
 /// Throws Error(usage) naming `where` for anything else.
 Vec3f parse_color(std::string_view text, std::string_view where);
 /// "#rrggbb".

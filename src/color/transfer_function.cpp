@@ -110,8 +110,8 @@ TransferFunction::Colors::Colors(const ColorScale& s, double b) : scale(s), base
   first = float(lo);
   per_axis = hi > lo ? float(table_size / (hi - lo)) : 0;
   for (int i = 0; i < table_size; ++i)
-    table.push_back(
-        srgb_to_linear(s.color(std::clamp(value_on_axis(lo + (hi - lo) * (i + 0.5) / table_size), std::min(s.lo, s.hi), std::max(s.lo, s.hi)))));
+    table.push_back(srgb_to_linear(
+        s.color(std::clamp(value_on_axis(lo + (hi - lo) * (i + 0.5) / table_size), std::min(s.lo, s.hi), std::max(s.lo, s.hi)))));
   const auto mark = [&](int i) { table[size_t(std::clamp(i, 0, table_size - 1))].w = not_even; };
   const std::vector<Vec4f> plain = table;
   for (size_t i = 0; i + 1 < plain.size(); ++i)

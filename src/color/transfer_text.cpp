@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/text/text.h"
-#include "color/colormap_nodes.h"
+#include "color/map_files/colormap_nodes.h"
 #include "color/parse_color.h"
 
 namespace sg {

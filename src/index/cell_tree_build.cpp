@@ -193,8 +193,9 @@ template <class Left>
 size_t partition_parallel(TreeRecord* r, size_t n, Left&& is_left) {
   const size_t chunks = (n + boxes_per_chunk - 1) / boxes_per_chunk;
   std::vector<size_t> lefts(chunks);
-  parallel_for(n, boxes_per_chunk,
-               [&](size_t begin, size_t end) { lefts[begin / boxes_per_chunk] = size_t(std::partition(r + begin, r + end, is_left) - (r + begin)); });
+  parallel_for(n, boxes_per_chunk, [&](size_t begin, size_t end) {
+    lefts[begin / boxes_per_chunk] = size_t(std::partition(r + begin, r + end, is_left) - (r + begin));
+  });
   size_t total = 0;
   for (size_t l : lefts) total += l;
   struct Run {

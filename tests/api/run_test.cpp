@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The library for C++ programs: operations with typed values, scenes, pictures and their recipes.
 
+#include "api/api_errors.h"
 #include "api/sightglass.h"
 #include "base/file/file.h"
 #include "image/codec.h"
@@ -8,19 +9,10 @@
 #include "support/test.h"
 
 using namespace sightglass;
+using sg::test::contains;
+using sg::test::refused;
 
 namespace {
-
-std::string refused(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
-}
-
-bool holds(const std::string& text, std::string_view part) { return text.find(part) != text.npos; }
 
 Data ball(int n) { return source("sphere", {{"size", n}}); }
 
@@ -38,21 +30,21 @@ TEST_CASE("library: the area of a contour that was asked for by typed values is 
 
 TEST_CASE("library: the schema's errors: unknown names, ranges, choices and types, all of one call together") {
   const Data grid = ball(8);
-  CHECK(holds(refused([&] { grid.run("contuor"); }), "did you mean 'contour'?"));
-  CHECK(holds(refused([&] { grid.run("contour", {{"valeus", 1}}); }), "did you mean 'values'?"));
+  CHECK(contains(refused([&] { grid.run("contuor"); }), "did you mean 'contour'?"));
+  CHECK(contains(refused([&] { grid.run("contour", {{"valeus", 1}}); }), "did you mean 'values'?"));
   const std::string several = refused([&] { grid.run("contour", {{"normals", "perhaps"}, {"tolerance", -1}}); });
-  CHECK(holds(several, "contour normals"));
-  CHECK(holds(several, "contour tolerance"));
-  CHECK(holds(refused([&] { grid.run("contour", {{"field", "nosuch"}}); }), "'nosuch' not found"));
-  CHECK(holds(refused([&] { grid.run("probe"); }), "probe"));
-  CHECK(holds(refused([] { source("sphere", {{"size", 1e99}}); }), "size"));
-  CHECK(holds(refused([&] { Scene().show(grid, "surfaec"); }), "did you mean 'surface'?"));
-  CHECK(holds(refused([&] { Scene().show(grid, "surface", {{"opacity", 7}}); }), "opacity"));
-  CHECK(holds(refused([&] { Scene().camera({{"view", "frnt"}}); }), "did you mean 'front'?"));
-  CHECK(holds(refused([&] { Scene().picture({{"tilte", "x"}}); }), "did you mean 'title'?"));
-  CHECK(holds(refused([] { Scene().render(10, 10); }), "show()"));
-  CHECK(holds(refused([&] { grid.write("/nowhere/x.vti"); }), "/nowhere"));
-  CHECK(holds(refused([&] { grid.write("x.vti", {{"encoding", "asci"}}); }), "did you mean 'ascii'?"));
+  CHECK(contains(several, "contour normals"));
+  CHECK(contains(several, "contour tolerance"));
+  CHECK(contains(refused([&] { grid.run("contour", {{"field", "nosuch"}}); }), "'nosuch' not found"));
+  CHECK(contains(refused([&] { grid.run("probe"); }), "probe"));
+  CHECK(contains(refused([] { source("sphere", {{"size", 1e99}}); }), "size"));
+  CHECK(contains(refused([&] { Scene().show(grid, "surfaec"); }), "did you mean 'surface'?"));
+  CHECK(contains(refused([&] { Scene().show(grid, "surface", {{"opacity", 7}}); }), "opacity"));
+  CHECK(contains(refused([&] { Scene().camera({{"view", "frnt"}}); }), "did you mean 'front'?"));
+  CHECK(contains(refused([&] { Scene().picture({{"tilte", "x"}}); }), "did you mean 'title'?"));
+  CHECK(contains(refused([] { Scene().render(10, 10); }), "show()"));
+  CHECK(contains(refused([&] { grid.write("/nowhere/x.vti"); }), "/nowhere"));
+  CHECK(contains(refused([&] { grid.write("x.vti", {{"encoding", "asci"}}); }), "did you mean 'ascii'?"));
 }
 
 TEST_CASE("library: text and typed values come to the same bytes") {
@@ -90,9 +82,9 @@ TEST_CASE("library: a picture of parts of a collection that was read, and of wha
   const auto parts = read(file).parts();
   REQUIRE(parts.size() == 2);
   const Image image = Scene().show(parts[0].second, "outline").show(parts[1].second.run("contour", {{"values", 0}})).render(64, 48);
-  CHECK(!holds(image.recipe(), "memory"));
-  CHECK(holds(image.recipe(), "part: ball"));
-  CHECK(holds(image.recipe(), "part: \"#1\""));  // two of one name
+  CHECK(!contains(image.recipe(), "memory"));
+  CHECK(contains(image.recipe(), "part: ball"));
+  CHECK(contains(image.recipe(), "part: \"#1\""));  // two of one name
   image.write(picture);
   const sg::Image found = sg::read_png(picture);
   std::vector<std::string> changed;
@@ -104,16 +96,16 @@ TEST_CASE("library: a picture of parts of a collection that was read, and of wha
 TEST_CASE("library: numbers from memory are named in the recipe, and making the picture again is refused with a reason") {
   const Data grid = uniform_grid({4, 4, 4}).with_point_field("f", std::vector<float>(64, 1.0f));
   const Image image = Scene().show(grid, "outline").render(64, 48);
-  CHECK(holds(image.recipe(), "memory:"));
-  CHECK(holds(image.recipe(), "uniform 4x4x4"));
+  CHECK(contains(image.recipe(), "memory:"));
+  CHECK(contains(image.recipe(), "uniform 4x4x4"));
   sg::PipelineFile recipe = sg::parse_pipeline(image.recipe(), "recipe", sg::picture_vocabulary());
   sg::Context context;
   try {
     sg::make_picture(recipe, {}, context);
     CHECK(false);
   } catch (const sg::Error& e) {
-    CHECK(holds(e.what(), "memory of the program"));
-    CHECK(!holds(e.what(), " errors:"));  // one, not what follows from it
+    CHECK(contains(e.what(), "memory of the program"));
+    CHECK(!contains(e.what(), " errors:"));  // one, not what follows from it
   }
 }
 
@@ -122,10 +114,10 @@ TEST_CASE("library: several data in one scene, chosen and stated, keep what each
   const Image image =
       Scene().show(surface).show(grid, "outline").show(grid.run("slice", {{"axis", "z"}}), "auto", {{"map", "ember"}}).render(64, 48);
   const std::string recipe = image.recipe();
-  CHECK(holds(recipe, "contour"));
-  CHECK(holds(recipe, "outline"));
-  CHECK(holds(recipe, "map: ember"));
-  CHECK(!holds(recipe, "auto"));
+  CHECK(contains(recipe, "contour"));
+  CHECK(contains(recipe, "outline"));
+  CHECK(contains(recipe, "map: ember"));
+  CHECK(!contains(recipe, "auto"));
 }
 
 TEST_CASE("library: a scene that is changed leaves its copies alone") {
@@ -134,8 +126,8 @@ TEST_CASE("library: a scene that is changed leaves its copies alone") {
   one.show(grid, "outline");
   Scene two = one;
   two.picture({{"title", "two"}});
-  CHECK(!holds(one.render(32, 32).recipe(), "two"));
-  CHECK(holds(two.render(32, 32).recipe(), "two"));
+  CHECK(!contains(one.render(32, 32).recipe(), "two"));
+  CHECK(contains(two.render(32, 32).recipe(), "two"));
 }
 
 TEST_CASE("library: operations that follow time read the steps of the file; of numbers at hand they have one") {
@@ -169,7 +161,7 @@ TEST_CASE("library: work tells of its progress and ends when it is cancelled") {
 }
 
 TEST_CASE("library: help of an operation is that of the program") {
-  CHECK(holds(help("contour"), "values"));
-  CHECK(holds(help(), "streamlines"));
-  CHECK(holds(refused([] { help("nosuch"); }), "unknown operation"));
+  CHECK(contains(help("contour"), "values"));
+  CHECK(contains(help(), "streamlines"));
+  CHECK(contains(refused([] { help("nosuch"); }), "unknown operation"));
 }

@@ -3,21 +3,14 @@
 #include <cmath>
 #include <numeric>
 
+#include "api/api_errors.h"
 #include "api/sightglass.h"
 #include "support/test.h"
 
 using namespace sightglass;
+using sg::test::refused;
 
 namespace {
-
-std::string refused(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
-}
 
 std::vector<float> counted(size_t n) {
   std::vector<float> v(n);

@@ -5,6 +5,9 @@
 #include <atomic>
 #include <chrono>
 #include <cstring>
+#include <thread>
+
+#include <fmt/core.h>
 
 #include "base/context.h"
 #include "base/random.h"
@@ -119,6 +122,23 @@ TEST_CASE("parallel_for: an exception of a chunk comes out, cancelling stops the
     };
     CHECK(test::error_of(work) == "cancelled");
     CHECK(ran < 10'000);
+  }
+}
+
+TEST_CASE("parallel_for: of several exceptions the lowest chunk's comes out, on any number of threads") {
+  for (const int threads : {1, 2, 4, 8}) {
+    const Threads use(threads);
+    for (int again = 0; again < 20; ++again) {
+      std::atomic<int> before{0};
+      CHECK(test::error_of([&] {
+              parallel_for(200, 1, [&](size_t begin, size_t) {
+                if (begin < 30) ++before;
+                if (begin == 30) std::this_thread::yield();
+                if (begin >= 30) fail_data(fmt::format("chunk {}", begin));
+              });
+            }) == "chunk 30");
+      CHECK(before == 30);
+    }
   }
 }
 

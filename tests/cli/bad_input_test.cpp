@@ -10,17 +10,10 @@
 #include "support/test.h"
 
 using namespace sg;
+using test::fresh_folder;
 using test::sightglass;
 
 namespace {
-
-// An empty folder of its own, so that what a failed run leaves behind is seen.
-std::string fresh(const std::string& name) {
-  const std::string f = test::temp_folder() + name + "/";
-  std::filesystem::remove_all(f);
-  std::filesystem::create_directories(f);
-  return f;
-}
 
 void write_grid(const std::string& path, const std::vector<float>& values, std::array<size_t, 3> dims, const std::string& name = "T") {
   UniformGrid g;
@@ -54,7 +47,7 @@ void check_refused(const std::vector<std::string>& args, int status, const std::
 }  // namespace
 
 TEST_CASE("bad input: a missing file, a folder, an empty file, an unknown format") {
-  const std::string f = fresh("missing");
+  const std::string f = fresh_folder("missing");
   check_refused({"render", "nothing.vti"}, 3, {"nothing.vti", "no such file"}, f);
   std::filesystem::create_directories(f + "folder.vti");
   check_refused({"render", "folder.vti"}, 3, {"folder.vti", "is a folder"}, f);
@@ -67,7 +60,7 @@ TEST_CASE("bad input: a missing file, a folder, an empty file, an unknown format
 }
 
 TEST_CASE("bad input: truncated header and data") {
-  const std::string f = fresh("truncated");
+  const std::string f = fresh_folder("truncated");
   write_grid(f + "whole.vti", ramp(512), {8, 8, 8});
   const std::string bytes(MappedFile(f + "whole.vti").text());
   write_file(f + "header.vti", bytes.substr(0, 120));
@@ -82,7 +75,7 @@ TEST_CASE("bad input: truncated header and data") {
 }
 
 TEST_CASE("bad input: sizes that overflow or exceed the file") {
-  const std::string f = fresh("sizes");
+  const std::string f = fresh_folder("sizes");
   write_file(f + "huge.vtk",
              "# vtk DataFile Version 3.0\nx\nBINARY\nDATASET STRUCTURED_POINTS\nDIMENSIONS 4000000000 4000000000 4000000000\nORIGIN 0 0 0\n"
              "SPACING 1 1 1\nPOINT_DATA 8\nSCALARS T float 1\nLOOKUP_TABLE default\nabcd");
@@ -96,7 +89,7 @@ TEST_CASE("bad input: sizes that overflow or exceed the file") {
 }
 
 TEST_CASE("bad input: unknown fields, operations, parameters and ways to show, with the nearest name") {
-  const std::string f = fresh("names");
+  const std::string f = fresh_folder("names");
   write_grid(f + "a.vti", ramp(512), {8, 8, 8}, "temperature");
   check_refused({"render", "a.vti", "-f", "contour field=tempe", "-o", "x.png"}, 2, {"tempe", "did you mean 'temperature'"}, f);
   check_refused({"render", "a.vti", "-f", "contuor", "-o", "x.png"}, 2, {"contuor", "did you mean 'contour'"}, f);
@@ -109,7 +102,7 @@ TEST_CASE("bad input: unknown fields, operations, parameters and ways to show, w
 }
 
 TEST_CASE("bad input: unreadable options") {
-  const std::string f = fresh("options");
+  const std::string f = fresh_folder("options");
   write_grid(f + "a.vti", ramp(512), {8, 8, 8});
   check_refused({"render", "a.vti", "--sise", "100x100"}, 2, {"--sise", "--size"}, f);
   check_refused({"render", "a.vti", "--size", "big", "-o", "x.png"}, 2, {"big", "1280x720"}, f);
@@ -123,7 +116,7 @@ TEST_CASE("bad input: unreadable options") {
 }
 
 TEST_CASE("bad input: output in a missing folder, with an unknown extension, onto a folder, on a full disk") {
-  const std::string f = fresh("output");
+  const std::string f = fresh_folder("output");
   write_grid(f + "a.vti", ramp(512), {8, 8, 8});
   check_refused({"render", "a.vti", "-o", "no/such/x.png"}, 3, {"no/such/x.png", "folder does not exist"}, f);
   check_refused({"render", "a.vti", "-o", "x.xyz"}, 2, {"xyz", "png"}, f);
@@ -134,7 +127,7 @@ TEST_CASE("bad input: output in a missing folder, with an unknown extension, ont
 }
 
 TEST_CASE("bad input: a full disk leaves no partial file") {
-  const std::string f = fresh("full");
+  const std::string f = fresh_folder("full");
   write_grid(f + "a.vti", ramp(32768), {32, 32, 32});
   const auto before = test::files_in(f);
   for (const auto& args :
@@ -149,7 +142,7 @@ TEST_CASE("bad input: a full disk leaves no partial file") {
 }
 
 TEST_CASE("odd data: NaN-only, constant and zero-cell inputs give a picture and a note") {
-  const std::string f = fresh("odd");
+  const std::string f = fresh_folder("odd");
   write_grid(f + "nan.vti", std::vector<float>(512, std::numeric_limits<float>::quiet_NaN()), {8, 8, 8});
   auto r = sightglass({"render", "nan.vti", "-o", "nan.png"}, f);
   INFO(r.err);

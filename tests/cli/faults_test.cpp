@@ -17,6 +17,7 @@
 #include "support/test.h"
 
 using namespace sg;
+using test::fresh_folder;
 using test::sightglass;
 
 namespace {
@@ -29,12 +30,6 @@ std::map<std::string, std::string> bytes_below(const std::string& folder) {
   for (const auto& e : fs::recursive_directory_iterator(folder))
     r[e.path().string()] = e.is_regular_file() ? std::string(MappedFile(e.path().string()).text()) : "";
   return r;
-}
-
-std::string fresh(const std::string& name) {
-  const std::string folder = test::temp_folder() + name + "/";
-  fs::remove_all(folder), fs::create_directories(folder);
-  return folder;
 }
 
 // What makes a file of each kind that is written, of more than 20 kB.
@@ -92,7 +87,7 @@ int status_of(pid_t child, double seconds) {
 TEST_CASE("full disk: every writer says so, keeps the old file and leaves nothing beside it") {
   for (const auto& args : writers()) {
     INFO(args.back());
-    const std::string folder = fresh("full_disk");
+    const std::string folder = fresh_folder("full_disk");
     const auto first = sightglass(args, folder);
     if (first.status == 3 && first.err.find("install") != std::string::npos) continue;  // no plug-in here
     INFO(first.err);
@@ -112,7 +107,7 @@ TEST_CASE("full disk: files that belong together are replaced together or not at
   const std::string name = std::string(6000, 'n');
   for (const std::string out : {"out.mhd", "out.pvti"}) {
     INFO(out);
-    const std::string folder = fresh("together");
+    const std::string folder = fresh_folder("together");
     std::vector<std::string> before = small, after = other;
     before.push_back(out);
     after.insert(after.end(), {"-f", "calc expr=x name=" + name, "-f", "select keep=" + name, "-o", out});
@@ -130,7 +125,7 @@ TEST_CASE("full disk: files that belong together are replaced together or not at
 }
 
 TEST_CASE("temporary files: links planted under the names that were used are not followed, and writers do not share one") {
-  const std::string folder = fresh("planted"), victim = folder + "victim";
+  const std::string folder = fresh_folder("planted"), victim = folder + "victim";
   write_file(victim, "precious");
   for (const std::string e : {"vdb", "vti", "vtkhdf", "mp4"})
     for (const std::string& tail : {std::string(".partial"), ".partial." + e, ".partial." + e + ".log", std::string(".partial-1-0")})
@@ -152,7 +147,7 @@ TEST_CASE("temporary files: links planted under the names that were used are not
 }
 
 TEST_CASE("films by ffmpeg: the name that it gets is neither an option nor a protocol, and its files lie in a folder of the user's alone") {
-  const std::string folder = fresh("films"), bin = folder + "bin/";
+  const std::string folder = fresh_folder("films"), bin = folder + "bin/";
   fs::create_directories(bin);
   write_file(bin + "ffmpeg", "#!/bin/sh\nfor last; do :; done\necho \"$last\" > '" + folder +
                                  "asked'\nls -ld -- \"$(dirname -- \"${last#file:}\")\" >> '" + folder +
@@ -178,7 +173,7 @@ TEST_CASE("films by ffmpeg: the name that it gets is neither an option nor a pro
 }
 
 TEST_CASE("signals: work that does not ask is ended after a few seconds, and leaves nothing") {
-  const std::string folder = fresh("stuck"), bin = folder + "bin/";
+  const std::string folder = fresh_folder("stuck"), bin = folder + "bin/";
   fs::create_directories(bin);
   write_file(bin + "ffmpeg", "#!/bin/sh\nexec sleep 20\n");  // takes no picture: the program waits for it
   fs::permissions(bin + "ffmpeg", fs::perms::owner_all);
@@ -200,7 +195,7 @@ TEST_CASE("signals: hang-up and the polite end clean up as Ctrl-C does; a second
     for (const bool twice : {false, true}) {
       if (twice && signal != SIGINT) continue;
       INFO(signal << (twice ? " twice" : " once"));
-      const std::string folder = fresh("signals");
+      const std::string folder = fresh_folder("signals");
       const pid_t child = start({"convert", "--source", "hydrogen size=80", "--compression", "lzma", "-o", "out.vti"}, folder);
       REQUIRE(wait_until([&] { return !fs::is_empty(folder); }, 60));  // it writes
       ::kill(child, signal);
@@ -209,7 +204,7 @@ TEST_CASE("signals: hang-up and the polite end clean up as Ctrl-C does; a second
       CHECK(fs::is_empty(folder));
     }
   // nohup stays nohup
-  const std::string folder = fresh("signals");
+  const std::string folder = fresh_folder("signals");
   const auto before = ::signal(SIGHUP, SIG_IGN);
   const pid_t child = start({"convert", "--source", "hydrogen size=40", "--compression", "lzma", "-o", "out.vti"}, folder);
   ::signal(SIGHUP, before);

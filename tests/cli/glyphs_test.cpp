@@ -5,29 +5,27 @@
 #include "support/test.h"
 
 using namespace sg;
+using test::contains;
 using test::sightglass;
-
-namespace {
-bool has(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
-}  // namespace
 
 TEST_CASE("render: glyphs say what was chosen, and a mesh of them is written; a shape may come from a file") {
   const std::string folder = test::temp_folder();
   auto r = sightglass({"render", "-s", "abc size=12", "--show", "glyphs count=60", "--size", "160x120", "-o", folder + "arrows.png"});
   INFO(r.err);
   REQUIRE(r.status == 0);
-  CHECK(has(r.err, "64 glyphs (arrow) of 'velocity' placed evenly"));
+  CHECK(contains(r.err, "64 glyphs (arrow) of 'velocity' placed evenly"));
   r = sightglass({"convert", "-s", "abc size=4", "-f", "glyphs shape=cube size=0.1 size_by=constant", "-o", folder + "cubes.stl"});
   INFO(r.err);
   REQUIRE(r.status == 0);
-  CHECK(has(sightglass({"info", folder + "cubes.stl"}).out, "768 cells"));
+  CHECK(contains(sightglass({"info", folder + "cubes.stl"}).out, "768 cells"));
   r = sightglass(
       {"render", "-s", "abc size=4", "--show", "glyphs shape=" + folder + "cubes.stl", "--size", "160x120", "-o", folder + "own.png"});
   CHECK(r.status == 0);
   r = sightglass({"render", "-s", "tangle size=8", "--show", "glyphs", "-o", folder + "x.png"});
   CHECK(r.status == 2);
-  CHECK(has(r.err, "no vector field"));
-  CHECK(has(sightglass({"render", "-s", "abc size=4", "--show", "glyphs shape=arow", "-o", folder + "x.png"}).err, "did you mean 'arrow'"));
+  CHECK(contains(r.err, "no vector field"));
+  CHECK(contains(sightglass({"render", "-s", "abc size=4", "--show", "glyphs shape=arow", "-o", folder + "x.png"}).err,
+                 "did you mean 'arrow'"));
 }
 
 TEST_CASE("render: the times of a series are those of its trails") {

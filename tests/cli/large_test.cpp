@@ -7,36 +7,33 @@
 #include "support/test.h"
 
 using namespace sg;
+using test::contains;
 using test::sightglass;
-
-namespace {
-bool has(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
-}  // namespace
 
 TEST_CASE("convert: a source goes to Zarr slab by slab, in less memory than it has") {
   const std::string out = test::temp_folder() + "tangle.ome.zarr";
   const auto r = sightglass({"convert", "-s", "tangle size=260", "-o", out, "--memory", "40M"});  // 70 MB of numbers
   INFO(r.err);
   REQUIRE(r.status == 0);
-  CHECK(has(r.out, "260x260x260"));
+  CHECK(contains(r.out, "260x260x260"));
   const auto whole = sightglass({"info", out}), source = sightglass({"info", "-s", "tangle size=260"});
   const auto range = [](const std::string& text) { return text.substr(text.find("field ")); };
   CHECK(range(whole.out).substr(0, 200).find(range(source.out).substr(60, 20)) != std::string::npos);
   // Within a limit it is a coarse level, and says so.
   const auto coarse = sightglass({"info", out, "--memory", "64M"});
   CHECK(coarse.status == 0);
-  CHECK(has(coarse.err, "level 2"));
-  CHECK(has(coarse.out, "65 x 65 x 65"));
+  CHECK(contains(coarse.err, "level 2"));
+  CHECK(contains(coarse.out, "65 x 65 x 65"));
 }
 
 TEST_CASE("convert: what is in the way of a Zarr folder is told") {
   const std::string out = test::temp_folder() + "file.zarr";
   write_file(out, "a file");
-  CHECK(has(sightglass({"convert", "-s", "tangle size=20", "-o", out}).err, "not a Zarr folder"));
+  CHECK(contains(sightglass({"convert", "-s", "tangle size=20", "-o", out}).err, "not a Zarr folder"));
   const auto filtered = sightglass({"convert", "-s", "tangle size=20", "-f", "contour", "-o", test::temp_folder() + "x.zarr"});
   CHECK(filtered.status == 2);
-  CHECK(has(filtered.err, "uniform grid"));
-  CHECK(has(sightglass({"convert", "-s", "tangle size=20", "-o", test::temp_folder() + "x.zarr", "--chunk", "9"}).err, "even number"));
+  CHECK(contains(filtered.err, "uniform grid"));
+  CHECK(contains(sightglass({"convert", "-s", "tangle size=20", "-o", test::temp_folder() + "x.zarr", "--chunk", "9"}).err, "even number"));
 }
 
 TEST_CASE("render: {n} in the output numbers the pictures of a series, all in one range") {
@@ -44,8 +41,8 @@ TEST_CASE("render: {n} in the output numbers the pictures of a series, all in on
   const auto r = sightglass({"render", "-s", "drift size=37", "--times", "0:4:3", "--size", "160x120", "-o", out});
   INFO(r.err);
   REQUIRE(r.status == 0);
-  CHECK(has(r.out, "3 pictures"));
-  CHECK(has(r.err, "one range for all pictures"));
+  CHECK(contains(r.out, "3 pictures"));
+  CHECK(contains(r.err, "one range for all pictures"));
   std::string first;
   for (const char* n : {"000", "001", "002"}) {
     const std::string path = test::temp_folder() + "series_" + n + ".png";
@@ -56,17 +53,17 @@ TEST_CASE("render: {n} in the output numbers the pictures of a series, all in on
   }
   // The same picture as alone, when it is given what the series chose.
   const auto recipe = sightglass({"open", "--recipe", test::temp_folder() + "series_001.png"});
-  CHECK(has(recipe.out, "time: 2"));
-  CHECK(has(recipe.out, "range"));
+  CHECK(contains(recipe.out, "time: 2"));
+  CHECK(contains(recipe.out, "range"));
 }
 
 TEST_CASE("render: a series that cannot be is told") {
   const std::string out = test::temp_folder() + "bad_{n}.png";
-  CHECK(has(sightglass({"render", "-s", "drift size=9", "-o", out}).err, "--times"));
-  CHECK(has(sightglass({"render", "-s", "drift size=9", "--times", "0:1:2:3", "-o", out}).err, "not a list of times"));
-  CHECK(has(sightglass({"render", "-s", "tangle size=9", "--times", "0,1", "-o", out}).err, "has no parameter 'time'"));
-  CHECK(has(sightglass({"render", "-s", "drift size=9", "--times", "0,1", "-o", test::temp_folder() + "x.png"}).err, "{n}"));
-  CHECK(has(sightglass({"render", "-s", "drift size=9", "--times", "1:0", "-o", out}).err, "not a range of times"));
+  CHECK(contains(sightglass({"render", "-s", "drift size=9", "-o", out}).err, "--times"));
+  CHECK(contains(sightglass({"render", "-s", "drift size=9", "--times", "0:1:2:3", "-o", out}).err, "not a list of times"));
+  CHECK(contains(sightglass({"render", "-s", "tangle size=9", "--times", "0,1", "-o", out}).err, "has no parameter 'time'"));
+  CHECK(contains(sightglass({"render", "-s", "drift size=9", "--times", "0,1", "-o", test::temp_folder() + "x.png"}).err, "{n}"));
+  CHECK(contains(sightglass({"render", "-s", "drift size=9", "--times", "1:0", "-o", out}).err, "not a range of times"));
 }
 
 namespace {
@@ -97,13 +94,13 @@ TEST_CASE("render --progressive: a picture of the level in memory first, in the 
   INFO(r.err);
   INFO(r.out);
   REQUIRE(r.status == 0);
-  CHECK(has(r.out, "level 2 of 3 (55x55x55)"));
-  CHECK(has(r.out, "bricks, a voxel covers at most 1 pixel; half as many voxels"));
+  CHECK(contains(r.out, "level 2 of 3 (55x55x55)"));
+  CHECK(contains(r.out, "bricks, a voxel covers at most 1 pixel; half as many voxels"));
   CHECK(MappedFile(out).text() == MappedFile(plain).text());
   // What fits into memory is drawn at once.
   const auto small = sightglass({"render", "-s", "tangle size=20", "--progressive", "--size", "160x120", "-o", out});
   CHECK(small.status == 0);
-  CHECK(!has(small.out, "level"));
+  CHECK(!contains(small.out, "level"));
 }
 
 TEST_CASE("render --within: a picture after that time, which says what it is made of") {
@@ -111,15 +108,15 @@ TEST_CASE("render --within: a picture after that time, which says what it is mad
   const auto r = sightglass(picture_of(large_volume(), out, {"--within", "1ms"}));
   INFO(r.err);
   REQUIRE(r.status == 0);
-  CHECK(has(r.out, "level 2 of 3"));
-  CHECK(!has(r.out, "bricks, "));
+  CHECK(contains(r.out, "level 2 of 3"));
+  CHECK(!contains(r.out, "bricks, "));
   CHECK(file_exists(out));
   const auto long_enough = sightglass(picture_of(large_volume(), out, {"--within", "500s"}));
-  CHECK(has(long_enough.out, "at most 1 pixel"));
-  CHECK(has(sightglass(picture_of(large_volume(), out, {"--within", "soon"})).err, "e.g. 2s"));
-  CHECK(has(sightglass(picture_of(large_volume(), out, {"--within", "-1s"})).err, "is not a valid time"));
+  CHECK(contains(long_enough.out, "at most 1 pixel"));
+  CHECK(contains(sightglass(picture_of(large_volume(), out, {"--within", "soon"})).err, "e.g. 2s"));
+  CHECK(contains(sightglass(picture_of(large_volume(), out, {"--within", "-1s"})).err, "is not a valid time"));
   const std::string series = test::temp_folder() + "series_within_{n}.png";
-  CHECK(has(sightglass({"render", "-s", "drift size=9", "--times", "0,1", "-o", series, "--within", "2s"}).err, "--within"));
+  CHECK(contains(sightglass({"render", "-s", "drift size=9", "--times", "0,1", "-o", series, "--within", "2s"}).err, "--within"));
 }
 
 TEST_CASE("render: damaged chunks of a large volume are told with their file, missing ones are the fill value") {
@@ -136,7 +133,7 @@ TEST_CASE("render: damaged chunks of a large volume are told with their file, mi
     for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--progressive"}}) {
       const auto r = sightglass(picture_of(bad, out, more));
       CHECK(r.status == 3);
-      CHECK(has(r.err, chunk));
+      CHECK(contains(r.err, chunk));
     }
   }
   ::unlink(chunk.c_str());

@@ -15,13 +15,12 @@
 #include "support/test.h"
 
 using namespace sg;
+using test::contains;
 using test::sightglass;
 
 namespace {
 
 namespace fs = std::filesystem;
-
-bool says(const std::string& text, std::string_view what) { return text.find(what) != std::string::npos; }
 
 void replace_all(std::string& s, std::string_view what, const std::string& by) {
   for (size_t at = s.find(what); at != s.npos; at = s.find(what, at + by.size())) s.replace(at, what.size(), by);
@@ -122,10 +121,10 @@ TEST_CASE("files that name files: below their folder or the working folder alone
       write_file(here + n.file, text);
       const auto refused = sightglass({"info", here + n.file}, work);
       CHECK(refused.status == 3);
-      CHECK_MESSAGE(says(refused.err, "--read-anywhere"), refused.err);
-      CHECK(says(refused.err, n.file));
-      CHECK(says(refused.err, n.target));
-      if (to[0] != '/') CHECK_FALSE(says(sightglass({"info", here + n.file, "--read-anywhere"}, work).err, "use --read-anywhere"));
+      CHECK_MESSAGE(contains(refused.err, "--read-anywhere"), refused.err);
+      CHECK(contains(refused.err, n.file));
+      CHECK(contains(refused.err, n.target));
+      if (to[0] != '/') CHECK_FALSE(contains(sightglass({"info", here + n.file, "--read-anywhere"}, work).err, "use --read-anywhere"));
     }
     for (const auto& [to, from] :
          std::vector<std::pair<std::string, std::string>>{{n.target, work}, {"inside/" + n.target, work}, {"../out/" + n.target, top}}) {
@@ -133,7 +132,7 @@ TEST_CASE("files that name files: below their folder or the working folder alone
       std::string text = n.text;
       replace_all(text, "NAME", to);
       write_file(here + n.file, text);
-      CHECK_FALSE(says(sightglass({"info", here + n.file}, from).err, "--read-anywhere"));
+      CHECK_FALSE(contains(sightglass({"info", here + n.file}, from).err, "--read-anywhere"));
     }
   }
 }
@@ -272,15 +271,15 @@ TEST_CASE("plug-ins: from beside the program or the variable alone, never from a
     CHECK(status != 0);
     return std::string(MappedFile(here + "said").text());
   };
-  CHECK(says(said(), "is not installed"));
-  CHECK(says(said(), here + "plugins/"));
-  CHECK_FALSE(says(said(), built));
+  CHECK(contains(said(), "is not installed"));
+  CHECK(contains(said(), here + "plugins/"));
+  CHECK_FALSE(contains(said(), built));
   write_file(here + "plugins/sightglass_hdf5.so", "no library");
-  CHECK(says(said(), "cannot load"));
+  CHECK(contains(said(), "cannot load"));
   fs::permissions(here + "plugins/sightglass_hdf5.so", fs::perms::others_write, fs::perm_options::add);
-  CHECK(says(said(), "skipped"));
+  CHECK(contains(said(), "skipped"));
   fs::permissions(here + "plugins/sightglass_hdf5.so", fs::perms::others_write, fs::perm_options::remove);
   fs::permissions(here + "plugins", fs::perms::others_write, fs::perm_options::add);
-  CHECK(says(said(), "skipped"));
-  CHECK_FALSE(says(said("SIGHTGLASS_PLUGINS='" + here + "other'"), here + "plugins/"));
+  CHECK(contains(said(), "skipped"));
+  CHECK_FALSE(contains(said("SIGHTGLASS_PLUGINS='" + here + "other'"), here + "plugins/"));
 }

@@ -8,17 +8,11 @@
 #include "support/test.h"
 
 using namespace sg;
+using test::bytes_of;
+using test::must;
 using test::sightglass;
 
 namespace {
-
-std::string bytes_of(const std::string& name) { return std::string(MappedFile(test::temp_folder() + name).text()); }
-
-void must(const std::vector<std::string>& args) {
-  const auto r = sightglass(args);
-  INFO(args[0] << ": " << r.err);
-  REQUIRE(r.status == 0);
-}
 
 // Pixels that are not background.
 size_t ink(const Image& image) {

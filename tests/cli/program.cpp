@@ -46,6 +46,15 @@ Ran sightglass(const std::vector<std::string>& args, const std::string& folder, 
   return r;
 }
 
+Ran must(const std::vector<std::string>& args) {
+  const Ran r = sightglass(args);
+  INFO(args[0] << ": " << r.err);
+  REQUIRE(r.status == 0);
+  return r;
+}
+
+std::string bytes_of(const std::string& name) { return std::string(MappedFile(temp_folder() + name).text()); }
+
 std::vector<std::string> files_in(const std::string& folder) {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path().filename().string());

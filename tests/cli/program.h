@@ -15,6 +15,12 @@ struct Ran {
 /// `largest_file` > 0 limits the size of files it can write, as a full disk does.
 Ran sightglass(const std::vector<std::string>& args, const std::string& folder = {}, long largest_file = 0);
 
+/// Runs it in the temporary folder; the test stops where it fails.
+Ran must(const std::vector<std::string>& args);
+
+/// The bytes of a file in the temporary folder.
+std::string bytes_of(const std::string& name);
+
 /// Names of the files in a folder, sorted.
 std::vector<std::string> files_in(const std::string& folder);
 

@@ -14,6 +14,7 @@
 #include "support/test.h"
 
 using namespace sg;
+using test::contains;
 using test::sightglass;
 
 namespace {
@@ -36,8 +37,6 @@ void put_recipe(const std::string& path, const std::string& recipe, const std::s
   if (!inputs.empty()) image.text.emplace_back("sightglass-inputs", inputs);
   write_image(path, image);
 }
-
-bool says(const std::string& text, std::string_view what) { return text.find(what) != std::string::npos; }
 
 test::Ran open(const Place& p, std::vector<std::string> more = {}) {
   std::vector<std::string> args{"open", "pictures/a.png", "-o", "out.png", "--size", "40x30"};
@@ -63,8 +62,8 @@ TEST_CASE("recipes: one that would write a file is refused, whichever way it say
     const auto before = test::files_in(p.work), beside = test::files_in(p.work + "pictures");
     const auto r = open(p);
     CHECK(r.status == 2);
-    CHECK(says(r.err, "would write a file"));
-    CHECK(says(r.err, "pwned.txt"));
+    CHECK(contains(r.err, "would write a file"));
+    CHECK(contains(r.err, "pwned.txt"));
     CHECK(test::files_in(p.work) == before);
     CHECK(test::files_in(p.work + "pictures") == beside);
     CHECK_FALSE(file_exists("/tmp/sightglass-pwned.txt"));
@@ -84,8 +83,8 @@ TEST_CASE("recipes: they read below the folder of the picture and the working fo
     put_recipe(p.work + "pictures/a.png", "steps: {a: {read: \"" + path + "\"}}");
     const auto r = open(p);
     CHECK(r.status == 2);
-    CHECK(says(r.err, "--read-anywhere"));
-    CHECK(says(r.err, "in.vti"));
+    CHECK(contains(r.err, "--read-anywhere"));
+    CHECK(contains(r.err, "in.vti"));
     CHECK_FALSE(file_exists(p.work + "out.png"));
   }
   put_recipe(p.work + "pictures/a.png", "steps: {a: {read: ../../secret/in.vti}}");
@@ -99,7 +98,7 @@ TEST_CASE("recipes: they read below the folder of the picture and the working fo
   put_recipe(p.work + "pictures/a.png", "steps: {a: {read: here/in.vti}}");
   const auto r = open(p);
   CHECK(r.status == 2);
-  CHECK(says(r.err, "here/in.vti"));
+  CHECK(contains(r.err, "here/in.vti"));
 }
 
 TEST_CASE("recipes: no parameter and no file that is read leads out") {
@@ -125,8 +124,8 @@ TEST_CASE("recipes: no parameter and no file that is read leads out") {
     put_recipe(p.work + "pictures/a.png", recipe);
     const auto r = open(p);
     CHECK(r.status != 0);
-    CHECK(says(r.err, "--read-anywhere"));
-    CHECK(says(r.err, "secret"));
+    CHECK(contains(r.err, "--read-anywhere"));
+    CHECK(contains(r.err, "secret"));
     CHECK_FALSE(file_exists(p.work + "out.png"));
   }
 }
@@ -138,9 +137,9 @@ TEST_CASE("recipes: the list of inputs leads to no other file") {
              "0 xxh3-4m ../../secret/in.vti\n0 xxh3-4m pipe\n0 xxh3-4m /etc/passwd\n0 xxh3-4m ../in.vti\n");
   const auto r = open(p);
   CHECK(r.status == 0);
-  CHECK(says(r.err, "in.vti' has changed since"));
-  CHECK_FALSE(says(r.err, "secret"));
-  CHECK_FALSE(says(r.err, "passwd"));
+  CHECK(contains(r.err, "in.vti' has changed since"));
+  CHECK_FALSE(contains(r.err, "secret"));
+  CHECK_FALSE(contains(r.err, "passwd"));
 }
 
 TEST_CASE("recipes: every word is bounded") {

@@ -1,29 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tables and files of colours where meshes are expected, and colours of a file in a picture.
-#include <filesystem>
-
 #include "base/file/file.h"
 #include "cli/program.h"
 #include "image/codec.h"
 #include "support/test.h"
 
 using namespace sg;
+using test::contains;
+using test::fresh_folder;
 using test::sightglass;
 
-namespace {
-
-std::string fresh(const std::string& name) {
-  const std::string f = test::temp_folder() + name + "/";
-  std::filesystem::remove_all(f);
-  std::filesystem::create_directories(f);
-  return f;
-}
-bool has(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
-
-}  // namespace
-
 TEST_CASE("render: a table is refused with the filter that makes points of it") {
-  const std::string f = fresh("tables");
+  const std::string f = fresh_folder("tables");
   write_file(f + "t.csv", "name,mass,age\na,1,2\nb,3,4\n");
   for (const std::vector<std::string>& args : {std::vector<std::string>{"render", "t.csv", "-o", "t.png"},
                                                {"render", "t.csv", "--show", "points", "-o", "t.png"},
@@ -31,16 +19,16 @@ TEST_CASE("render: a table is refused with the filter that makes points of it") 
     const auto r = sightglass(args, f);
     INFO(r.err);
     CHECK(r.status == 2);
-    CHECK(has(r.err, "table"));
+    CHECK(contains(r.err, "table"));
   }
-  CHECK(has(sightglass({"render", "t.csv", "-o", "t.png"}, f).err, "table_to_points x='mass' y='age'"));
+  CHECK(contains(sightglass({"render", "t.csv", "-o", "t.png"}, f).err, "table_to_points x='mass' y='age'"));
   CHECK(sightglass({"render", "t.csv", "-f", "table_to_points x='mass' y='age'", "-o", "t.png", "-q"}, f).status == 0);
   write_file(f + "g.gml", "graph [ node [ id 1 ] edge [ source 1 target 1 ] ]");
-  CHECK(has(sightglass({"render", "g.gml", "-o", "g.png"}, f).err, "tables (nodes, edges)"));
+  CHECK(contains(sightglass({"render", "g.gml", "-o", "g.png"}, f).err, "tables (nodes, edges)"));
 }
 
 TEST_CASE("demo: tables and colour maps in a folder are passed over with a word, each file once") {
-  const std::string f = fresh("mixed");
+  const std::string f = fresh_folder("mixed");
   write_file(f + "t.csv", "mass,age\n1,2\n3,4\n");
   write_file(f + "rows.json", "[{\"a\":1},{\"a\":2}]");
   write_file(f + "map.json", "{\"R\":[0,255],\"G\":[0,255],\"B\":[0,255]}");
@@ -48,19 +36,19 @@ TEST_CASE("demo: tables and colour maps in a folder are passed over with a word,
   write_file(f + "g.gml", "graph [ node [ id 1 ] ]");
   write_file(f + "broken.gltf", "{");
   write_file(f + "s.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-  const auto r = sightglass({"demo", f, "--sheet", "sheet.png"}, fresh("sheet"));
+  const auto r = sightglass({"demo", f, "--sheet", "sheet.png"}, fresh_folder("sheet"));
   INFO(r.out << r.err);
   CHECK(r.status == 0);
-  CHECK(has(r.out, "t.csv: skipped: a table"));
-  CHECK(has(r.out, "rows.json: skipped: a table"));
-  CHECK(has(r.out, "map.json: skipped: colour maps (1)"));
-  CHECK(has(r.out, "g.gml: skipped"));
-  CHECK(has(r.out, "broken.gltf: refused"));
-  CHECK(has(r.out, "6 files, 1 refused, 4 skipped"));
+  CHECK(contains(r.out, "t.csv: skipped: a table"));
+  CHECK(contains(r.out, "rows.json: skipped: a table"));
+  CHECK(contains(r.out, "map.json: skipped: colour maps (1)"));
+  CHECK(contains(r.out, "g.gml: skipped"));
+  CHECK(contains(r.out, "broken.gltf: refused"));
+  CHECK(contains(r.out, "6 files, 1 refused, 4 skipped"));
 }
 
 TEST_CASE("colour maps of files: in a picture, its recipe, and the listing") {
-  const std::string f = fresh("maps");
+  const std::string f = fresh_folder("maps");
   write_file(f + "two.cpt", "0 255/0/0 1 255/0/0\n");
   const auto r =
       sightglass({"render", "-s", "gyroid size=8", "--show", "surface lit=false map=two.cpt", "-o", "a.png", "-q", "--size", "160x120"}, f);
@@ -75,5 +63,5 @@ TEST_CASE("colour maps of files: in a picture, its recipe, and the listing") {
   CHECK(sightglass({"colormap", "two.cpt"}, f).out.find("1 entries in RGB") != std::string::npos);
   const auto bad = sightglass({"render", "-s", "gyroid size=8", "--map", "none.cpt", "-o", "c.png"}, f);
   CHECK(bad.status != 0);
-  CHECK(has(bad.err, "none.cpt"));
+  CHECK(contains(bad.err, "none.cpt"));
 }

@@ -5,25 +5,18 @@
 #include "support/test.h"
 
 using namespace sg;
+using test::bytes_of;
+using test::contains;
+using test::must;
 using test::sightglass;
 
 namespace {
 
 std::string path_of(const std::string& name) { return test::temp_folder() + name; }
-std::string bytes_of(const std::string& name) { return std::string(MappedFile(path_of(name)).text()); }
-
-test::Ran must(const std::vector<std::string>& args) {
-  const auto r = sightglass(args);
-  INFO(args[0] << ": " << r.err);
-  REQUIRE(r.status == 0);
-  return r;
-}
 
 std::vector<std::string> render(const std::string& show, const std::string& out) {
   return {"render", "transfer.vti", "--show", show, "--size", "240x180", "-o", out};
 }
-
-bool says(const std::string& text, std::string_view what) { return text.find(what) != std::string::npos; }
 
 }  // namespace
 
@@ -55,20 +48,20 @@ TEST_CASE("transfer functions: saved to a file and loaded, they make the same pi
       "a.png"));
   const std::string text = bytes_of("look.yaml");
   CHECK(text.starts_with("sightglass-transfer: 1\n"));
-  CHECK(says(text, "second: gradient"));
-  CHECK(says(text, "unit: 0.5"));
-  CHECK_FALSE(says(must({"open", "a.png", "--recipe"}).out, "save"));  // to look again writes nothing
+  CHECK(contains(text, "second: gradient"));
+  CHECK(contains(text, "unit: 0.5"));
+  CHECK_FALSE(contains(must({"open", "a.png", "--recipe"}).out, "save"));  // to look again writes nothing
   must(render("volume transfer=look.yaml save=again.yaml", "b.png"));
   CHECK(bytes_of("again.yaml") == text);
   const auto recipe = must({"open", "b.png", "--recipe"}).out;
-  CHECK(says(recipe, "second: gradient"));
-  CHECK_FALSE(says(recipe, "look.yaml"));
+  CHECK(contains(recipe, "second: gradient"));
+  CHECK_FALSE(contains(recipe, "look.yaml"));
   write_file(path_of("look.yaml"), "gone");
   must({"open", "b.png", "-o", "c.png"});
   CHECK(bytes_of("b.png") == bytes_of("c.png"));
   // Stated words win over the file's.
   must(render("volume transfer=again.yaml shaded=true save=third.yaml", "d.png"));
-  CHECK(says(bytes_of("third.yaml"), "shaded: true") + says(bytes_of("third.yaml"), "shaded: \"true\"") == 1);
+  CHECK(contains(bytes_of("third.yaml"), "shaded: true") + contains(bytes_of("third.yaml"), "shaded: \"true\"") == 1);
 }
 
 TEST_CASE("transfer functions: files that are none are refused with the line") {
@@ -79,15 +72,15 @@ TEST_CASE("transfer functions: files that are none are refused with the line") {
     CHECK(r.status == 2);
     return r.err;
   };
-  CHECK(says(refused("opacity: '0:0,1:1'\n"), "sightglass-transfer: 1"));
-  CHECK(says(refused("sightglass-transfer: 2\n"), "version '2'"));
-  CHECK(says(refused("sightglass-transfer: 1\nopacitty: 0.5\n"), "did you mean 'opacity'"));
-  CHECK(says(refused("sightglass-transfer: 1\nopacitty: 0.5\n"), "line 2"));
-  CHECK(says(refused("sightglass-transfer: 1\nopacity: '0:0,1:3'\n"), "not between 0 and 1"));
-  CHECK(says(refused("sightglass-transfer: 1\nopacity: {0: 1}\n"), "holds a map"));
-  CHECK(says(refused("sightglass-transfer: 1\ntransfer: other.yaml\n"), "names another file"));
-  CHECK(says(refused("- 1\n"), "is not a transfer function"));
-  CHECK(says(refused("{"), "bad.yaml"));
+  CHECK(contains(refused("opacity: '0:0,1:1'\n"), "sightglass-transfer: 1"));
+  CHECK(contains(refused("sightglass-transfer: 2\n"), "version '2'"));
+  CHECK(contains(refused("sightglass-transfer: 1\nopacitty: 0.5\n"), "did you mean 'opacity'"));
+  CHECK(contains(refused("sightglass-transfer: 1\nopacitty: 0.5\n"), "line 2"));
+  CHECK(contains(refused("sightglass-transfer: 1\nopacity: '0:0,1:3'\n"), "not between 0 and 1"));
+  CHECK(contains(refused("sightglass-transfer: 1\nopacity: {0: 1}\n"), "holds a map"));
+  CHECK(contains(refused("sightglass-transfer: 1\ntransfer: other.yaml\n"), "names another file"));
+  CHECK(contains(refused("- 1\n"), "is not a transfer function"));
+  CHECK(contains(refused("{"), "bad.yaml"));
   const std::string list = "sightglass-transfer: 1\nopacity: ['0:0', '@0.00002:0.25', '1:0.5']\nlevels: [0.00001, 0.00002]\n";
   write_file(path_of("list.yaml"), list);
   must(render("volume transfer=list.yaml", "a.png"));
@@ -100,14 +93,14 @@ TEST_CASE("transfer functions: files that are none are refused with the line") {
   }
   const auto missing = sightglass(render("volume transfer=nowhere.yaml", "a.png"));
   CHECK(missing.status == 3);
-  CHECK(says(missing.err, "nowhere.yaml"));
+  CHECK(contains(missing.err, "nowhere.yaml"));
 }
 
 TEST_CASE("transfer functions: what was chosen and why reaches the screen, once") {
   must({"convert", "--source", "hydrogen size=24", "-o", "transfer.vti"});
-  CHECK(says(must(render("volume", "a.png")).err, "values above"));
-  CHECK(says(must(render("volume transfer=boundaries", "a.png")).err, "material bound"));
-  CHECK(says(must(render("volume preset=density", "a.png")).err, "preset density"));
+  CHECK(contains(must(render("volume", "a.png")).err, "values above"));
+  CHECK(contains(must(render("volume transfer=boundaries", "a.png")).err, "material bound"));
+  CHECK(contains(must(render("volume preset=density", "a.png")).err, "preset density"));
   const auto plain = must({"render", "transfer.vti", "--size", "240x180", "-o", "a.png"});
   const std::string all = plain.out + plain.err;
   const size_t first = all.find("values above");
@@ -115,6 +108,6 @@ TEST_CASE("transfer functions: what was chosen and why reaches the screen, once"
   CHECK(all.find("values above", first + 1) == all.npos);
   const auto bad = sightglass(render("volume preset=mri opacity=0:2 tolerance=0", "a.png"));
   CHECK(bad.status == 2);
-  CHECK(says(bad.err, "tolerance"));
-  CHECK(says(bad.err, "mri"));
+  CHECK(contains(bad.err, "tolerance"));
+  CHECK(contains(bad.err, "mri"));
 }

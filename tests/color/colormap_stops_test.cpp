@@ -3,9 +3,9 @@
 #include <fmt/core.h>
 
 #include "base/text/text.h"
-#include "color/colormap_file.h"
-#include "color/colormap_formats.h"
-#include "color/colormap_nodes.h"
+#include "color/map_files/colormap_file.h"
+#include "color/map_files/colormap_formats.h"
+#include "color/map_files/colormap_nodes.h"
 #include "color/parse_color.h"
 #include "color/transfer_text.h"
 #include "support/test.h"

@@ -85,10 +85,6 @@ class H5Sample {
   hid_t file_ = -1;
 };
 
-inline Data read_any(const std::string& path, const ReadOptions& options = {}) {
-  Context context;
-  return read_data(path, options, context);
-}
 inline std::string bytes_of(const std::string& path) { return std::string(MappedFile(path).text()); }
 
 }  // namespace sg::test

@@ -5,7 +5,7 @@
 #include "io_files.h"
 
 using namespace sg;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 namespace {
 
@@ -14,7 +14,7 @@ void put(std::string& s, std::initializer_list<T> values) {
   for (T v : values) s.append(reinterpret_cast<const char*>(&v), sizeof v);
 }
 
-std::string glb(Json json, const std::string& binary) {
+std::string glb(OrderedJson json, const std::string& binary) {
   json["asset"]["version"] = "2.0";
   json["buffers"] = {{{"byteLength", binary.size()}}};
   std::string text = json.dump(), padded = binary;
@@ -38,8 +38,8 @@ std::string square_bytes() {
   return s;
 }
 
-Json square(int mode = 4, int indices = 6) {
-  Json j;
+OrderedJson square(int mode = 4, int indices = 6) {
+  OrderedJson j;
   j["bufferViews"] = {{{"buffer", 0}, {"byteLength", 112}, {"byteStride", 28}}, {{"buffer", 0}, {"byteOffset", 112}, {"byteLength", 8}}};
   j["accessors"] = {{{"bufferView", 0}, {"componentType", 5126}, {"count", 4}, {"type", "VEC3"}},
                     {{"bufferView", 0}, {"byteOffset", 12}, {"componentType", 5126}, {"count", 4}, {"type", "VEC3"}},
@@ -52,8 +52,8 @@ Json square(int mode = 4, int indices = 6) {
   return j;
 }
 
-DatasetPtr read(const Json& j, const std::string& bytes = square_bytes()) { return test::read_one("a.glb", glb(j, bytes)); }
-std::string refusal(const Json& j, const std::string& bytes = square_bytes()) { return test::refusal("bad.glb", glb(j, bytes)); }
+DatasetPtr read(const OrderedJson& j, const std::string& bytes = square_bytes()) { return test::read_text("a.glb", glb(j, bytes)); }
+std::string refusal(const OrderedJson& j, const std::string& bytes = square_bytes()) { return test::refusal("bad.glb", glb(j, bytes)); }
 
 }  // namespace
 
@@ -81,7 +81,7 @@ TEST_CASE("gltf: points, lines, loops, strips and fans") {
     if (mode == 5) CHECK(m.strips.size() == 1);
     if (mode == 6) CHECK(m.polygons.fixed == 3);
   }
-  Json j = square();
+  OrderedJson j = square();
   j["meshes"][0]["primitives"][0].erase("indices");
   j["meshes"][0]["primitives"][0]["mode"] = 6;
   CHECK(read(j)->cell_count() == 2);
@@ -91,7 +91,7 @@ TEST_CASE("gltf: indices of 16 and 32 bits") {
   for (const int bytes : {2, 4}) {
     std::string b = square_bytes().substr(0, 112);
     for (uint32_t i : {3u, 2u, 1u}) b.append(reinterpret_cast<const char*>(&i), size_t(bytes));
-    Json j = square(4, 3);
+    OrderedJson j = square(4, 3);
     j["accessors"][3]["componentType"] = bytes == 2 ? 5123 : 5125;
     j["bufferViews"][1]["byteLength"] = 3 * bytes;
     CHECK(read(j, b)->as<SurfaceMesh>()->polygons.connectivity.get(0) == 3);
@@ -99,7 +99,7 @@ TEST_CASE("gltf: indices of 16 and 32 bits") {
 }
 
 TEST_CASE("gltf: nodes move points and turn normals, as matrices and as translation, rotation and scale") {
-  Json j = square();
+  OrderedJson j = square();
   const double h = std::sqrt(0.5);
   // A quarter turn about x takes z to -y; then twice as large along x; the parent lifts by 10.
   j["nodes"] = {{{"children", {1}}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 10, 1}}},
@@ -114,7 +114,7 @@ TEST_CASE("gltf: nodes move points and turn normals, as matrices and as translat
 
 TEST_CASE("gltf: normals stay at right angles under a slanting scale, and mirrored triangles are turned back") {
   // The plane x + z = 0 squeezed along z by 4: normals are (1, 0, 4) of the squeezed plane.
-  Json j = square();
+  OrderedJson j = square();
   std::string b;
   for (int k = 0; k < 4; ++k) {
     put<float>(b, {float(k == 1 || k == 2), float(k >= 2), -float(k == 1 || k == 2), float(std::sqrt(0.5)), 0, float(std::sqrt(0.5))});
@@ -135,7 +135,7 @@ TEST_CASE("gltf: normals stay at right angles under a slanting scale, and mirror
 }
 
 TEST_CASE("gltf: sparse accessors replace single values, also of zeros") {
-  Json j = square();
+  OrderedJson j = square();
   std::string b = square_bytes();
   put<uint16_t>(b, {1, 3});
   put<float>(b, {5, 6, 7, 8, 9, 10});
@@ -154,11 +154,11 @@ TEST_CASE("gltf: sparse accessors replace single values, also of zeros") {
 }
 
 TEST_CASE("gltf: buffers lie in the file, in data: URIs and in files beside it") {
-  Json j = square();
+  OrderedJson j = square();
   j["asset"]["version"] = "2.0";
   j["buffers"] = {{{"byteLength", 120}, {"uri", "corners%20of%20it.bin"}}};
   test::temp_file("corners of it.bin", square_bytes());
-  CHECK(test::read_one("beside.gltf", j.dump())->as<SurfaceMesh>()->points.at(2) == Vec3(1, 1, 0));
+  CHECK(test::read_text("beside.gltf", j.dump())->as<SurfaceMesh>()->points.at(2) == Vec3(1, 1, 0));
   j["buffers"][0]["uri"] = "/etc/hostname";
   CHECK(test::contains(test::refusal("beside.gltf", j.dump()), "beside"));
   j["buffers"][0]["uri"] = "nowhere.bin";
@@ -170,7 +170,7 @@ TEST_CASE("gltf: buffers lie in the file, in data: URIs and in files beside it")
 }
 
 TEST_CASE("gltf: several primitives make a collection with names") {
-  Json j = square();
+  OrderedJson j = square();
   j["meshes"][0]["primitives"].push_back(j["meshes"][0]["primitives"][0]);
   j["meshes"][0]["name"] = "plate";
   j["materials"] = {{{"name", "steel"}, {"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0, 1}}}}}};
@@ -189,41 +189,41 @@ TEST_CASE("gltf: several primitives make a collection with names") {
 
 TEST_CASE("gltf: what is wrong is named") {
   auto with = [](auto change) {
-    Json j = square();
+    OrderedJson j = square();
     change(j);
     return refusal(j);
   };
   using test::contains;
-  CHECK(contains(with([](Json& j) { j["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }), "KHR_draco_mesh_compression"));
-  CHECK(contains(with([](Json& j) { j["extensionsRequired"] = {"EXT_meshopt_compression"}; }), "EXT_meshopt_compression"));
-  CHECK(contains(with([](Json& j) {
+  CHECK(contains(with([](OrderedJson& j) { j["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }), "KHR_draco_mesh_compression"));
+  CHECK(contains(with([](OrderedJson& j) { j["extensionsRequired"] = {"EXT_meshopt_compression"}; }), "EXT_meshopt_compression"));
+  CHECK(contains(with([](OrderedJson& j) {
                    j["accessors"][0].erase("bufferView");
-                   j["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = Json::object();
+                   j["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = OrderedJson::object();
                  }),
                  "KHR_draco_mesh_compression"));
-  CHECK(contains(with([](Json& j) { j["nodes"][0]["children"] = {0}; }), "its own ancestor"));
-  CHECK(contains(with([](Json& j) { j["nodes"][0]["children"] = {7}; }), "'children' is 7"));
-  CHECK(contains(with([](Json& j) { j["accessors"][0]["count"] = 5; }), "accessor 0"));
-  CHECK(contains(with([](Json& j) { j["accessors"][0]["count"] = uint64_t(1) << 63; }), "2^31 points"));
-  CHECK(contains(with([](Json& j) { j["accessors"][0]["count"] = -1; }), "'count'"));
-  CHECK(contains(with([](Json& j) { j["accessors"][3]["count"] = 5; }), "not a multiple of 3"));
-  CHECK(contains(with([](Json& j) { j["accessors"][1]["count"] = 3; }), "'NORMAL' has 3 values for 4 points"));
-  CHECK(contains(with([](Json& j) { j["accessors"][0]["type"] = "VEC5"; }), "VEC5"));
-  CHECK(contains(with([](Json& j) { j["accessors"][0]["componentType"] = 1; }), "componentType"));
-  CHECK(contains(with([](Json& j) { j["bufferViews"][0]["byteLength"] = 121; }), "bufferView 0"));
-  CHECK(contains(with([](Json& j) { j["bufferViews"][0]["byteOffset"] = UINT64_MAX; }), "bufferView 0"));
-  CHECK(contains(with([](Json& j) { j["bufferViews"][0]["byteStride"] = UINT64_MAX; }), "accessor 0"));
-  CHECK(contains(with([](Json& j) { j["meshes"][0]["primitives"][0]["indices"] = 9; }), "'indices' is 9"));
-  CHECK(contains(with([](Json& j) { j["meshes"][0]["primitives"][0]["mode"] = 7; }), "'mode' is 7"));
-  CHECK(contains(with([](Json& j) { j["nodes"][0].erase("mesh"); }), "no node"));
-  CHECK(contains(with([](Json& j) { j["nodes"][0]["rotation"] = {0, 0, 0, 0}; }), "rotation"));
+  CHECK(contains(with([](OrderedJson& j) { j["nodes"][0]["children"] = {0}; }), "its own ancestor"));
+  CHECK(contains(with([](OrderedJson& j) { j["nodes"][0]["children"] = {7}; }), "'children' is 7"));
+  CHECK(contains(with([](OrderedJson& j) { j["accessors"][0]["count"] = 5; }), "accessor 0"));
+  CHECK(contains(with([](OrderedJson& j) { j["accessors"][0]["count"] = uint64_t(1) << 63; }), "2^31 points"));
+  CHECK(contains(with([](OrderedJson& j) { j["accessors"][0]["count"] = -1; }), "'count'"));
+  CHECK(contains(with([](OrderedJson& j) { j["accessors"][3]["count"] = 5; }), "not a multiple of 3"));
+  CHECK(contains(with([](OrderedJson& j) { j["accessors"][1]["count"] = 3; }), "'NORMAL' has 3 values for 4 points"));
+  CHECK(contains(with([](OrderedJson& j) { j["accessors"][0]["type"] = "VEC5"; }), "VEC5"));
+  CHECK(contains(with([](OrderedJson& j) { j["accessors"][0]["componentType"] = 1; }), "componentType"));
+  CHECK(contains(with([](OrderedJson& j) { j["bufferViews"][0]["byteLength"] = 121; }), "bufferView 0"));
+  CHECK(contains(with([](OrderedJson& j) { j["bufferViews"][0]["byteOffset"] = UINT64_MAX; }), "bufferView 0"));
+  CHECK(contains(with([](OrderedJson& j) { j["bufferViews"][0]["byteStride"] = UINT64_MAX; }), "accessor 0"));
+  CHECK(contains(with([](OrderedJson& j) { j["meshes"][0]["primitives"][0]["indices"] = 9; }), "'indices' is 9"));
+  CHECK(contains(with([](OrderedJson& j) { j["meshes"][0]["primitives"][0]["mode"] = 7; }), "'mode' is 7"));
+  CHECK(contains(with([](OrderedJson& j) { j["nodes"][0].erase("mesh"); }), "no node"));
+  CHECK(contains(with([](OrderedJson& j) { j["nodes"][0]["rotation"] = {0, 0, 0, 0}; }), "rotation"));
   std::string far = square_bytes();
   far[112] = 4;
   CHECK(contains(refusal(square(), far), "index 4"));
   CHECK(contains(test::refusal("one.gltf", R"({"asset":{"version":"1.0"}})"), "glTF 1.0"));
   CHECK(contains(test::refusal("deep.gltf", std::string(100000, '[')), "nested"));
-  Json chain = square();
-  chain["nodes"] = Json::array();
+  OrderedJson chain = square();
+  chain["nodes"] = OrderedJson::array();
   for (int i = 0; i < 5000; ++i) chain["nodes"].push_back({{"children", {i + 1}}});
   chain["nodes"].push_back({{"mesh", 0}});
   CHECK(contains(refusal(chain), "nested more than 1000"));
@@ -231,7 +231,7 @@ TEST_CASE("gltf: what is wrong is named") {
 
 TEST_CASE("gltf: cut and damaged files are read or refused") {
   test::check_survives("robust.glb", glb(square(), square_bytes()));
-  Json j = square();
+  OrderedJson j = square();
   j["asset"]["version"] = "2.0";
   j["buffers"] = {{{"byteLength", 3}, {"uri", "data:;base64,AAAA"}}};
   const std::string text = j.dump();
@@ -281,18 +281,19 @@ TEST_CASE("gltf: what is written is read again, as .glb and .gltf, and from any 
 TEST_CASE("gltf: the files of the data folder agree with the manifest" * doctest::skip(test::no_data())) {
   const MappedFile manifest(test::data_file("manifest.json"));
   size_t files = 0;
-  std::function<void(const Json&, std::vector<Json>&)> leaves = [&](const Json& block, std::vector<Json>& found) {
+  std::function<void(const OrderedJson&, std::vector<OrderedJson>&)> leaves = [&](const OrderedJson& block,
+                                                                                  std::vector<OrderedJson>& found) {
     if (block["class"] == "vtkPolyData") found.push_back(block);
     else
-      for (const Json& b : block["blocks"]) leaves(b, found);
+      for (const OrderedJson& b : block["blocks"]) leaves(b, found);
   };
-  const Json all = Json::parse(manifest.text());
-  for (const Json& entry : all["datasets"]) {
+  const OrderedJson all = OrderedJson::parse(manifest.text());
+  for (const OrderedJson& entry : all["datasets"]) {
     const std::string path = entry["path"];
     if (!path.ends_with(".glb")) continue;
     CAPTURE(path);
     ++files;
-    std::vector<Json> wanted;
+    std::vector<OrderedJson> wanted;
     leaves(entry["vtk"]["data"], wanted);
     Context context;
     std::vector<DatasetPtr> have;
@@ -300,8 +301,8 @@ TEST_CASE("gltf: the files of the data folder agree with the manifest" * doctest
     REQUIRE(have.size() == wanted.size());
     for (size_t i = 0; i < have.size(); ++i) {
       // Parts may come in another order; each is told by its points, and the two wheels by their places.
-      const Json* w = nullptr;
-      for (const Json& k : wanted)
+      const OrderedJson* w = nullptr;
+      for (const OrderedJson& k : wanted)
         if (k["points"] == have[i]->point_count() && std::abs(k["bounds"][0].get<double>() - have[i]->bounds().lo.x) < 1e-4) w = &k;
       REQUIRE(w != nullptr);
       CHECK((*w)["cells"] == have[i]->cell_count());
@@ -310,7 +311,7 @@ TEST_CASE("gltf: the files of the data folder agree with the manifest" * doctest
         CHECK(have[i]->bounds().lo[a] == doctest::Approx((*w)["bounds"][size_t(2 * a)].get<double>()).epsilon(1e-6));
         CHECK(have[i]->bounds().hi[a] == doctest::Approx((*w)["bounds"][size_t(2 * a + 1)].get<double>()).epsilon(1e-6));
       }
-      for (const Json& f : (*w)["point_data"]) {
+      for (const OrderedJson& f : (*w)["point_data"]) {
         const Field& field = have[i]->fields().require(f["name"].get<std::string>(), Association::point);
         CHECK(field.components() == f["components"].get<int>());
         CHECK(field.array.type() == ElementType::f32);

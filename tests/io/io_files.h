@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Helpers of the file tests: texts written to a temporary file and read back, and damage done to them.
 #pragma once
+#include <algorithm>
 #include <cstring>
 #include <string>
 
@@ -8,6 +9,7 @@
 #include "base/parallel.h"
 #include "data/dataset.h"
 #include "io/io.h"
+#include "support/same_data.h"
 #include "support/test.h"
 
 namespace sg::test {
@@ -19,13 +21,29 @@ inline std::string temp_file(const std::string& name, std::string_view bytes) {
   return path;
 }
 
-inline DatasetPtr read_file(const std::string& path, const ReadOptions& options = {}) {
+/// An empty folder in the temporary folder; without trailing '/'.
+inline std::string empty_folder(const std::string& name) {
+  std::string path = fresh_folder(name);
+  path.pop_back();
+  return path;
+}
+
+inline Data read_any(const std::string& path, const ReadOptions& options = {}) {
   Context context;
-  return std::get<DatasetPtr>(read_data(path, options, context));
+  return read_data(path, options, context);
+}
+/// Of bytes that are written into the temporary folder under `name` first.
+inline Data read_bytes(const std::string& name, std::string_view bytes, const ReadOptions& options = {}) {
+  return read_any(temp_file(name, bytes), options);
+}
+inline DatasetPtr read_file(const std::string& path, const ReadOptions& options = {}) {
+  return std::get<DatasetPtr>(read_any(path, options));
 }
 inline DatasetPtr read_text(const std::string& name, std::string_view bytes, const ReadOptions& options = {}) {
   return read_file(temp_file(name, bytes), options);
 }
+
+inline const SurfaceMesh& surface_of(const DatasetPtr& d) { return std::get<SurfaceMesh>(d->mesh()); }
 
 /// Reading with header_only gives the same meshes, and fields of the same names, types, sizes, units and roles as reading all. Returns
 /// the number of fields.
@@ -61,7 +79,6 @@ inline size_t check_names_alone(const std::string& path, ReadOptions options = {
 inline std::string refusal(const std::string& name, std::string_view bytes, const ReadOptions& options = {}) {
   return error_of([&] { read_text(name, bytes, options); });
 }
-inline bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 /// Reads the first k/64 of the bytes for k = 1..63 and the file with each 1/64th byte changed: every time an Error or a valid
 /// dataset. Returns how many of the 63 cut files were refused.
@@ -100,11 +117,13 @@ auto with_threads(int n, F&& make) {
   return r;
 }
 
-/// Same type, shape and bytes.
-inline bool same_array(const Array& a, const Array& b) {
-  const Array x = a.made_packed(), y = b.made_packed();
-  return x.type() == y.type() && x.count() == y.count() && x.components() == y.components() &&
-         (x.bytes() == 0 || std::memcmp(x.raw(), y.raw(), x.bytes()) == 0);
+/// Numbers as bytes in either order.
+template <class T>
+void put_bytes(std::string& s, T v, bool big_endian = false) {
+  char b[sizeof(T)];
+  std::memcpy(b, &v, sizeof(T));
+  if (big_endian) std::reverse(b, b + sizeof(T));
+  s.append(b, sizeof(T));
 }
 
 }  // namespace sg::test

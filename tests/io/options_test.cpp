@@ -5,6 +5,7 @@
 #include "support/test.h"
 
 using namespace sg;
+using test::contains;
 using test::error_of;
 
 namespace {
@@ -23,8 +24,6 @@ bool same(const ReadOptions& a, const ReadOptions& b) {
          a.raw_big_endian == b.raw_big_endian && a.raw_header == b.raw_header && a.raw_components == b.raw_components &&
          a.raw_spacing == b.raw_spacing && a.csv_header == b.csv_header && a.times == b.times;
 }
-
-bool says(const std::string& error, const char* words) { return error.find(words) != error.npos; }
 
 }  // namespace
 
@@ -66,26 +65,26 @@ TEST_CASE("read options: what is not stated stays out of the words") {
 }
 
 TEST_CASE("read options: what cannot be says what would be right") {
-  CHECK(says(error_of([] { read_of({"dims=3,4"}); }), "list of 3"));
-  CHECK(says(error_of([] { read_of({"dims=3,4,5"}); }), "u8 i8"));
-  CHECK(says(error_of([] { read_of({"dims=3,4,0"}); }), "at least 1"));
-  CHECK(says(error_of([] { read_of({"type=f77"}); }), "not a number type"));
-  CHECK(says(error_of([] { read_of({"region=1,2"}); }), "list of 6"));
-  CHECK(says(error_of([] { read_of({"region=5,1,0,1,0,1"}); }), "begins at 5 and ends at 1"));
-  CHECK(says(error_of([] { read_of({"stride=1,2"}); }), "one or three numbers"));
-  CHECK(says(error_of([] { read_of({"piece=2", "pieces=2"}); }), "no piece 2 of 2"));
-  CHECK(says(error_of([] { read_of({"csv_header=maybe"}); }), "auto"));
+  CHECK(contains(error_of([] { read_of({"dims=3,4"}); }), "list of 3"));
+  CHECK(contains(error_of([] { read_of({"dims=3,4,5"}); }), "u8 i8"));
+  CHECK(contains(error_of([] { read_of({"dims=3,4,0"}); }), "at least 1"));
+  CHECK(contains(error_of([] { read_of({"type=f77"}); }), "not a number type"));
+  CHECK(contains(error_of([] { read_of({"region=1,2"}); }), "list of 6"));
+  CHECK(contains(error_of([] { read_of({"region=5,1,0,1,0,1"}); }), "begins at 5 and ends at 1"));
+  CHECK(contains(error_of([] { read_of({"stride=1,2"}); }), "one or three numbers"));
+  CHECK(contains(error_of([] { read_of({"piece=2", "pieces=2"}); }), "no piece 2 of 2"));
+  CHECK(contains(error_of([] { read_of({"csv_header=maybe"}); }), "auto"));
 }
 
 TEST_CASE("write options: a format takes its own options and no others") {
   const auto of = [](const char* file, const std::vector<std::string>& words) { return write_options(format_to_write(file), words); };
   CHECK(of("a.nrrd", {"compression=gzip"}).compression == Compression::gzip);
-  CHECK(says(error_of([&] { of("a.nrrd", {"compression=lz4"}); }), "none"));
+  CHECK(contains(error_of([&] { of("a.nrrd", {"compression=lz4"}); }), "none"));
   CHECK(of("a.vtu", {"encoding=base64", "compression=lzma"}).encoding == VtkEncoding::base64);
   CHECK(of("a.zarr", {"chunk=32"}).chunk == 32);
-  CHECK(says(error_of([&] { of("a.zarr", {"chunk=4"}); }), "from 8 to 512"));
+  CHECK(contains(error_of([&] { of("a.zarr", {"chunk=4"}); }), "from 8 to 512"));
   CHECK_FALSE(of("a.stl", {"binary=false"}).binary);
-  CHECK(says(error_of([&] { of("a.stl", {"compression=zlib"}); }), "unknown parameter 'compression'"));
-  CHECK(says(error_of([&] { of("a.obj", {"binary=false"}); }), "no parameters"));
+  CHECK(contains(error_of([&] { of("a.stl", {"compression=zlib"}); }), "unknown parameter 'compression'"));
+  CHECK(contains(error_of([&] { of("a.obj", {"binary=false"}); }), "no parameters"));
   CHECK(of("a.obj", {}).binary);
 }

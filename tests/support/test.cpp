@@ -51,6 +51,13 @@ const std::string& temp_folder() {
   return folder.path;
 }
 
+std::string fresh_folder(const std::string& name) {
+  const std::string folder = temp_folder() + name + "/";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  return folder;
+}
+
 double observed_order(const double* h, const double* error, int n) {
   double sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (int i = 0; i < n; ++i) {

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <string>
+#include <string_view>
 
 #include "base/error.h"
 
@@ -20,6 +21,8 @@ const char* source_folder();
 const char* build_folder();
 /// A fresh folder that is removed when the program ends; with trailing '/'.
 const std::string& temp_folder();
+/// An empty folder in it; with trailing '/'.
+std::string fresh_folder(const std::string& name);
 
 /// The message of the Error that f throws; fails the test when it throws none.
 template <class F>
@@ -32,6 +35,8 @@ std::string error_of(F&& f) {
   FAIL_CHECK("no Error was thrown");
   return "";
 }
+
+inline bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 /// Observed order of convergence: least-squares slope of log(error) against log(h).
 double observed_order(const double* h, const double* error, int n);

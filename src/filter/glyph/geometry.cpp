@@ -55,7 +55,8 @@ DatasetPtr glyph_geometry(const DatasetPtr& data, const GlyphRule& rule, const s
   parallel_for(n, glyphs_per_chunk, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       if (const Shape* s = shape_at(i))
-        points[begin / glyphs_per_chunk] += s->points(), lines[begin / glyphs_per_chunk] += s->lines.size(), triangles[begin / glyphs_per_chunk] += s->triangles.size();
+        points[begin / glyphs_per_chunk] += s->points(), lines[begin / glyphs_per_chunk] += s->lines.size(),
+            triangles[begin / glyphs_per_chunk] += s->triangles.size();
   });
   const size_t all_points = exclusive_scan(points), all_lines = exclusive_scan(lines), all_triangles = exclusive_scan(triangles);
   double bytes = 12;

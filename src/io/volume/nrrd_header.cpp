@@ -313,6 +313,14 @@ NrrdHeader parse_nrrd_header(const MappedFile& file) {
   return std::move(parser.h);
 }
 
+// Bytes with three or four of them first, and many along all other axes.
+static bool is_picture(const NrrdHeader& h) {
+  constexpr size_t least = 16;
+  const auto& axes = h.axes;
+  return h.type == ElementType::u8 && axes.size() >= 3 && (axes[0].size == 3 || axes[0].size == 4) && std::isnan(axes[0].spacing) &&
+         std::all_of(axes.begin() + 1, axes.end(), [](const NrrdAxis& a) { return a.size >= least; });
+}
+
 void classify_axes(NrrdHeader& h) {
   enum class Is { unknown, space, time, components };
   const size_t n = h.axes.size();
@@ -324,7 +332,7 @@ void classify_axes(NrrdHeader& h) {
     if (a.has_direction || a.kind == "domain" || a.kind == "space") is[i] = Is::space;
     else if (a.kind == "time") is[i] = Is::time;
     else if (a.no_direction || !(a.kind.empty() || a.kind == "none" || a.kind == "???")) is[i] = Is::components;
-    else if (i == 0 && n >= 3 && a.size >= 2 && a.size <= 4 && a.spacing != a.spacing) is[i] = Is::components;
+    else if (i == 0 && is_picture(h)) is[i] = Is::components;
     else if (i == 0 && n >= 2 && some_spacing && a.spacing != a.spacing) is[i] = Is::components;
     else is[i] = Is::space;
   }

@@ -47,9 +47,10 @@ struct NrrdHeader {
 NrrdHeader parse_nrrd_header(const MappedFile& file);
 
 /// Decides NrrdAxis::is_space. An axis with a direction, or of kind domain or space, is space; one whose direction is "none" or
-/// whose kind is another is components. Without either, a first axis of 2, 3 or 4 entries in three or more is components when no spacing is
-/// given for it (colour images). A time axis counts as space while no more than three do. Of more than three space axes the first becomes
-/// components when it is short (at most 9, and shorter than the last), else the last ones do.
+/// whose kind is another is components. Without either all axes are space, but the first one of bytes that look like a picture (3 or 4
+/// first, at least 16 along the others) and the first one without a spacing where others have one. A time axis counts as space while no
+/// more than three do. Of more than three space axes the first becomes components when it is short (at most 9, and shorter than the last),
+/// else the last ones do.
 void classify_axes(NrrdHeader& h);
 
 /// Dims, spacing, direction and origin of the space axes.

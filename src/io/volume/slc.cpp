@@ -44,7 +44,8 @@ struct Words {
   }
 };
 
-void unpack_slice(std::span<const std::byte> in, std::byte* out, size_t need, size_t at, const std::string& where) {
+// Returns how many bytes are missing at the end, at most `forgiven`; they become 0.
+size_t unpack_slice(std::span<const std::byte> in, std::byte* out, size_t need, size_t forgiven, size_t at, const std::string& where) {
   size_t i = 0, n = 0;
   auto fail = [&] { fail_data(fmt::format("byte {}: the run lengths of this slice make {} of {} bytes", at + i, n, need), where); };
   while (i < in.size()) {
@@ -62,7 +63,19 @@ void unpack_slice(std::span<const std::byte> in, std::byte* out, size_t need, si
     }
     n += run;
   }
-  if (n != need) fail();
+  if (need - n > forgiven) fail();
+  std::memset(out + n, 0, need - n);
+  return need - n;
+}
+
+// Writers have left the last samples out; other readers do not even look.
+void tell_of_short_slices(const std::vector<size_t>& missing, const LatticePart& part, const std::string& path, Context& context) {
+  const auto first = std::find_if(missing.begin(), missing.end(), [](size_t n) { return n > 0; });
+  if (first == missing.end()) return;
+  const auto count = std::count_if(first, missing.end(), [](size_t n) { return n > 0; });
+  const size_t k = part.lo[2] + size_t(first - missing.begin()) * part.stride[2];
+  context.log(LogLevel::warning, fmt::format("{}: slice {} is {} byte{} short{}; read as 0", path, k, *first, *first == 1 ? "" : "s",
+                                             count > 1 ? fmt::format(", and so are {} more", count - 1) : ""));
 }
 
 }  // namespace
@@ -79,7 +92,7 @@ bool sniff_slc(std::span<const std::byte> head) {
   return true;
 }
 
-Data read_slc(const std::string& path, const ReadOptions& options, Context&) {
+Data read_slc(const std::string& path, const ReadOptions& options, Context& context) {
   const MappedFile file(path);
   Words w{file};
   if (w.number("11111") != 11111) fail_data("byte 0: an SLC file begins with 11111", path);
@@ -102,7 +115,7 @@ Data read_slc(const std::string& path, const ReadOptions& options, Context&) {
   w.at += 3 * width * height;
 
   // Where each slice lies, before memory is allocated.
-  const size_t slice = grid.dims[0] * grid.dims[1];
+  const size_t row = grid.dims[0], slice = row * grid.dims[1];
   std::vector<std::span<const std::byte>> slices;
   const std::span<const std::byte> bytes(file.data(), file.size());
   for (size_t k = 0; k < grid.dims[2]; ++k) {
@@ -126,17 +139,23 @@ Data read_slc(const std::string& path, const ReadOptions& options, Context&) {
   Array a = Array::make_raw(ElementType::u8, part.points(), 1, &to);
   const LatticePart in_slice{
       {part.dims[0], part.dims[1], 1}, {part.lo[0], part.lo[1], 0}, {part.count[0], part.count[1], 1}, {part.stride[0], part.stride[1], 1}};
+  std::vector<size_t> missing(part.count[2]);  // bytes, of each slice that is read
   parallel_for(part.count[2], 1, [&](size_t begin, size_t) {
     const auto& in = slices[part.lo[2] + begin * part.stride[2]];
     std::byte* place = to + begin * part.count[0] * part.count[1];
-    if (packing && in_slice.whole()) return unpack_slice(in, place, slice, size_t(in.data() - file.data()), path);
+    const auto unpack = [&](std::byte* out) { return unpack_slice(in, out, slice, row, size_t(in.data() - file.data()), path); };
+    if (packing && in_slice.whole()) {
+      missing[begin] = unpack(place);
+      return;
+    }
     std::vector<std::byte> whole;
     if (packing) {
       whole.resize(slice);
-      unpack_slice(in, whole.data(), slice, size_t(in.data() - file.data()), path);
+      missing[begin] = unpack(whole.data());
     }
     copy_part(packing ? whole.data() : in.data(), 1, in_slice, place);
   });
+  tell_of_short_slices(missing, part, path, context);
   out.fields.add({"SLCImage", Association::point, std::move(a), "", Role::scalars});
   return make_dataset(std::move(out));
 }

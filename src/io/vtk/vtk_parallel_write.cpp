@@ -302,7 +302,8 @@ void write_vtk_parallel(const std::string& path, const Data& data, const WriteOp
   if (auto* g = pieces[0].data->as<UniformGrid>()) {
     std::string direction;
     for (int i = 0; i < 9; ++i) direction += (i ? " " : "") + exact_number(g->direction.m[i / 3][i % 3]);
-    attributes.insert(attributes.end(), {{"Origin", point_text(whole.zero)}, {"Spacing", point_text(g->spacing)}, {"Direction", direction}});
+    attributes.insert(attributes.end(),
+                      {{"Origin", point_text(whole.zero)}, {"Spacing", point_text(g->spacing)}, {"Direction", direction}});
   }
   PartsFolder folder(path);
   std::string text = fmt::format("<VTKFile type=\"{}\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n  <{}{}>\n",

@@ -23,7 +23,6 @@ namespace xdmf {
 
 namespace {
 
-
 std::string grid_type(pugi::xml_node grid) {
   const std::string type = to_lower(attribute(grid, "GridType", "Type"));
   return type.empty() ? "uniform" : type;

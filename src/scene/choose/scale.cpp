@@ -9,7 +9,7 @@
 
 #include "base/all_ranks.h"
 #include "base/text/text.h"
-#include "color/colormap_file.h"
+#include "color/map_files/colormap_file.h"
 #include "color/parse_color.h"
 #include "data/lattice.h"
 #include "data/ranks/over_all.h"

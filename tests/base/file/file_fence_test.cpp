@@ -13,16 +13,12 @@
 #include "support/test.h"
 
 using namespace sg;
+using test::contains;
+using test::fresh_folder;
 namespace fs = std::filesystem;
 
 namespace {
 
-std::string fresh(const std::string& name) {
-  const std::string path = test::temp_folder() + name + "/";
-  fs::create_directories(path);
-  return path;
-}
-bool has(const std::string& text, std::string_view what) { return text.find(what) != std::string::npos; }
 size_t entries(const std::string& folder) { return size_t(std::distance(fs::directory_iterator(folder), {})); }
 
 struct NoFence {
@@ -32,7 +28,7 @@ struct NoFence {
 }  // namespace
 
 TEST_CASE("fence: a file names files below its folder, a trusted folder or the working folder, and no others") {
-  const std::string top = fresh("named"), here = top + "a/b/";
+  const std::string top = fresh_folder("named"), here = top + "a/b/";
   fs::create_directories(here);
   const std::string header = here + "h.mhd";
   for (const char* inside : {"x.raw", "sub/x.raw", "./x.raw", "sub/../x.raw", "..x", "a..b", ".../x"})
@@ -41,9 +37,9 @@ TEST_CASE("fence: a file names files below its folder, a trusted folder or the w
                                      here + "x.raw", std::string("/etc/passwd"), std::string("x/../../../../../../../../../etc/passwd")}) {
     INFO(outside);
     const std::string said = test::error_of([&] { named_file(header, outside); });
-    CHECK(has(said, "'" + outside + "'"));
-    CHECK(has(said, "h.mhd"));
-    CHECK(has(said, "--read-anywhere"));
+    CHECK(contains(said, "'" + outside + "'"));
+    CHECK(contains(said, "h.mhd"));
+    CHECK(contains(said, "--read-anywhere"));
   }
   CHECK_THROWS_AS(named_file(header, std::string("a\0b", 3)), Error);
   trust_folder_of(top + "a/all.vtm");  // what the user named leads here
@@ -58,7 +54,7 @@ TEST_CASE("fence: a file names files below its folder, a trusted folder or the w
 
 TEST_CASE("fence: inside it nothing else is read, listed or written, through links neither") {
   const NoFence after;
-  const std::string top = fresh("fenced"), in = fresh("fenced/in"), out = fresh("fenced/out");
+  const std::string top = fresh_folder("fenced"), in = fresh_folder("fenced/in"), out = fresh_folder("fenced/out");
   write_file(in + "a", "a"), write_file(out + "b", "b");
   fs::create_symlink(out + "b", in + "link");
   fs::create_symlink(out, in + "folder");
@@ -66,11 +62,11 @@ TEST_CASE("fence: inside it nothing else is read, listed or written, through lin
   CHECK(MappedFile(in + "a").text() == "a");
   for (const std::string& path : {out + "b", in + "link", in + "folder/b", in + "../out/b", std::string("/etc/passwd"), out + "missing"}) {
     INFO(path);
-    CHECK(has(test::error_of([&] { MappedFile{path}; }), "the recipe may not read it"));
+    CHECK(contains(test::error_of([&] { MappedFile{path}; }), "the recipe may not read it"));
   }
   CHECK_THROWS_AS(folder_entries(out), Error);
   CHECK_NOTHROW(folder_entries(in));
-  CHECK(has(test::error_of([&] { write_file(in + "c", "c"); }), "the recipe may not write it"));
+  CHECK(contains(test::error_of([&] { write_file(in + "c", "c"); }), "the recipe may not write it"));
   CHECK_THROWS_AS(PartialFile{in + "c"}, Error);
   write_file(top + "result", "r");
   set_file_fence({{"/"}, {}, "the recipe"});  // the root is no fence
@@ -80,18 +76,18 @@ TEST_CASE("fence: inside it nothing else is read, listed or written, through lin
 }
 
 TEST_CASE("file: a pipe or a device is refused at once, for reading and for writing") {
-  const std::string folder = fresh("pipes"), pipe = folder + "pipe";
+  const std::string folder = fresh_folder("pipes"), pipe = folder + "pipe";
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
-  CHECK(has(test::error_of([&] { MappedFile{pipe}; }), "is a pipe, not a file"));
-  CHECK(has(test::error_of([] { MappedFile{"/dev/zero"}; }), "is a device, not a file"));
-  CHECK(has(test::error_of([&] { write_file(pipe, "x"); }), "not a file"));
-  CHECK(has(test::error_of([&] { PartialFile{pipe}; }), "not a file"));
+  CHECK(contains(test::error_of([&] { MappedFile{pipe}; }), "is a pipe, not a file"));
+  CHECK(contains(test::error_of([] { MappedFile{"/dev/zero"}; }), "is a device, not a file"));
+  CHECK(contains(test::error_of([&] { write_file(pipe, "x"); }), "not a file"));
+  CHECK(contains(test::error_of([&] { PartialFile{pipe}; }), "not a file"));
   CHECK_FALSE(is_plain_file(pipe));
   CHECK(entries(folder) == 1);
 }
 
 TEST_CASE("file: temporary names cannot be foreseen, are new, and are never too long") {
-  const std::string folder = fresh("partials"), path = folder + "out.vdb";
+  const std::string folder = fresh_folder("partials"), path = folder + "out.vdb";
   CHECK(partial_name(path) != partial_name(path));
   std::string a, b;
   const int fa = create_partial(path, a), fb = create_partial(path, b);
@@ -110,7 +106,7 @@ TEST_CASE("file: temporary names cannot be foreseen, are new, and are never too 
 }
 
 TEST_CASE("file: a place for writers that open by name is the user's alone, and becomes the file or goes") {
-  const std::string folder = fresh("partial_file"), path = folder + "out.mp4";
+  const std::string folder = fresh_folder("partial_file"), path = folder + "out.mp4";
   {
     PartialFile f(path);
     struct stat st {};

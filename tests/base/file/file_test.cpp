@@ -3,13 +3,13 @@
 
 #include <dirent.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 
 #include <csignal>
 
 #include "support/test.h"
 
 using namespace sg;
+using test::fresh_folder;
 
 namespace {
 int files_in(const std::string& folder) {
@@ -19,11 +19,6 @@ int files_in(const std::string& folder) {
   while (const dirent* e = ::readdir(d)) n += e->d_name[0] != '.';
   ::closedir(d);
   return n;
-}
-std::string fresh_folder(const std::string& name) {
-  const std::string path = test::temp_folder() + name + "/";
-  REQUIRE(::mkdir(path.c_str(), 0755) == 0);
-  return path;
 }
 }  // namespace
 

@@ -102,8 +102,8 @@ void quadratic_hessian(Vec3, double* v) {
   const double h[9] = {2, 0, 2, 0, -1, 1, 2, 1, 0};
   std::copy_n(h, 9, v);
 }
-void wave(Vec3 p, double* v) { v[0] = std::sin(2 * p.x) * std::cos(p.y) + p.z * p.z * p.x; }
-void wave_gradient(Vec3 p, double* v) {
+void wave_value(Vec3 p, double* v) { v[0] = std::sin(2 * p.x) * std::cos(p.y) + p.z * p.z * p.x; }
+void wave_slope(Vec3 p, double* v) {
   v[0] = 2 * std::cos(2 * p.x) * std::cos(p.y) + p.z * p.z, v[1] = -std::sin(2 * p.x) * std::sin(p.y), v[2] = 2 * p.z * p.x;
 }
 // ABC flow with A = B = C = 1 and period 2: curl u = pi u, div u = 0.
@@ -131,7 +131,7 @@ TEST_CASE("gradient: second order on tetrahedra up to the border, points and cel
     for (const size_t n : {4, 6, 9, 13}) {
       Context ctx;
       h.push_back(1.0 / double(n));
-      e.push_back(error(gradient(with(tets(n), on, 1, wave), {}, ctx), "gradient(f)", 2, wave_gradient));
+      e.push_back(error(gradient(with(tets(n), on, 1, wave_value), {}, ctx), "gradient(f)", 2, wave_slope));
     }
     CHECK(order(h, e) > 1.8);
   }
@@ -143,11 +143,11 @@ TEST_CASE("gradient: cell fields of grids are second order, uniform, rectilinear
     Context ctx;
     const UniformGrid u = cube(n);
     h.push_back(1.0 / double(n - 1));
-    e.push_back(error(gradient(with(u, Association::cell, 1, wave), {}, ctx), "gradient(f)", 2, wave_gradient));
+    e.push_back(error(gradient(with(u, Association::cell, 1, wave_value), {}, ctx), "gradient(f)", 2, wave_slope));
     CurvilinearGrid g;
     g.dims = u.dims;
     g.points.xyz = tets(n - 1).points.xyz;
-    c.push_back(error(gradient(with(g, Association::cell, 1, wave), {}, ctx), "gradient(f)", 2, wave_gradient));
+    c.push_back(error(gradient(with(g, Association::cell, 1, wave_value), {}, ctx), "gradient(f)", 2, wave_slope));
   }
   CHECK(order(h, e) > 1.8);
   CHECK(order(h, c) > 1.8);
@@ -191,7 +191,7 @@ TEST_CASE("hessian: second order inside a grid, symmetric, with the unit of a se
   std::vector<double> h, e;
   for (const size_t n : {11, 15, 21, 31}) {
     Context ctx;
-    const DatasetPtr d = hessian(with(cube(n), Association::point, 1, wave), {}, ctx);
+    const DatasetPtr d = hessian(with(cube(n), Association::point, 1, wave_value), {}, ctx);
     h.push_back(2.0 / double(n - 1));
     e.push_back(error(d, "hessian(f)", 0.6, second));
     CHECK(d->fields().require("hessian(f)").unit == "m/length^2");
@@ -228,13 +228,13 @@ TEST_CASE("quadratic fit: too few neighbours keep linear functions exact and say
 
 TEST_CASE("derivatives: wrong fields are refused, threads do not change a byte") {
   Context ctx;
-  const DatasetPtr d = with(tets(3), Association::point, 1, wave);
+  const DatasetPtr d = with(tets(3), Association::point, 1, wave_value);
   CHECK(test::error_of([&] { curl(d, {}, ctx); }).find("no field of 3 components") != std::string::npos);
   CHECK(test::error_of([&] { divergence(d, {{"f"}, ""}, ctx); }).find("has 1 components, not 3") != std::string::npos);
   std::vector<Array> r;
   for (const int threads : {1, 8}) {
     set_thread_count(threads);
-    r.push_back(hessian(with(tets(9), Association::point, 1, wave), {}, ctx)->fields().require("hessian(f)").array);
+    r.push_back(hessian(with(tets(9), Association::point, 1, wave_value), {}, ctx)->fields().require("hessian(f)").array);
   }
   set_thread_count(0);
   CHECK(std::memcmp(r[0].raw(), r[1].raw(), r[0].bytes()) == 0);

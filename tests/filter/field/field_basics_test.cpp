@@ -8,7 +8,7 @@ using sg::test::error_of;
 
 namespace {
 
-DatasetPtr sample() {
+DatasetPtr two_points() {
   UniformGrid g;
   g.dims = {2, 1, 1};
   FieldSet f;
@@ -23,7 +23,7 @@ DatasetPtr sample() {
 
 TEST_CASE("fields: select keeps, drops and shares the data") {
   Context ctx;
-  const DatasetPtr in = sample();
+  const DatasetPtr in = two_points();
   const DatasetPtr kept = select(in, {.keep = {"v", "rev"}}, ctx);
   CHECK(kept->fields().names() == std::vector<std::string>{"v", "rev"});
   CHECK(kept->fields().require("v").array.raw() == in->fields().require("v").array.raw());
@@ -35,51 +35,51 @@ TEST_CASE("fields: select keeps, drops and shares the data") {
 
 TEST_CASE("fields: magnitude has the unit of its vector, NaN stays NaN") {
   Context ctx;
-  const Field m = magnitude(sample(), {}, ctx)->fields().require("v_magnitude", Association::point);
+  const Field m = magnitude(two_points(), {}, ctx)->fields().require("v_magnitude", Association::point);
   CHECK(m.array.type() == ElementType::f64);
   CHECK(m.array.get(0) == 5);
   CHECK(std::isnan(m.array.get(1)));
   CHECK(m.unit == "m/s");
-  CHECK(magnitude(sample(), {.field = {"v"}, .name = "speed"}, ctx)->fields().find("speed") != nullptr);
+  CHECK(magnitude(two_points(), {.field = {"v"}, .name = "speed"}, ctx)->fields().find("speed") != nullptr);
   CHECK(error_of([] {
           Context c;
-          magnitude(sample(), {.field = {"T"}}, c);
+          magnitude(two_points(), {.field = {"T"}}, c);
         }).find("one component") != std::string::npos);
   CHECK(error_of([] {
           Context c;
-          magnitude(select(sample(), {.keep = {"T"}}, c), {}, c);
+          magnitude(select(two_points(), {.keep = {"T"}}, c), {}, c);
         }).find("no vector field") != std::string::npos);
 }
 
 TEST_CASE("fields: scale replaces or adds, and drops a unit that would be wrong") {
   Context ctx;
-  const DatasetPtr c = scale_field(sample(), {.offset = -273.15, .name = "C", .unit = "degC"}, ctx);
+  const DatasetPtr c = scale_field(two_points(), {.offset = -273.15, .name = "C", .unit = "degC"}, ctx);
   CHECK(c->fields().require("C").unit == "degC");
   CHECK(c->fields().require("C").array.get(1) == doctest::Approx(26.85));
   CHECK(c->fields().require("T").unit == "K");
   std::string note;
   ctx.on_log = [&](LogLevel, std::string_view t) { note = t; };
-  const Field t = scale_field(sample(), {.field = {"T"}, .factor = 2}, ctx)->fields().require("T");
+  const Field t = scale_field(two_points(), {.field = {"T"}, .factor = 2}, ctx)->fields().require("T");
   CHECK(t.unit.empty());
   CHECK(t.role == Role::scalars);
   CHECK(t.array.get(1) == 600);
   CHECK(note.find("loses its unit K") != std::string::npos);
-  const Field id = scale_field(sample(), {.field = {"id"}}, ctx)->fields().require("id");
+  const Field id = scale_field(two_points(), {.field = {"id"}}, ctx)->fields().require("id");
   CHECK(id.array.type() == ElementType::f32);
   CHECK(id.association == Association::cell);
   CHECK(error_of([] {
           Context x;
-          scale_field(sample(), {.field = {"Q"}}, x);
+          scale_field(two_points(), {.field = {"Q"}}, x);
         }).find("not found") != std::string::npos);
   CHECK(error_of([] {
           Context x;
-          scale_field(sample(), {.factor = INFINITY}, x);
+          scale_field(two_points(), {.factor = INFINITY}, x);
         }).find("finite") != std::string::npos);
 }
 
 TEST_CASE("fields: component shares the bytes and is named after its axis") {
   Context ctx;
-  const DatasetPtr in = sample();
+  const DatasetPtr in = two_points();
   const Field y = component(in, {.component = 1}, ctx)->fields().require("v_y");
   CHECK(y.array.get(0) == 4);
   CHECK(y.unit == "m/s");

@@ -12,7 +12,7 @@ using namespace sg;
 namespace {
 
 // Four points on a line x = 0, 2, 4, 6 with T = 1..4 K, velocity (i, 2, 0) m/s, rho (cells) 3 cells.
-DatasetPtr sample() {
+DatasetPtr line_of_four() {
   UniformGrid g;
   g.dims = {4, 1, 1};
   g.spacing = {2, 1, 1};
@@ -28,14 +28,14 @@ DatasetPtr sample() {
 
 double value(const std::string& expr, size_t i = 1, int c = 0, std::optional<CalcPlace> on = {}) {
   Context ctx;
-  return calc(sample(), {expr, "r", on}, ctx)->fields().require("r").array.get(i, c);
+  return calc(line_of_four(), {expr, "r", on}, ctx)->fields().require("r").array.get(i, c);
 }
-std::string error(const std::string& expr) {
+std::string error_of_calc(const std::string& expr) {
   return test::error_of([&] { value(expr); });
 }
 const Field result(const std::string& expr) {
   Context ctx;
-  return calc(sample(), {expr, "r", {}}, ctx)->fields().require("r");
+  return calc(line_of_four(), {expr, "r", {}}, ctx)->fields().require("r");
 }
 
 }  // namespace
@@ -103,7 +103,7 @@ TEST_CASE("calc: units go through products, powers and roots; unequal sums lose 
   Context ctx;
   std::string said;
   ctx.on_log = [&](LogLevel, std::string_view t) { said = t; };
-  CHECK(calc(sample(), {"T + velocity.x", "r", {}}, ctx)->fields().require("r").unit == "");
+  CHECK(calc(line_of_four(), {"T + velocity.x", "r", {}}, ctx)->fields().require("r").unit == "");
   CHECK(said.find("'K' and 'm/s'") != std::string::npos);
 }
 
@@ -118,21 +118,21 @@ TEST_CASE("units: notations of one unit are equal, unreadable ones stay a symbol
 }
 
 TEST_CASE("calc: mistakes say where and what would be right") {
-  CHECK(error("T +").find("ends too early") != std::string::npos);
-  CHECK(error("T + velocit").find("did you mean 'velocity'") != std::string::npos);
-  CHECK(error("sqr(T)").find("did you mean 'sqrt'") != std::string::npos);
-  CHECK(error("(T").find("a ')' is missing") != std::string::npos);
-  CHECK(error("T T").find("character 3") != std::string::npos);
-  CHECK(error("velocity + grad").find("combines 3 numbers with 9") != std::string::npos);
-  CHECK(error("velocity[3]").find("component 3 of 3") != std::string::npos);
-  CHECK(error("sqrt(T, 2)").find("takes 1 argument, not 2") != std::string::npos);
-  CHECK(error("T * rho").find("cell_to_point") != std::string::npos);
-  CHECK(error("").find("the expression is empty") != std::string::npos);
-  CHECK(error(std::string(5000, '(')).find("nested too deeply") != std::string::npos);
-  CHECK(error(std::string(5000, '-') + "1").find("nested too deeply") != std::string::npos);
+  CHECK(error_of_calc("T +").find("ends too early") != std::string::npos);
+  CHECK(error_of_calc("T + velocit").find("did you mean 'velocity'") != std::string::npos);
+  CHECK(error_of_calc("sqr(T)").find("did you mean 'sqrt'") != std::string::npos);
+  CHECK(error_of_calc("(T").find("a ')' is missing") != std::string::npos);
+  CHECK(error_of_calc("T T").find("character 3") != std::string::npos);
+  CHECK(error_of_calc("velocity + grad").find("combines 3 numbers with 9") != std::string::npos);
+  CHECK(error_of_calc("velocity[3]").find("component 3 of 3") != std::string::npos);
+  CHECK(error_of_calc("sqrt(T, 2)").find("takes 1 argument, not 2") != std::string::npos);
+  CHECK(error_of_calc("T * rho").find("cell_to_point") != std::string::npos);
+  CHECK(error_of_calc("").find("the expression is empty") != std::string::npos);
+  CHECK(error_of_calc(std::string(5000, '(')).find("nested too deeply") != std::string::npos);
+  CHECK(error_of_calc(std::string(5000, '-') + "1").find("nested too deeply") != std::string::npos);
   std::string many = "T";
   for (int i = 0; i < 3000; ++i) many += "+T";
-  CHECK(error(many).find("more than 2000 terms") != std::string::npos);
+  CHECK(error_of_calc(many).find("more than 2000 terms") != std::string::npos);
 }
 
 TEST_CASE("calc: NaN goes through, and any number of threads gives the same bytes") {

@@ -15,13 +15,6 @@ using namespace sg::test::flow;
 
 namespace {
 
-bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
-Vec3 rotation(Vec3 p) { return {-p.y, p.x, 0}; }
-
-Series steady(const DatasetPtr& d, std::vector<double> times) {
-  return {std::move(times), [d](size_t) -> Data { return d; }};
-}
-
 std::string note_of(const std::function<void(Context&)>& f) {
   Context context;
   std::string notes;
@@ -58,18 +51,18 @@ TEST_CASE("flow: a time in which the flow passes through a billion cells is refu
   const DatasetPtr d = with_velocity(mesh_of("uniform", 4, 1), rotation);
   PathlinesParams p;
   p.seeds.points = {0.5, 0, 0};
-  CHECK(contains(error_of([&] { pathlines(steady(d, {0, 1e15}), {}, p, context); }), "units of time"));
+  CHECK(contains(error_of([&] { pathlines(steady_series(d, {0, 1e15}), {}, p, context); }), "units of time"));
   FtleParams f;
   f.duration = 1e9, f.size = 8;
-  CHECK(contains(error_of([&] { ftle(steady(d, {0}), f, context); }), "units of time"));
+  CHECK(contains(error_of([&] { ftle(steady_series(d, {0}), f, context); }), "units of time"));
   f.duration = 1;
-  CHECK_NOTHROW(ftle(steady(d, {0}), f, context));
+  CHECK_NOTHROW(ftle(steady_series(d, {0}), f, context));
   for (const char* unit : {"cells", "length", "time"}) {
     CAPTURE(unit);
     p.integration.step = 1e-300, p.integration.step_unit = *value_of_word<StepUnit>(unit);
-    CHECK(contains(error_of([&] { pathlines(steady(d, {0, 1}), {}, p, context); }), "do not cross a cell"));
+    CHECK(contains(error_of([&] { pathlines(steady_series(d, {0, 1}), {}, p, context); }), "do not cross a cell"));
     p.integration.step = 1e-2;
-    CHECK_NOTHROW(pathlines(steady(d, {0, 1}), {}, p, context));
+    CHECK_NOTHROW(pathlines(steady_series(d, {0, 1}), {}, p, context));
   }
 }
 
@@ -79,9 +72,9 @@ TEST_CASE("flow: spacings and steps without measure are refused by name") {
   StreaklinesParams s;
   s.seeds.points = {0.5, 0, 0};
   s.spacing = 1e-300;
-  CHECK(contains(error_of([&] { streaklines(steady(d, {0, 1}), {}, s, context); }), "spacing=1e-300"));
+  CHECK(contains(error_of([&] { streaklines(steady_series(d, {0, 1}), {}, s, context); }), "spacing=1e-300"));
   s.spacing = 0.1;
-  CHECK_NOTHROW(streaklines(steady(d, {0, 1}), {}, s, context));
+  CHECK_NOTHROW(streaklines(steady_series(d, {0, 1}), {}, s, context));
   SurfaceLicParams lic;
   lic.density = 8, lic.step = 1e9;
   CHECK(contains(error_of([&] { surface_lic(d, lic, context); }), "step=1e+09"));

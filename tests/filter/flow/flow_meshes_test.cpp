@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lines through every kind of mesh (correctness.md F1, F2).
-#include "filter/every_mesh.h"
-
 #include <numbers>
+
+#include "filter/every_mesh.h"
 #include "filter/flow/streamlines.h"
 
 using namespace sg;
@@ -19,7 +19,6 @@ Vec3 spiral_at(Vec3 p, double t) {
   const double e = std::exp(-t / 10), c = std::cos(t), s = std::sin(t);
   return {e * (c * p.x - s * p.y), e * (s * p.x + c * p.y), std::exp(-t / 5) * p.z};
 }
-Vec3 rotation(Vec3 p) { return {-p.y, p.x, 0}; }
 
 // psi = sin x sin y, the stream function of Taylor-Green vortices.
 double vortex_psi(Vec3 p) { return std::sin(p.x) * std::sin(p.y); }

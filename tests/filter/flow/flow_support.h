@@ -21,12 +21,20 @@ Array at_points(const Mesh& mesh, F&& f, int components = 3) {
   return Array::from_vector(std::move(v), components);
 }
 
+/// About the z axis, one radian in a unit of time.
+inline Vec3 rotation(Vec3 p) { return {-p.y, p.x, 0}; }
+
 /// The mesh with the point field "velocity" alone.
 template <class T = double, class F>
 DatasetPtr velocity_on(const Mesh& mesh, F&& f) {
   FieldSet fields;
   fields.add({"velocity", Association::point, at_points<T>(mesh, f), "", Role::vectors});
   return make_dataset(mesh, std::move(fields));
+}
+
+/// The same data at each of the times.
+inline Series steady_series(const Data& d, std::vector<double> times = {0}) {
+  return {std::move(times), [=](size_t) -> Data { return d; }};
 }
 
 /// dims points, the first at lo, the same distance along each axis.

@@ -18,12 +18,12 @@ using std::numbers::pi;
 // A flow whose velocity depends on place and time and whose path is known: a spiral around the z axis whose pitch is driven by cos t,
 // x = e^{-t/10} (cos t, sin t), z = sin t.
 Vec3 spiral_velocity(Vec3 x, double t) { return {-0.1 * x.x - x.y, x.x - 0.1 * x.y, std::cos(t)}; }
-Vec3 spiral(double t) { return {std::exp(-t / 10) * std::cos(t), std::exp(-t / 10) * std::sin(t), std::sin(t)}; }
+Vec3 spiral_place(double t) { return {std::exp(-t / 10) * std::cos(t), std::exp(-t / 10) * std::sin(t), std::sin(t)}; }
 
-double error_of(Scheme scheme, int steps) {
+double error_of_spiral(Scheme scheme, int steps) {
   AnalyticFlow flow{spiral_velocity};
   const double h = 2.0 / steps;
-  Vec3 x = spiral(0), v;
+  Vec3 x = spiral_place(0), v;
   for (int i = 0; i < steps; ++i) {
     const double t = i * h;
     flow(x, t, v);
@@ -35,7 +35,7 @@ double error_of(Scheme scheme, int steps) {
       REQUIRE(fixed_step(scheme, flow, x, t, h, v, x));
     }
   }
-  return length(x - spiral(2));
+  return length(x - spiral_place(2));
 }
 
 }  // namespace
@@ -43,9 +43,9 @@ double error_of(Scheme scheme, int steps) {
 TEST_CASE("integrators: errors of a known unsteady path fall with the order of each scheme") {
   for (const Scheme s : {Scheme::euler, Scheme::midpoint, Scheme::heun, Scheme::rk4, Scheme::dormand_prince}) {
     const int n = s == Scheme::dormand_prince ? 8 : 16;
-    double last = error_of(s, n);
+    double last = error_of_spiral(s, n);
     for (int k = 1; k <= 3; ++k) {
-      const double now = error_of(s, n << k), order = std::log2(last / now);
+      const double now = error_of_spiral(s, n << k), order = std::log2(last / now);
       CAPTURE(int(s));
       CHECK(order == doctest::Approx(order_of(s)).epsilon(0.2 / order_of(s)));
       last = now;
@@ -60,11 +60,11 @@ TEST_CASE("integrators: the dense output of Dormand and Prince has order 4 betwe
     const double h = 0.8 / (1 << k);
     DormandPrinceStep s;
     Vec3 v;
-    flow(spiral(0.3), 0.3, v);
-    REQUIRE(dormand_prince_step(flow, spiral(0.3), 0.3, h, v, s));
+    flow(spiral_place(0.3), 0.3, v);
+    REQUIRE(dormand_prince_step(flow, spiral_place(0.3), 0.3, h, v, s));
     double worst = 0;
-    for (const double theta : {0.25, 0.5, 0.8}) worst = std::max(worst, length(s.at(theta) - spiral(0.3 + theta * h)));
-    CHECK(length(s.at(0) - spiral(0.3)) < 1e-14);
+    for (const double theta : {0.25, 0.5, 0.8}) worst = std::max(worst, length(s.at(theta) - spiral_place(0.3 + theta * h)));
+    CHECK(length(s.at(0) - spiral_place(0.3)) < 1e-14);
     CHECK(length(s.at(1) - s.x1) < 1e-14);
     if (k > 0) CHECK(std::log2(last / worst) > 4.7);  // one step: an order more
     last = worst;
@@ -107,8 +107,8 @@ TEST_CASE("integrators: the implicit midpoint rule has order 2 and keeps a quadr
     REQUIRE(fixed_step(Scheme::implicit_midpoint, ellipse, x, 0, h, v, x));
   }
   CHECK(psi(x) == doctest::Approx(0.5).epsilon(1e-10));
-  double last = error_of(Scheme::implicit_midpoint, 16);
-  const double now = error_of(Scheme::implicit_midpoint, 32);
+  double last = error_of_spiral(Scheme::implicit_midpoint, 16);
+  const double now = error_of_spiral(Scheme::implicit_midpoint, 32);
   CHECK(std::log2(last / now) == doctest::Approx(2).epsilon(0.1));
 }
 

@@ -2,6 +2,8 @@
 // streamlines and seeds: what they give, and what they say to bad input.
 #include "filter/flow/streamlines.h"
 
+#include <numbers>
+
 #include "base/parallel.h"
 #include "filter/field/derivatives/derivatives.h"
 #include "filter/flow/flow_meshes.h"
@@ -12,7 +14,7 @@ using namespace sg::test::flow;
 
 namespace {
 
-Vec3 rotation(Vec3 p) { return {-p.y, p.x, 0}; }
+using std::numbers::pi;
 
 DatasetPtr run(const Data& mesh, const StreamlinesParams& p) {
   Context context;
@@ -32,13 +34,11 @@ std::string error_with(const Data& mesh, const StreamlinesParams& p) {
 }
 /// The ABC flow on [0, 2 pi]^3, a = sqrt 3, b = sqrt 2, c = 1.
 DatasetPtr abc_grid(size_t n) {
-  const double pi = 3.14159265358979323846;
   return with_velocity(make_dataset(uniform({n, n, n}, {0, 0, 0}, {2 * pi, 2 * pi, 2 * pi})), [](Vec3 p) {
     const double a = std::sqrt(3.0), b = std::sqrt(2.0);
     return Vec3(a * std::sin(p.z) + std::cos(p.y), b * std::sin(p.x) + a * std::cos(p.z), std::sin(p.y) + b * std::cos(p.x));
   });
 }
-bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 

@@ -35,7 +35,7 @@ DatasetPtr one_cell(CellType type, size_t nodes, F&& bend) {
   return make_dataset(Mesh(m), std::move(f));
 }
 
-double measure(const DatasetPtr& d, bool& all_positive) {
+double measure_of_cells(const DatasetPtr& d, bool& all_positive) {
   CellMap map(d);
   double sum = 0;
   all_positive = true;
@@ -73,7 +73,7 @@ TEST_CASE("tessellate: parts of a straight cell fill it, none inside out; fields
     const DatasetPtr t = tessellate(make_dataset(bent), {0.02, 2}, ctx);
     CHECK(t->cell_count() > 3);
     bool before = false, after = false;
-    CHECK(measure(t, after) == doctest::Approx(measure(d, before)).epsilon(1e-12));
+    CHECK(measure_of_cells(t, after) == doctest::Approx(measure_of_cells(d, before)).epsilon(1e-12));
     CHECK(after);
     const auto* m = t->as<UnstructuredMesh>();
     const Array& v = t->fields().require("v").array;
@@ -93,14 +93,14 @@ TEST_CASE("tessellate: a curved cell's area converges with second order in the e
     return Vec3{p.x + 0.2 * p.x * p.y * (1 - p.y), p.y + 0.3 * p.x * (1 - p.x) * p.y, 0};
   });
   bool ok = false;
-  const double exact = measure(d, ok);
+  const double exact = measure_of_cells(d, ok);
   std::vector<double> h, e;
   for (const int level : {1, 2, 3, 4}) {
     Context ctx;
     const DatasetPtr t = tessellate(d, {1e-12, level}, ctx);
     CHECK(t->cell_count() == size_t(1) << (2 * level));
     h.push_back(1.0 / (1 << level));
-    e.push_back(std::fabs(measure(t, ok) - exact));
+    e.push_back(std::fabs(measure_of_cells(t, ok) - exact));
   }
   CHECK(test::observed_order(h.data(), e.data(), 4) == doctest::Approx(2).epsilon(0.1));
 }

@@ -15,14 +15,6 @@ using namespace sg;
 
 namespace {
 
-template <class F>
-DatasetPtr square(size_t n, F&& f, double r = 1.5) {
-  const Mesh g = test::uniform({n, n, 1}, {-r, -r, 0}, {r, r, 0});
-  FieldSet fields;
-  fields.add(test::point_field<double>(g, {n, n, 1}, f));
-  return make_dataset(g, fields);
-}
-
 // Area of each band, by the vector areas of its polygons.
 std::map<int, double> areas(const Dataset& d) {
   const auto& m = *d.as<SurfaceMesh>();
@@ -51,7 +43,7 @@ TEST_CASE("bands: a circle's disc has its area with order 2, and the bands add u
   double h[4], error[4];
   for (int l = 0; l < 4; ++l) {
     const size_t n = (size_t(16) << l) + 1;
-    const auto a = areas(*bands(square(n, [](Vec3 p) { return length(p); }), {.values = {1, 0.5}}, ctx));
+    const auto a = areas(*bands(test::square_grid(n, [](Vec3 p) { return length(p); }), {.values = {1, 0.5}}, ctx));
     CHECK(total(a) == doctest::Approx(9).epsilon(1e-13));
     h[l] = 1.0 / double(n), error[l] = std::abs(a.at(0) + a.at(1) - test::shapes::pi);
   }
@@ -62,7 +54,7 @@ TEST_CASE("bands: random values: exact cover without gaps, every polygon within 
   Context ctx;
   std::mt19937 random(7);
   for (int trial = 0; trial < 40; ++trial) {
-    const DatasetPtr d = square(9, [&](Vec3) { return double(random() % 7); });
+    const DatasetPtr d = test::square_grid(9, [&](Vec3) { return double(random() % 7); });
     std::vector<double> values = trial % 2 ? std::vector<double>{1, 2, 3.5, 5} : std::vector<double>{0.5, 1.7, 2.2, 4.4};
     if (trial >= 36)  // so many that they are halved first
       for (int k = 0; k < 300; ++k) values.push_back(trial % 2 ? 0.02 * k : 0.013 + 0.02 * k);
@@ -140,22 +132,23 @@ TEST_CASE("bands: a constant field, outer bands left out, NaN, and bad input") {
   Context ctx;
   std::string said;
   ctx.on_log = [&](LogLevel, std::string_view text) { said += text; };
-  CHECK(areas(*bands(square(5, [](Vec3) { return 2.0; }), {}, ctx)).size() == 1);
+  CHECK(areas(*bands(test::square_grid(5, [](Vec3) { return 2.0; }), {}, ctx)).size() == 1);
   const auto x = [](Vec3 p) { return p.x; };
-  const auto inner = areas(*bands(square(7, x), {.values = {1, -1, -1, 0.2}, .outside = false}, ctx));
+  const auto inner = areas(*bands(test::square_grid(7, x), {.values = {1, -1, -1, 0.2}, .outside = false}, ctx));
   CHECK(inner.size() == 2);
   CHECK(inner.at(1) == doctest::Approx(3.6).epsilon(1e-12));
-  CHECK(areas(*bands(square(7, x), {.count = 6}, ctx)).size() == 6);
-  const DatasetPtr nan = bands(square(3, [](Vec3 p) { return p.x > 1 && p.y > 1 ? std::nan("") : p.x; }), {.values = {0.3}}, ctx);
+  CHECK(areas(*bands(test::square_grid(7, x), {.count = 6}, ctx)).size() == 6);
+  const DatasetPtr nan =
+      bands(test::square_grid(3, [](Vec3 p) { return p.x > 1 && p.y > 1 ? std::nan("") : p.x; }), {.values = {0.3}}, ctx);
   CHECK(total(areas(*nan)) == doctest::Approx(9 * 0.75).epsilon(1e-12));
   CHECK(said.find("1 polygons with a corner without a value") != std::string::npos);
-  CHECK(bands(square(3, x), {.values = {100}, .outside = false}, ctx)->cell_count() == 0);
+  CHECK(bands(test::square_grid(3, x), {.values = {100}, .outside = false}, ctx)->cell_count() == 0);
   CHECK(said.find("nothing is left") != std::string::npos);
   auto error = [&](const BandsParams& p, const DatasetPtr& d) { return test::error_of([&] { bands(d, p, ctx); }); };
-  CHECK(error({.values = {HUGE_VAL}}, square(3, x)).find("not a valid band limit") != std::string::npos);
-  CHECK(error({.field = {"g"}}, square(3, x)).find("'g'") != std::string::npos);
+  CHECK(error({.values = {HUGE_VAL}}, test::square_grid(3, x)).find("not a valid band limit") != std::string::npos);
+  CHECK(error({.field = {"g"}}, test::square_grid(3, x)).find("'g'") != std::string::npos);
   CHECK(error({.field = {"c"}}, test::meshes::uniform_box(2, 2, 0)).find("cell_to_point") != std::string::npos);
-  CHECK(error({.component = 3}, square(3, x)).find("component") != std::string::npos);
+  CHECK(error({.component = 3}, test::square_grid(3, x)).find("component") != std::string::npos);
   PointCloud cloud;
   cloud.points.xyz = Array::from_vector(std::vector<double>{0, 0, 0}, 3);
   CHECK(error({}, make_dataset(Mesh(cloud))).find("no faces") != std::string::npos);
@@ -163,7 +156,7 @@ TEST_CASE("bands: a constant field, outer bands left out, NaN, and bad input") {
 
 TEST_CASE("bands: the same bytes for any number of threads") {
   Context ctx;
-  const DatasetPtr d = square(150, [](Vec3 p) { return std::sin(5 * p.x) * std::cos(7 * p.y); });
+  const DatasetPtr d = test::square_grid(150, [](Vec3 p) { return std::sin(5 * p.x) * std::cos(7 * p.y); });
   set_thread_count(1);
   const DatasetPtr one = bands(d, {}, ctx);
   set_thread_count(8);

@@ -13,14 +13,6 @@ using namespace sg;
 
 namespace {
 
-template <class F>
-DatasetPtr square(size_t n, F&& f, double r = 1.5) {
-  const Mesh g = test::uniform({n, n, 1}, {-r, -r, 0}, {r, r, 0});
-  FieldSet fields;
-  fields.add(test::point_field<double>(g, {n, n, 1}, f));
-  return make_dataset(g, fields);
-}
-
 double cell(const Dataset& d, const char* name, size_t i) { return d.fields().require(name, Association::cell).array.get(i); }
 double point(const Dataset& d, const char* name, size_t i) { return d.fields().require(name, Association::point).array.get(i); }
 
@@ -31,7 +23,7 @@ TEST_CASE("isolines: circles are closed lines, their length and area converge wi
   double h[4], long_by[4], area_by[4];
   for (int l = 0; l < 4; ++l) {
     const size_t n = (size_t(16) << l) + 1;
-    const DatasetPtr d = isolines(square(n, [](Vec3 p) { return -length(p); }), {.values = {-1}}, ctx);
+    const DatasetPtr d = isolines(test::square_grid(n, [](Vec3 p) { return -length(p); }), {.values = {-1}}, ctx);
     REQUIRE(d->cell_count() == 1);
     CHECK(cell(*d, "closed", 0) == 1);
     CHECK(cell(*d, "contour value", 0) == -1);
@@ -51,14 +43,14 @@ TEST_CASE("isolines: circles are closed lines, their length and area converge wi
 
 TEST_CASE("isolines: open lines end at the border; each value has its own; every segment is used once") {
   Context ctx;
-  const DatasetPtr d = isolines(square(20, [](Vec3 p) { return p.x; }), {.count = 5}, ctx);
+  const DatasetPtr d = isolines(test::square_grid(20, [](Vec3 p) { return p.x; }), {.count = 5}, ctx);
   CHECK(d->cell_count() == 5);
   for (size_t i = 0; i < 5; ++i) {
     CHECK(cell(*d, "closed", i) == 0);
     CHECK(cell(*d, "length", i) == doctest::Approx(3).epsilon(1e-6));
     CHECK(cell(*d, "contour value", i) == doctest::Approx(-1 + 0.5 * double(i)));
   }
-  const DatasetPtr wild = square(60, [](Vec3 p) { return std::sin(7 * p.x + 1) * std::cos(9 * p.y) + 0.3 * p.x; });
+  const DatasetPtr wild = test::square_grid(60, [](Vec3 p) { return std::sin(7 * p.x + 1) * std::cos(9 * p.y) + 0.3 * p.x; });
   const DatasetPtr segments = contour(wild, {.field = {}, .values = {0.1, 0.5}, .component = {}}, ctx);
   const DatasetPtr lines = isolines(wild, {.values = {0.1, 0.5}}, ctx);
   const CellsView v = cells_view(lines->as<SurfaceMesh>()->lines);
@@ -88,8 +80,8 @@ TEST_CASE("isolines: every mesh kind: the skin of solids, surfaces, unstructured
   cloud.points.xyz = Array::from_vector(std::vector<double>{0, 0, 0}, 3);
   CHECK(test::error_of([&] { isolines(make_dataset(Mesh(cloud)), {}, ctx); }).find("no faces") != std::string::npos);
   CHECK(test::error_of([&] { isolines(uniform_box(2, 2, 0), {.field = {"c"}}, ctx); }).find("cells") != std::string::npos);
-  CHECK(isolines(square(4, [](Vec3 p) { return p.x; }), {.values = {9}}, ctx)->cell_count() == 0);
-  CHECK(isolines(square(4, [](Vec3) { return 1.0; }), {}, ctx)->cell_count() == 0);
+  CHECK(isolines(test::square_grid(4, [](Vec3 p) { return p.x; }), {.values = {9}}, ctx)->cell_count() == 0);
+  CHECK(isolines(test::square_grid(4, [](Vec3) { return 1.0; }), {}, ctx)->cell_count() == 0);
 }
 
 TEST_CASE("polylines: edges of a box end at its corners; those of an open cylinder are two rings; fields keep lines apart") {
@@ -121,7 +113,7 @@ TEST_CASE("polylines: edges of a box end at its corners; those of an open cylind
 
 TEST_CASE("line_labels: spaced along lines, upright, in the straight parts") {
   Context ctx;
-  const DatasetPtr lines = isolines(square(40, [](Vec3 p) { return p.x - p.y; }), {.values = {0, 0.5}}, ctx);
+  const DatasetPtr lines = isolines(test::square_grid(40, [](Vec3 p) { return p.x - p.y; }), {.values = {0, 0.5}}, ctx);
   const DatasetPtr d = line_labels(lines, {.spacing = 1.1, .width = 0.2}, ctx);
   REQUIRE(d->point_count() >= 4);
   for (size_t i = 0; i < d->point_count(); ++i) {
@@ -158,7 +150,7 @@ TEST_CASE("isolines: that fields of cells are not on lines is no news; joining l
   Context ctx;
   std::string log;
   ctx.on_log = [&](LogLevel, std::string_view text) { log += text; };
-  DatasetParts parts = square(9, [](Vec3 p) { return p.x; })->parts();
+  DatasetParts parts = test::square_grid(9, [](Vec3 p) { return p.x; })->parts();
   parts.fields.add({"of cells", Association::cell, Array::from_vector(std::vector<float>(64, 1.0f)), "", Role::none});
   const DatasetPtr lines = isolines(make_dataset(std::move(parts)), {.values = {0.1, 0.5}}, ctx);
   CHECK(log.find("left out") == std::string::npos);

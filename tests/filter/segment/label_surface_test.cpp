@@ -20,7 +20,7 @@ DatasetPtr labels(std::array<size_t, 3> d, const std::vector<uint8_t>& v, Mat3 d
   return make_dataset(g, f);
 }
 
-DatasetPtr run(const DatasetPtr& d, LabelSurfaceParams p = {}) {
+DatasetPtr surface_of_labels(const DatasetPtr& d, LabelSurfaceParams p = {}) {
   Context context;
   return label_surface(d, p, context);
 }
@@ -45,7 +45,7 @@ TEST_CASE("label surface: the box of each voxel, closed and facing outward, with
   boxes.smooth = boxes.walls = false;
   std::vector<uint8_t> v(27, 0);
   v[13] = 5;
-  const auto one = run(labels({3, 3, 3}, v), boxes);
+  const auto one = surface_of_labels(labels({3, 3, 3}, v), boxes);
   CHECK(one->cell_count() == 6);
   CHECK(one->point_count() == 8);
   CHECK(volume(*one) == doctest::Approx(1));
@@ -53,13 +53,13 @@ TEST_CASE("label surface: the box of each voxel, closed and facing outward, with
   CHECK(one->fields().require("label", Association::cell).array.get(3) == 5);
 
   v[14] = 7;  // a neighbour with another label: no wall between them
-  const auto two = run(labels({3, 3, 3}, v), boxes);
+  const auto two = surface_of_labels(labels({3, 3, 3}, v), boxes);
   CHECK(two->cell_count() == 10);
   CHECK(two->point_count() == 12);
   CHECK(volume(*two) == doctest::Approx(2));
   LabelSurfaceParams only = boxes;
   only.labels = {7};
-  CHECK(run(labels({3, 3, 3}, v), only)->cell_count() == 6);
+  CHECK(surface_of_labels(labels({3, 3, 3}, v), only)->cell_count() == 6);
 }
 
 TEST_CASE("label surface: volume is the number of voxels on random images, mirrored grids and any number of threads") {
@@ -70,11 +70,11 @@ TEST_CASE("label surface: volume is the number of voxels on random images, mirro
   mirror.m[0][0] = -1;
   LabelSurfaceParams boxes;
   boxes.smooth = boxes.walls = false;
-  CHECK(volume(*run(labels({8, 8, 8}, v), boxes)) == doctest::Approx(double(wanted)));
-  CHECK(volume(*run(labels({8, 8, 8}, v, mirror), boxes)) == doctest::Approx(double(wanted)));
-  const auto eight = run(labels({8, 8, 8}, v), boxes);
+  CHECK(volume(*surface_of_labels(labels({8, 8, 8}, v), boxes)) == doctest::Approx(double(wanted)));
+  CHECK(volume(*surface_of_labels(labels({8, 8, 8}, v, mirror), boxes)) == doctest::Approx(double(wanted)));
+  const auto eight = surface_of_labels(labels({8, 8, 8}, v), boxes);
   set_thread_count(1);
-  const auto single = run(labels({8, 8, 8}, v), boxes);
+  const auto single = surface_of_labels(labels({8, 8, 8}, v), boxes);
   set_thread_count(0);
   const Array &a = eight->as<SurfaceMesh>()->polygons.connectivity, &b = single->as<SurfaceMesh>()->polygons.connectivity;
   REQUIRE(a.count() == b.count());
@@ -82,10 +82,10 @@ TEST_CASE("label surface: volume is the number of voxels on random images, mirro
 }
 
 TEST_CASE("label surface: no label is an empty surface, other meshes are refused") {
-  CHECK(run(labels({2, 2, 2}, std::vector<uint8_t>(8, 0)))->cell_count() == 0);
+  CHECK(surface_of_labels(labels({2, 2, 2}, std::vector<uint8_t>(8, 0)))->cell_count() == 0);
   PointCloud cloud;
   cloud.points.xyz = Array::from_vector<float>({0, 0, 0}, 3);
-  CHECK(test::error_of([&] { run(make_dataset(cloud)); }).find("uniform and rectilinear") != std::string::npos);
+  CHECK(test::error_of([&] { surface_of_labels(make_dataset(cloud)); }).find("uniform and rectilinear") != std::string::npos);
 }
 
 namespace {
@@ -132,14 +132,14 @@ DatasetPtr balls(size_t n, double radius, Vec3 spacing, bool halves) {
 TEST_CASE("label surface: a smooth ball has its area and volume, where stairs have half as much again") {
   const double area = 4 * M_PI * 20 * 20, volume = area * 20 / 3;
   const auto d = balls(48, 20, {1, 1, 1}, false);
-  const Measures smooth = around_label(*run(d), 1);
+  const Measures smooth = around_label(*surface_of_labels(d), 1);
   CHECK(smooth.area == doctest::Approx(area).epsilon(0.02));
   CHECK(smooth.volume == doctest::Approx(volume).epsilon(0.005));
   CHECK(smooth.closed);
   LabelSurfaceParams boxes;
   boxes.smooth = false;
-  CHECK(around_label(*run(d, boxes), 1).area == doctest::Approx(1.5 * area).epsilon(0.02));
-  const Measures flat = around_label(*run(balls(48, 20, {1, 1.5, 0.9}, false)), 1);
+  CHECK(around_label(*surface_of_labels(d, boxes), 1).area == doctest::Approx(1.5 * area).epsilon(0.02));
+  const Measures flat = around_label(*surface_of_labels(balls(48, 20, {1, 1.5, 0.9}, false)), 1);
   CHECK(flat.area == doctest::Approx(area).epsilon(0.025));
   CHECK(flat.volume == doctest::Approx(volume).epsilon(0.01));
 }
@@ -148,7 +148,7 @@ TEST_CASE("label surface: no smooth point is farther than half a sample from its
   const auto d = balls(24, 9, {1, 1, 1}, true);
   LabelSurfaceParams boxes;
   boxes.smooth = false;
-  const auto a = run(d), b = run(d, boxes);
+  const auto a = surface_of_labels(d), b = surface_of_labels(d, boxes);
   REQUIRE(a->point_count() == b->point_count());
   const Points &p = a->as<SurfaceMesh>()->points, &q = b->as<SurfaceMesh>()->points;
   double most = 0;
@@ -159,7 +159,7 @@ TEST_CASE("label surface: no smooth point is farther than half a sample from its
 }
 
 TEST_CASE("label surface: two halves of a ball share a flat wall, each closed") {
-  const auto s = run(balls(48, 20, {1, 1, 1}, true));
+  const auto s = surface_of_labels(balls(48, 20, {1, 1, 1}, true));
   const Measures one = around_label(*s, 1), two = around_label(*s, 2);
   CHECK(one.closed);
   CHECK(two.closed);
@@ -173,7 +173,7 @@ TEST_CASE("label surface: two halves of a ball share a flat wall, each closed") 
   CHECK(double(walls) == doctest::Approx(disc).epsilon(0.03));
   LabelSurfaceParams none;
   none.walls = false;
-  CHECK(run(balls(48, 20, {1, 1, 1}, true), none)->cell_count() == s->cell_count() - walls);
+  CHECK(surface_of_labels(balls(48, 20, {1, 1, 1}, true), none)->cell_count() == s->cell_count() - walls);
 }
 
 TEST_CASE("label surface: a hundred thousand labels, each closed around its one sample") {
@@ -183,11 +183,11 @@ TEST_CASE("label surface: a hundred thousand labels, each closed around its one 
   g.dims = {47, 47, 47};
   FieldSet f;
   f.add({"label", Association::point, Array::from_vector(v), "", Role::scalars});
-  const auto s = run(make_dataset(g, f));
+  const auto s = surface_of_labels(make_dataset(g, f));
   CHECK(s->cell_count() == 3 * 47 * 47 * 48);
   LabelSurfaceParams boxes;
   boxes.smooth = false;
-  const auto b = run(make_dataset(g, f), boxes);
+  const auto b = surface_of_labels(make_dataset(g, f), boxes);
   for (const int64_t label : {int64_t(-3000), int64_t(-1), int64_t(50000), int64_t(v.back())}) {
     CHECK(around_label(*s, label).closed);
     CHECK(around_label(*b, label).volume == doctest::Approx(1).epsilon(1e-4));
@@ -198,14 +198,14 @@ TEST_CASE("label surface: random labels are closed in every type; NaN and hidden
   const auto noise = [](Vec3 p) { return std::floor(4 * random_unit(3, uint64_t(p.x + 16 * (p.y + 16 * p.z)))); };
   for (const auto& d : {test::image_of<int16_t>({16, 16, 16}, noise), test::image_of<uint16_t>({16, 16, 16}, noise),
                         test::image_of<float>({16, 16, 16}, noise), test::image_of<uint64_t>({16, 16, 16}, noise)}) {
-    const auto s = run(d);
+    const auto s = surface_of_labels(d);
     for (int64_t label = 1; label < 4; ++label) CHECK(around_label(*s, label).closed);
   }
   const auto one = [](Vec3 p) { return p == Vec3(1, 1, 1) ? double(NAN) : 1.0; };
   const auto d = test::with_hidden_points(test::image_of<float>({3, 3, 3}, one), [](size_t i) { return i == 26; });
   LabelSurfaceParams boxes;
   boxes.smooth = false;
-  CHECK(around_label(*run(d, boxes), 1).volume == doctest::Approx(25));
+  CHECK(around_label(*surface_of_labels(d, boxes), 1).volume == doctest::Approx(25));
 }
 
 TEST_CASE("label surface: labels beyond 32 bits, values that are no labels, cells of rectilinear grids") {
@@ -215,11 +215,11 @@ TEST_CASE("label surface: labels beyond 32 bits, values that are no labels, cell
   g.dims = {3, 3, 3};
   FieldSet f;
   f.add({"label", Association::point, Array::from_vector(v), "", Role::scalars});
-  const auto s = run(make_dataset(g, f));
+  const auto s = surface_of_labels(make_dataset(g, f));
   CHECK(s->cell_count() == 11);
   CHECK(around_label(*s, int64_t(1) << 40).closed);
   const auto half = test::image_of<float>({3, 3, 3}, [](Vec3 p) { return p.x + 0.5; });
-  CHECK(test::error_of([&] { run(half); }).find("not a label field") != std::string::npos);
+  CHECK(test::error_of([&] { surface_of_labels(half); }).find("not a label field") != std::string::npos);
 
   RectilinearGrid r;
   r.x = Array::from_vector<double>({0, 1, 2, 3, 4}), r.y = Array::from_vector<double>({5, 3, 1, -1}),
@@ -230,7 +230,7 @@ TEST_CASE("label surface: labels beyond 32 bits, values that are no labels, cell
   c.add({"label", Association::cell, Array::from_vector(cells), "", Role::labels});
   LabelSurfaceParams boxes;
   boxes.smooth = false;
-  const auto b = run(make_dataset(r, c), boxes);
+  const auto b = surface_of_labels(make_dataset(r, c), boxes);
   CHECK(b->bounds().lo == Vec3(1, 1, 1));
   CHECK(b->bounds().hi == Vec3(3, 3, 2));
   CHECK(around_label(*b, 9).volume == doctest::Approx(4));
@@ -240,7 +240,7 @@ TEST_CASE("label surface: the same points for any number of threads") {
   const auto d = balls(60, 25, {1, 1, 1}, true);
   const auto points = [&](int threads) {
     set_thread_count(threads);
-    const auto s = run(d);
+    const auto s = surface_of_labels(d);
     set_thread_count(0);
     return s->as<SurfaceMesh>()->points.xyz;
   };

@@ -13,7 +13,7 @@ using test::image_of;
 
 namespace {
 
-DatasetPtr run(const DatasetPtr& d, OtsuParams p = {}) {
+DatasetPtr otsu_of(const DatasetPtr& d, OtsuParams p = {}) {
   Context context;
   return otsu(d, p, context);
 }
@@ -44,7 +44,7 @@ TEST_CASE("otsu: two values are parted midway, in every number type") {
   const auto two = [](Vec3 p) { return p.x < 3 ? 20.0 : 100.0; };
   for (const auto& d : {image_of<uint8_t>({8, 4, 2}, two), image_of<int16_t>({8, 4, 2}, two), image_of<uint16_t>({8, 4, 2}, two),
                         image_of<float>({8, 4, 2}, two), image_of<double>({8, 4, 2}, two)}) {
-    const auto r = run(d);
+    const auto r = otsu_of(d);
     CHECK(array_of(r, "otsu thresholds").get(0) == doctest::Approx(60).epsilon(0.001));
     CHECK(array_of(r, "otsu").get(2) == 0);
     CHECK(array_of(r, "otsu").get(3) == 1);
@@ -76,7 +76,7 @@ TEST_CASE("otsu: the split is the best of all splits") {
 TEST_CASE("otsu: NaN and hidden samples have no say, and the label 0") {
   auto d = image_of<float>({10, 1, 1}, [](Vec3 p) { return p.x == 0 ? NAN : p.x == 1 ? 1e6 : p.x < 5 ? 1.0 : 2.0; });
   d = test::with_hidden_points(d, [](size_t i) { return i == 1; });
-  const auto r = run(d);
+  const auto r = otsu_of(d);
   CHECK(array_of(r, "otsu thresholds").get(0) == doctest::Approx(1.5).epsilon(0.001));
   CHECK(array_of(r, "otsu").get(0) == 0);
   CHECK(array_of(r, "otsu").get(1) == 0);
@@ -85,19 +85,19 @@ TEST_CASE("otsu: NaN and hidden samples have no say, and the label 0") {
 
 TEST_CASE("otsu: says what cannot be split") {
   const auto constant = image_of<float>({4, 4, 1}, [](Vec3) { return 7.0; });
-  CHECK(test::error_of([&] { run(constant); }).find("7 everywhere") != std::string::npos);
+  CHECK(test::error_of([&] { otsu_of(constant); }).find("7 everywhere") != std::string::npos);
   const auto two = image_of<uint8_t>({4, 4, 1}, [](Vec3 p) { return p.x < 2 ? 1.0 : 3.0; });
-  CHECK(test::error_of([&] { run(two, classes(3)); }).find("2 different values") != std::string::npos);
+  CHECK(test::error_of([&] { otsu_of(two, classes(3)); }).find("2 different values") != std::string::npos);
   const auto nothing = image_of<float>({4, 4, 1}, [](Vec3) { return double(NAN); });
-  CHECK(test::error_of([&] { run(nothing); }).find("no finite value") != std::string::npos);
+  CHECK(test::error_of([&] { otsu_of(nothing); }).find("no finite value") != std::string::npos);
   OtsuParams unknown;
   unknown.field.name = "w";
-  CHECK(test::error_of([&] { run(two, unknown); }).find("'w'") != std::string::npos);
+  CHECK(test::error_of([&] { otsu_of(two, unknown); }).find("'w'") != std::string::npos);
 }
 
 TEST_CASE("otsu: the same bytes for any number of threads") {
   const auto d = image_of<float>({160, 100, 90}, [](Vec3 p) { return std::sin(p.x * 0.3) * std::cos(p.y * 0.2) + p.z * 0.01; });
-  CHECK(test::same_for_threads("otsu thresholds", [&] { return run(d, classes(5)); }));
+  CHECK(test::same_for_threads("otsu thresholds", [&] { return otsu_of(d, classes(5)); }));
 }
 
 TEST_CASE("dice: agreement per label") {

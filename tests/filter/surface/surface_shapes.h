@@ -3,13 +3,14 @@
 #pragma once
 #include <algorithm>
 #include <map>
+#include <numbers>
 
 #include "data/dataset.h"
 #include "filter/mesh/surface.h"
 
 namespace sg::test::shapes {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 struct Builder {
   std::vector<double> xyz;

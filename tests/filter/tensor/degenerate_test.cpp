@@ -11,12 +11,6 @@ using namespace sg::test;
 
 namespace {
 
-double value(const DatasetPtr& d, const char* field, size_t i, int c = 0) { return d->fields().require(field).array.get(i, c); }
-Vec3 point(const DatasetPtr& d, size_t i) {
-  if (auto* cloud = d->as<PointCloud>()) return cloud->points.at(i);
-  return d->as<SurfaceMesh>()->points.at(i);
-}
-
 // f = x, g = y: a wedge at the place; g = -y: a trisector. In the plane across a direction when turned.
 SymTensor wedge(Vec3 p, double sign = 1) { return {3 + p.x, 3 - p.x, 0, sign * p.y, 0, 0}; }
 
@@ -37,7 +31,7 @@ double index_around(const std::function<SymTensor(Vec3)>& f, Vec3 middle, double
   return turn / (2 * M_PI);
 }
 
-DatasetPtr triangles(int n, const std::function<SymTensor(Vec3)>& f, const Mat3& turn = {}) {
+DatasetPtr turned_square(int n, const std::function<SymTensor(Vec3)>& f, const Mat3& turn = {}) {
   SurfaceMesh mesh;
   std::vector<double> xyz;
   std::vector<int32_t> ids;
@@ -67,7 +61,7 @@ TEST_CASE("degenerate_points: a wedge and a trisector lie where they were put, i
   for (double sign : {1.0, -1.0}) {
     auto f = [&](Vec3 p) { return wedge(p - at, sign); };
     const Mat3 tilt = random_rotation(8);
-    for (const auto& [d, turn] : {std::pair(triangles(7, f), Mat3()), std::pair(triangles(7, f, tilt), tilt),
+    for (const auto& [d, turn] : {std::pair(turned_square(7, f), Mat3()), std::pair(turned_square(7, f, tilt), tilt),
                                   std::pair(tensor_grid({8, 6, 1}, {-1, -1, 0}, {1, 1, 0}, f), Mat3())}) {
       const DatasetPtr p = degenerate_points(d, {}, context);
       REQUIRE(p->point_count() == 1);
@@ -103,7 +97,7 @@ TEST_CASE("degenerate_points: a bilinear cell may hold two; on corners and edges
   CHECK(sum == doctest::Approx(index_around(two, {}, 0.9)));
   CHECK(length(point(d, 0) - point(d, 1)) > 0.1);
   for (Vec3 at : {Vec3(0, 0, 0), Vec3(0.25, 0, 0), Vec3(0.25, 0.25, 0)}) {  // a corner of six triangles, an edge, a diagonal
-    CHECK(degenerate_points(triangles(4, [&](Vec3 p) { return wedge(p - at); }), {}, context)->point_count() == 1);
+    CHECK(degenerate_points(turned_square(4, [&](Vec3 p) { return wedge(p - at); }), {}, context)->point_count() == 1);
     CHECK(degenerate_points(tensor_grid({5, 5, 1}, {-1, -1, 0}, {1, 1, 0}, [&](Vec3 p) { return wedge(p - at); }), {}, context)
               ->point_count() == 1);
   }
@@ -111,7 +105,7 @@ TEST_CASE("degenerate_points: a bilinear cell may hold two; on corners and edges
   auto waves = [](Vec3 p) {
     return SymTensor{std::cos(5 * p.x + 1) + 0.3 * p.y, -std::cos(5 * p.x + 1) - 0.3 * p.y, 0, std::sin(4 * p.y + p.x + 0.4), 0, 0};
   };
-  const DatasetPtr many = degenerate_points(triangles(60, waves), {}, context);
+  const DatasetPtr many = degenerate_points(turned_square(60, waves), {}, context);
   CHECK(many->point_count() >= 4);
   double total = 0, turn = 0, before = 0;
   for (size_t i = 0; i < many->point_count(); ++i) total += value(many, "index", i);

@@ -10,16 +10,11 @@ using namespace sg::test;
 
 namespace {
 
-const SymTensor constant = rotated(diagonal(4, 2, 1), random_rotation(11));
-
 HyperstreamlinesParams lines_from(std::vector<double> seeds, TensorSection section = TensorSection::line) {
   HyperstreamlinesParams p;
   p.seeds = std::move(seeds), p.section = section, p.min_radius = 0;
   return p;
 }
-
-Vec3 point(const DatasetPtr& d, size_t i) { return d->as<SurfaceMesh>()->points.at(i); }
-double value(const DatasetPtr& d, const char* field, size_t i) { return d->fields().require(field).array.get(i); }
 
 // A tensor whose eigenvectors turn about z: the first circles around the z-axis, the second points away from it.
 SymTensor ring(Vec3 p) {

@@ -11,8 +11,6 @@ using namespace sg::test;
 
 namespace {
 
-double value(const DatasetPtr& d, const std::string& field, size_t i = 0, int c = 0) { return d->fields().require(field).array.get(i, c); }
-
 TensorMeasuresParams all_measures() {
   TensorMeasuresParams p;
   p.measures.clear();

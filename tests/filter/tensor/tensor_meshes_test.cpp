@@ -27,9 +27,6 @@ DatasetPtr tensors_on(const DatasetPtr& mesh, F&& f) {
       mesh, "tensor", 9, [&](Vec3 p, double* v) { write(f(p), v); }, Role::tensors);
 }
 
-double value(const DatasetPtr& d, const char* field, size_t i, int c = 0) { return d->fields().require(field).array.get(i, c); }
-Vec3 point(const DatasetPtr& d, size_t i) { return d->as<SurfaceMesh>()->points.at(i); }
-
 /// The tensors on points, and means of them on cells.
 template <class F>
 void on_points_and_cells(const DatasetPtr& d, F&& f) {
@@ -46,7 +43,6 @@ HyperstreamlinesParams line_from(Vec3 seed, int eigenvector, TensorSection secti
 }
 
 // In the plane a tensor of three dimensions counts by its part in it, so one vector lies across.
-const SymTensor constant = rotated(diagonal(4, 2, 1), random_rotation(11));
 SymTensor constant_flat() {
   Mat3 turn;
   turn.m[0][0] = turn.m[1][1] = 0.8, turn.m[1][0] = 0.6, turn.m[0][1] = -0.6;

@@ -28,6 +28,18 @@ inline Mat3 random_rotation(uint64_t seed) {
 
 inline SymTensor diagonal(double a, double b, double c) { return {a, b, c, 0, 0, 0}; }
 
+/// One tensor for all places.
+inline const SymTensor constant = rotated(diagonal(4, 2, 1), random_rotation(11));
+
+inline double value(const DatasetPtr& d, const std::string& field, size_t i = 0, int c = 0) {
+  return d->fields().require(field).array.get(i, c);
+}
+/// A point of a cloud or a surface.
+inline Vec3 point(const DatasetPtr& d, size_t i) {
+  if (auto* cloud = d->as<PointCloud>()) return cloud->points.at(i);
+  return d->as<SurfaceMesh>()->points.at(i);
+}
+
 inline Field tensor_field(const std::vector<SymTensor>& d, Association a = Association::point, std::string name = "tensor") {
   std::vector<double> v;
   for (const SymTensor& t : d) v.insert(v.end(), {t.xx, t.xy, t.xz, t.xy, t.yy, t.yz, t.xz, t.yz, t.zz});

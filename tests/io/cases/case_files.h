@@ -36,11 +36,6 @@ inline std::string write_case(const std::string& name, const CaseFiles& files) {
   return root;
 }
 
-inline Data read_any(const std::string& path, const ReadOptions& options = {}) {
-  Context context;
-  return read_data(path, options, context);
-}
-
 /// All datasets in order, with their names.
 inline std::vector<std::pair<std::string, DatasetPtr>> leaves(const Data& data) {
   std::vector<std::pair<std::string, DatasetPtr>> r;
@@ -51,6 +46,22 @@ inline DatasetPtr leaf(const Data& data, size_t i) {
   const auto all = leaves(data);
   REQUIRE(i < all.size());
   return all[i].second;
+}
+
+inline DatasetPtr leaf_named(const Data& data, const std::string& name) {
+  DatasetPtr found;
+  for_each_dataset(data, [&](const std::string& path, const DatasetPtr& d) {
+    if (path == name) found = d;
+  });
+  REQUIRE_MESSAGE(found, name);
+  return found;
+}
+
+/// 1, 2, ... n.
+inline std::vector<int32_t> first_numbers(int n) {
+  std::vector<int32_t> v;
+  for (int i = 1; i <= n; ++i) v.push_back(i);
+  return v;
 }
 
 /// Reads `main` with one file of the case cut at every 1/64th, and with each of its first 200 bytes (and every 1/64th) changed:
@@ -83,15 +94,6 @@ inline int cut_and_damage_case(const std::string& name, const CaseFiles& files, 
     }
   write_quickly(root + which, bytes);
   return refused;
-}
-
-/// Numbers as bytes in either order.
-template <class T>
-void put_bytes(std::string& s, T v, bool big_endian = false) {
-  char b[sizeof(T)];
-  std::memcpy(b, &v, sizeof(T));
-  if (big_endian) std::reverse(b, b + sizeof(T));
-  s.append(b, sizeof(T));
 }
 
 }  // namespace sg::test

@@ -5,29 +5,18 @@
 #include <filesystem>
 
 #include "cgns_file.h"
-#include "io/io_files.h"
+#include "io/cases/case_files.h"
 
 using namespace sg;
 using namespace sg::test;
 
 namespace {
 
-Data read_any(const std::string& path, const ReadOptions& options = {}) {
-  Context context;
-  return read_data(path, options, context);
-}
-
 DatasetPtr only(const Data& data) {
   DatasetPtr found;
   for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { found = d; });
   REQUIRE(found);
   return found;
-}
-
-std::vector<int> first_numbers(int n) {
-  std::vector<int> v;
-  for (int i = 1; i <= n; ++i) v.push_back(i);
-  return v;
 }
 
 std::string types_of(const Dataset& d) {

@@ -1,25 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // CGNS files: real ones, and damage done to them.
-#include "io/io_files.h"
+#include "io/cases/case_files.h"
 
 using namespace sg;
 using namespace sg::test;
 
 namespace {
-
-Data read_any(const std::string& path, const ReadOptions& options = {}) {
-  Context context;
-  return read_data(path, options, context);
-}
-
-DatasetPtr part(const Data& data, const std::string& name) {
-  DatasetPtr found;
-  for_each_dataset(data, [&](const std::string& path, const DatasetPtr& d) {
-    if (path == name) found = d;
-  });
-  REQUIRE_MESSAGE(found, name);
-  return found;
-}
 
 constexpr const char* adf = "meshes/cgns/sqnz_s.adf.cgns";
 constexpr const char* hdf = "meshes/cgns/cgnslib_vers-4400.cgns";
@@ -28,8 +14,8 @@ constexpr const char* hdf = "meshes/cgns/cgnslib_vers-4400.cgns";
 
 TEST_CASE("cgns: a file of version 3.0, which numbers its elements otherwise, holds the same mesh as one of 4.4" *
           doctest::skip(no_data())) {
-  const DatasetPtr a = part(read_any(data_file(hdf)), "Base/Zone 1");
-  const DatasetPtr b = part(read_any(data_file("edge-cases/cgns/cgnslib_vers-3000.cgns")), "Base/Zone 1");
+  const DatasetPtr a = leaf_named(read_any(data_file(hdf)), "Base/Zone 1");
+  const DatasetPtr b = leaf_named(read_any(data_file("edge-cases/cgns/cgnslib_vers-3000.cgns")), "Base/Zone 1");
   CHECK(b->cell_count() == 2560);
   CHECK(cell_type_counts(a->mesh()) == cell_type_counts(b->mesh()));
   const auto &p = *a->as<UnstructuredMesh>(), &q = *b->as<UnstructuredMesh>();
@@ -39,7 +25,7 @@ TEST_CASE("cgns: a file of version 3.0, which numbers its elements otherwise, ho
 }
 
 TEST_CASE("cgns: the cells of an unstructured zone fill its box" * doctest::skip(no_data())) {
-  const DatasetPtr d = part(read_any(data_file(hdf)), "Base/Zone 1");
+  const DatasetPtr d = leaf_named(read_any(data_file(hdf)), "Base/Zone 1");
   const auto& mesh = *d->as<UnstructuredMesh>();
   const CellsView cells = cells_view(mesh.cells);
   double volume = 0;
@@ -57,7 +43,7 @@ TEST_CASE("cgns: the cells of an unstructured zone fill its box" * doctest::skip
 
 TEST_CASE("cgns: neighbouring zones share their faces, components make vectors" * doctest::skip(no_data())) {
   const Data data = read_any(data_file(adf));
-  const DatasetPtr a = part(data, "SQNZ/dom1_1_1_1"), b = part(data, "SQNZ/dom1_2_1_1");
+  const DatasetPtr a = leaf_named(data, "SQNZ/dom1_1_1_1"), b = leaf_named(data, "SQNZ/dom1_2_1_1");
   CHECK(a->bounds().hi.x == doctest::Approx(b->bounds().lo.x));
   const Field& m = a->fields().require("Momentum");
   CHECK(m.components() == 3);
@@ -65,7 +51,7 @@ TEST_CASE("cgns: neighbouring zones share their faces, components make vectors" 
   CHECK(m.role == Role::vectors);
   ReadOptions o;
   o.fields = {"Density"};
-  CHECK(part(read_any(data_file(adf), o), "SQNZ/dom1_3_2_2")->fields().names() == std::vector<std::string>{"Density"});
+  CHECK(leaf_named(read_any(data_file(adf), o), "SQNZ/dom1_3_2_2")->fields().names() == std::vector<std::string>{"Density"});
   o.step = 1;
   CHECK(contains(error_of([&] { read_any(data_file(adf), o); }), "no time step 1"));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exodus II meshes in small classic netCDF files.
 #include "data/cells/cell_topology.h"
-#include "io/io_files.h"
+#include "io/cases/case_files.h"
 #include "io/mesh/node_order.h"
 #include "io/netcdf/netcdf_bytes.h"
 #include "io/volume/component_names.h"
@@ -10,12 +10,6 @@ using namespace sg;
 using namespace sg::test;
 
 namespace {
-
-std::vector<int32_t> first_numbers(int n) {
-  std::vector<int32_t> v;
-  for (int i = 1; i <= n; ++i) v.push_back(i);
-  return v;
-}
 
 // One element of `nodes` nodes on nodes of its own, at (k, 10k, 100k), in a block of the given name.
 std::string one_element(const std::string& type, int nodes, int space = 3) {
@@ -28,20 +22,6 @@ std::string one_element(const std::string& type, int nodes, int space = 3) {
   if (space == 3) f.var<double>("coordz", {n}, z);
   f.var<int32_t>("connect1", {one, per}, first_numbers(nodes)).att("elem_type", type);
   return f.bytes();
-}
-
-DatasetPtr part(const Data& data, const std::string& name) {
-  DatasetPtr found;
-  for_each_dataset(data, [&](const std::string& path, const DatasetPtr& d) {
-    if (path == name) found = d;
-  });
-  REQUIRE_MESSAGE(found, name);
-  return found;
-}
-
-Data read_any(const std::string& name, const std::string& bytes, const ReadOptions& options = {}) {
-  Context context;
-  return read_data(temp_file(name, bytes), options, context);
 }
 
 // Two unit cubes side by side and a tetrahedron: variables, sets, maps, two steps.
@@ -169,15 +149,15 @@ TEST_CASE("exodus: elements of every shape have their type and VTK's node order"
                        {"circle", 1, "Vertex", 1},
                        {"", 8, "Hexahedron", 8}}) {
     CAPTURE(c.name);
-    const Data data = read_any("one.exo", one_element(c.name, c.nodes));
-    const DatasetPtr d = part(data, "Element Blocks/Unnamed block ID: 1");
+    const Data data = read_bytes("one.exo", one_element(c.name, c.nodes));
+    const DatasetPtr d = leaf_named(data, "Element Blocks/Unnamed block ID: 1");
     const auto counts = cell_type_counts(d->mesh());
     REQUIRE(counts.size() == 1);
     CHECK(counts[0].first == c.type);
     CHECK(int(d->point_count()) == c.points);
   }
   // The nodes between corners: Exodus lists those of the vertical edges before those of the upper face.
-  const DatasetPtr d = part(read_any("one.exo", one_element("HEX27", 27)), "Element Blocks/Unnamed block ID: 1");
+  const DatasetPtr d = leaf_named(read_bytes("one.exo", one_element("HEX27", 27)), "Element Blocks/Unnamed block ID: 1");
   const auto& mesh = *d->as<UnstructuredMesh>();
   const CellsView cells = cells_view(mesh.cells);
   const int expected[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 16, 17, 18, 19, 12, 13, 14, 15, 23, 24, 25, 26, 21, 22, 20};
@@ -188,8 +168,8 @@ TEST_CASE("exodus: blocks, sets, variables and maps of two steps") {
   for (const int version : {1, 2, 5}) {
     ReadOptions o;
     o.step = 1;
-    const Data data = read_any("cubes.e", cubes(version), o);
-    const DatasetPtr hexes = part(data, "Element Blocks/cubes"), tet = part(data, "Element Blocks/Unnamed block ID: 10");
+    const Data data = read_bytes("cubes.e", cubes(version), o);
+    const DatasetPtr hexes = leaf_named(data, "Element Blocks/cubes"), tet = leaf_named(data, "Element Blocks/Unnamed block ID: 10");
     CHECK(std::get<CollectionPtr>(std::get<CollectionPtr>(data)->parts[0].data)->parts[0].name == "Unnamed block ID: 10");  // by id
     CHECK(hexes->point_count() == 12);
     CHECK(hexes->cell_count() == 2);
@@ -205,7 +185,7 @@ TEST_CASE("exodus: blocks, sets, variables and maps of two steps") {
     CHECK(tet->fields().require("ObjectId").array.get(0) == 10);
     CHECK(tet->fields().require("T").array.get(3) == -6);  // nodes 1 2 4 7
     CHECK(hexes->fields().require("energy").array.get(0) == 8);
-    const DatasetPtr wall = part(data, "Side Sets/wall");
+    const DatasetPtr wall = leaf_named(data, "Side Sets/wall");
     const auto counts = cell_type_counts(wall->mesh());
     REQUIRE(counts.size() == 2);
     CHECK(counts[0] == std::pair<std::string_view, size_t>("Triangle", 1));
@@ -216,7 +196,7 @@ TEST_CASE("exodus: blocks, sets, variables and maps of two steps") {
     for (size_t k = 0; k < 4; ++k) CHECK(mesh.points.at(size_t(cells.point(0, k))).x == 0);
     for (size_t k = 0; k < 4; ++k) CHECK(mesh.points.at(size_t(cells.point(1, k))).x == 2);
     CHECK(mesh.points.at(size_t(cells.point(2, 2))).z == 1);
-    const DatasetPtr nodes = part(data, "Node Sets/Unnamed set ID: 6");
+    const DatasetPtr nodes = leaf_named(data, "Node Sets/Unnamed set ID: 6");
     CHECK(nodes->bounds().hi.x == 9);
     CHECK(nodes->cell_count() == 2);
   }
@@ -229,7 +209,7 @@ TEST_CASE("exodus: times are told and only the wanted fields read") {
   ReadOptions o;
   o.fields = {"T"};
   const Data data = read_data(path, o, context);
-  CHECK(part(data, "Element Blocks/cubes")->fields().names() == std::vector<std::string>{"T"});
+  CHECK(leaf_named(data, "Element Blocks/cubes")->fields().names() == std::vector<std::string>{"T"});
   o.step = 7;
   CHECK(contains(error_of([&] { read_data(path, o, context); }), "no time step 7"));
 }
@@ -263,8 +243,9 @@ TEST_CASE("exodus: polygons and polyhedra keep their faces, also as sides") {
   f.var<int32_t>("ebepecnt2", {two}, {5, 3});
   f.var<int32_t>("elem_ss1", {sides}, {1, 2}).var<int32_t>("side_ss1", {sides}, {3, 5});
   const std::string bytes = f.bytes();
-  const Data data = read_any("poly.exo", bytes);
-  const DatasetPtr solid = part(data, "Element Blocks/Unnamed block ID: 1"), flat = part(data, "Element Blocks/Unnamed block ID: 2");
+  const Data data = read_bytes("poly.exo", bytes);
+  const DatasetPtr solid = leaf_named(data, "Element Blocks/Unnamed block ID: 1"),
+                   flat = leaf_named(data, "Element Blocks/Unnamed block ID: 2");
   const auto& mesh = *solid->as<UnstructuredMesh>();
   CHECK(mesh.type(0) == CellType::polyhedron);
   CHECK(cells_view(mesh.cells).size(0) == 6);
@@ -272,7 +253,7 @@ TEST_CASE("exodus: polygons and polyhedra keep their faces, also as sides") {
   CHECK(cells_view(mesh.faces).size(4) == 4);
   CHECK(flat->as<UnstructuredMesh>()->single_type == CellType::polygon);
   CHECK(cells_view(flat->as<UnstructuredMesh>()->cells).size(0) == 5);
-  const DatasetPtr side = part(data, "Side Sets/Unnamed set ID: 1");
+  const DatasetPtr side = leaf_named(data, "Side Sets/Unnamed set ID: 1");
   CHECK(cells_view(side->as<UnstructuredMesh>()->cells).size(0) == 4);
   CHECK(side->as<UnstructuredMesh>()->type(1) == CellType::line);
   cut_and_damage("poly.exo", bytes);
@@ -301,8 +282,8 @@ TEST_CASE("exodus: wrong elements, sides and shapes are told with their place") 
   CHECK(contains(with("elem_ss1", 1, INT32_MIN), "elem_ss1"));
   CHECK(contains(with("side_ss1", 0, 7), "1..6"));
   CHECK(contains(with("side_ss1", 2, 0), "1..4"));
-  CHECK(contains(error_of([] { read_any("odd.exo", one_element("BLOB", 17)); }), "unknown shape"));
-  CHECK(contains(error_of([] { read_any("odd.exo", one_element("HEX8", 5)); }), "unknown shape"));
+  CHECK(contains(error_of([] { read_bytes("odd.exo", one_element("BLOB", 17)); }), "unknown shape"));
+  CHECK(contains(error_of([] { read_bytes("odd.exo", one_element("HEX8", 5)); }), "unknown shape"));
 }
 
 TEST_CASE("exodus: cut and damaged files are refused or read") {

@@ -9,16 +9,9 @@
 #include "mesh_robust.h"
 
 using namespace sg;
+using test::put_bytes;
 
 namespace {
-
-template <class T>
-void put(std::string& s, T v, bool big_endian = false) {
-  char b[sizeof(T)];
-  std::memcpy(b, &v, sizeof(T));
-  if (big_endian) std::reverse(b, b + sizeof(T));
-  s.append(b, sizeof(T));
-}
 
 // A square of two triangles and a line, with names, a node field in two steps, and values at the nodes of elements.
 std::string ascii_22() {
@@ -35,25 +28,26 @@ std::string ascii_22() {
 
 std::string binary_41(bool big_endian) {
   std::string s = "$MeshFormat\n4.1 1 8\n";
-  put<int32_t>(s, 1, big_endian);
+  put_bytes<int32_t>(s, 1, big_endian);
   s += "\n$EndMeshFormat\n$Entities\n";
-  for (int64_t n : {0, 0, 1, 0}) put<int64_t>(s, n, big_endian);
-  put<int32_t>(s, 4, big_endian);
-  for (int k = 0; k < 6; ++k) put<double>(s, 0, big_endian);
-  put<int64_t>(s, 1, big_endian), put<int32_t>(s, -9, big_endian), put<int64_t>(s, 0, big_endian);
+  for (int64_t n : {0, 0, 1, 0}) put_bytes<int64_t>(s, n, big_endian);
+  put_bytes<int32_t>(s, 4, big_endian);
+  for (int k = 0; k < 6; ++k) put_bytes<double>(s, 0, big_endian);
+  put_bytes<int64_t>(s, 1, big_endian), put_bytes<int32_t>(s, -9, big_endian), put_bytes<int64_t>(s, 0, big_endian);
   s += "\n$EndEntities\n$Nodes\n";
-  for (int64_t n : {1, 3, 1, 1000000}) put<int64_t>(s, n, big_endian);
-  for (int32_t n : {2, 4, 1}) put<int32_t>(s, n, big_endian);
-  put<int64_t>(s, 3, big_endian);
-  for (int64_t n : {1, 1000, 1000000}) put<int64_t>(s, n, big_endian);
-  for (double x : {0.0, 0.0, 0.0, 0.1, 0.2, 1.0, 0.0, 0.0, 0.1, 0.2, 0.0, 1.0, 0.0, 0.1, 0.2}) put<double>(s, x, big_endian);
+  for (int64_t n : {1, 3, 1, 1000000}) put_bytes<int64_t>(s, n, big_endian);
+  for (int32_t n : {2, 4, 1}) put_bytes<int32_t>(s, n, big_endian);
+  put_bytes<int64_t>(s, 3, big_endian);
+  for (int64_t n : {1, 1000, 1000000}) put_bytes<int64_t>(s, n, big_endian);
+  for (double x : {0.0, 0.0, 0.0, 0.1, 0.2, 1.0, 0.0, 0.0, 0.1, 0.2, 0.0, 1.0, 0.0, 0.1, 0.2}) put_bytes<double>(s, x, big_endian);
   s += "\n$EndNodes\n$Elements\n";
-  for (int64_t n : {1, 1, 1, 1}) put<int64_t>(s, n, big_endian);
-  for (int32_t n : {2, 4, 2}) put<int32_t>(s, n, big_endian);
-  put<int64_t>(s, 1, big_endian);
-  for (int64_t n : {5, 1, 1000, 1000000}) put<int64_t>(s, n, big_endian);
+  for (int64_t n : {1, 1, 1, 1}) put_bytes<int64_t>(s, n, big_endian);
+  for (int32_t n : {2, 4, 2}) put_bytes<int32_t>(s, n, big_endian);
+  put_bytes<int64_t>(s, 1, big_endian);
+  for (int64_t n : {5, 1, 1000, 1000000}) put_bytes<int64_t>(s, n, big_endian);
   s += "\n$EndElements\n$NodeData\n1\n\"T\"\n1\n0\n3\n0\n1\n2\n";
-  put<int32_t>(s, 1, big_endian), put<double>(s, 5, big_endian), put<int32_t>(s, 1000000, big_endian), put<double>(s, 6, big_endian);
+  put_bytes<int32_t>(s, 1, big_endian), put_bytes<double>(s, 5, big_endian), put_bytes<int32_t>(s, 1000000, big_endian),
+      put_bytes<double>(s, 6, big_endian);
   return s + "\n$EndNodeData\n";
 }
 
@@ -107,7 +101,7 @@ TEST_CASE("gmsh: every order lists each lattice place once, inner nodes like a s
 
 TEST_CASE("gmsh: groups, names, steps and data of version 2.2") {
   Context context;
-  const DatasetPtr d = test::read_one("a.msh", ascii_22());
+  const DatasetPtr d = test::read_text("a.msh", ascii_22());
   CHECK(d->point_count() == 5);  // node 30 has two values of 'jump'
   CHECK(d->cell_count() == 3);
   const auto& f = d->fields();
@@ -131,18 +125,18 @@ TEST_CASE("gmsh: groups, names, steps and data of version 2.2") {
   CHECK(file_times(test::temp_folder() + "a.msh", {}, context) == std::vector<double>{0, 0.5});
   ReadOptions late;
   late.step = 1;
-  const DatasetPtr second = test::read_one("a.msh", ascii_22(), late);
+  const DatasetPtr second = test::read_text("a.msh", ascii_22(), late);
   CHECK(second->time() == 0.5);
   CHECK(second->fields().require("T").array.get(1) == 12);
   CHECK(std::isnan(second->fields().require("T").array.get(3)));
   ReadOptions one;
   one.fields = {"T"};
-  CHECK(test::read_one("a.msh", ascii_22(), one)->fields().find("jump") == nullptr);
+  CHECK(test::read_text("a.msh", ascii_22(), one)->fields().find("jump") == nullptr);
 }
 
 TEST_CASE("gmsh: binary 4.1 in both byte orders, sparse tags and parametric nodes") {
   for (bool big_endian : {false, true}) {
-    const DatasetPtr d = test::read_one("b.msh", binary_41(big_endian));
+    const DatasetPtr d = test::read_text("b.msh", binary_41(big_endian));
     CHECK(d->point_count() == 3);
     CHECK(d->bounds().hi == Vec3(1, 1, 0));
     CHECK(d->fields().require("physical").array.get(0) == 9);
@@ -154,23 +148,23 @@ TEST_CASE("gmsh: binary 4.1 in both byte orders, sparse tags and parametric node
 
 TEST_CASE("gmsh: binary 2.2 and 4.0 blocks") {
   std::string s = "$MeshFormat\n2.2 1 8\n";
-  put<int32_t>(s, 1);
+  put_bytes<int32_t>(s, 1);
   s += "\n$EndMeshFormat\n$Nodes\n3\n";
   for (int k = 0; k < 3; ++k) {
-    put<int32_t>(s, k + 1);
-    for (int a = 0; a < 3; ++a) put<double>(s, a == k ? 1 : 0);
+    put_bytes<int32_t>(s, k + 1);
+    for (int a = 0; a < 3; ++a) put_bytes<double>(s, a == k ? 1 : 0);
   }
   s += "\n$EndNodes\n$Elements\n1\n";
-  for (int32_t n : {2, 1, 2, 77, 5, 6, 1, 2, 3}) put<int32_t>(s, n);
+  for (int32_t n : {2, 1, 2, 77, 5, 6, 1, 2, 3}) put_bytes<int32_t>(s, n);
   s += "\n$EndElements\n";
-  const DatasetPtr d = test::read_one("c.msh", s);
+  const DatasetPtr d = test::read_text("c.msh", s);
   CHECK(d->cell_count() == 1);
   CHECK(d->fields().require("physical").array.get(0) == 5);
   CHECK(d->bounds().hi == Vec3(1, 1, 1));
   const std::string four =
       "$MeshFormat\n4.0 0 8\n$EndMeshFormat\n$Nodes\n1 3\n1 2 0 3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n"
       "$Elements\n1 1\n1 2 2 1\n1 1 2 3\n$EndElements\n";
-  const DatasetPtr e = test::read_one("d.msh", four);
+  const DatasetPtr e = test::read_text("d.msh", four);
   CHECK(e->cell_count() == 1);
   CHECK(e->fields().require("entity").array.get(0) == 1);
 }

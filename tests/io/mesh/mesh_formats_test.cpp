@@ -5,27 +5,13 @@
 #include <algorithm>
 #include <cstring>
 
-#include "data/cells/shape/cell_map.h"
+#include "io/mesh/total_measure.h"
 #include "mesh_robust.h"
 
 using namespace sg;
+using test::put_bytes;
 
 namespace {
-
-template <class T>
-void put(std::string& s, T v, bool big_endian = false) {
-  char b[sizeof(T)];
-  std::memcpy(b, &v, sizeof(T));
-  if (big_endian) std::reverse(b, b + sizeof(T));
-  s.append(b, sizeof(T));
-}
-
-double measure(const DatasetPtr& d) {
-  CellMap map(d);
-  double sum = 0;
-  for (size_t c = 0; c < d->cell_count(); ++c) map.open(c), sum += map.measure();
-  return sum;
-}
 
 // A cube, a pyramid on it and a prism beside it; UCD lists tops first.
 const std::string ucd =
@@ -57,14 +43,14 @@ const std::string gambit =
 std::string nek(bool solid, int word, bool big_endian, bool positions, double time) {
   std::string s = fmt::format("#std {} 3 2 {} 1 1 {:.7e} 7 0 1 {}UP", word, solid ? 2 : 1, time, positions ? "X" : "");
   s.resize(132, ' ');
-  put<float>(s, 6.54321f, big_endian);
-  put<int32_t>(s, 42, big_endian);
+  put_bytes<float>(s, 6.54321f, big_endian);
+  put_bytes<int32_t>(s, 42, big_endian);
   const int nk = solid ? 2 : 1, components = solid ? 3 : 2;
   auto block = [&](auto value) {
     for (int k = 0; k < nk; ++k)
       for (int j = 0; j < 2; ++j)
         for (int i = 0; i < 3; ++i)
-          word == 4 ? put<float>(s, float(value(i, j, k)), big_endian) : put<double>(s, value(i, j, k), big_endian);
+          word == 4 ? put_bytes<float>(s, float(value(i, j, k)), big_endian) : put_bytes<double>(s, value(i, j, k), big_endian);
   };
   for (int c = 0; c < components && positions; ++c) block([&](int i, int j, int k) { return double(c == 0 ? i : c == 1 ? j : k); });
   for (int c = 0; c < components; ++c) block([&](int i, int, int) { return double(c == 0 ? i : c + 1); });
@@ -75,9 +61,9 @@ std::string nek(bool solid, int word, bool big_endian, bool positions, double ti
 }  // namespace
 
 TEST_CASE("ucd: cells of every kind are turned right side up, fields have units") {
-  const DatasetPtr d = test::read_one("a.inp", ucd);
+  const DatasetPtr d = test::read_text("a.inp", ucd);
   CHECK(cell_type_counts(d->mesh()) == std::vector<std::pair<std::string_view, size_t>>{{"Hexahedron", 1}, {"Wedge", 1}, {"Pyramid", 1}});
-  CHECK(measure(d) == doctest::Approx(1 + 1.0 / 3 + 0.5));
+  CHECK(test::total_measure(d) == doctest::Approx(1 + 1.0 / 3 + 0.5));
   CHECK(d->fields().require("T").unit == "K");
   CHECK(d->fields().require("T").array.get(8) == 9);
   CHECK(d->fields().require("flow").array.get(8, 1) == 3);
@@ -88,18 +74,18 @@ TEST_CASE("ucd: cells of every kind are turned right side up, fields have units"
 TEST_CASE("ucd: binary files in both byte orders") {
   for (bool big : {false, true}) {
     std::string s(1, '\7');
-    for (int32_t n : {3, 1, 0, 1, 0, 3}) put(s, n, big);
-    for (int32_t n : {1, 5, 3, 2, 3, 2, 1}) put(s, n, big);
-    for (float v : {0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 7.f, 7.f, 7.f}) put(s, v, big);
+    for (int32_t n : {3, 1, 0, 1, 0, 3}) put_bytes(s, n, big);
+    for (int32_t n : {1, 5, 3, 2, 3, 2, 1}) put_bytes(s, n, big);
+    for (float v : {0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 7.f, 7.f, 7.f}) put_bytes(s, v, big);
     std::string labels = "heat";
     labels.resize(1024, '\0');
     std::string units = "W";
     units.resize(1024, '\0');
     s += labels + units;
-    for (int32_t n : {1, 1}) put(s, n, big);
-    for (float v : {0.f, 9.f, 4.f}) put(s, v, big);
-    put<int32_t>(s, 1, big);
-    const DatasetPtr d = test::read_one("b.inp", s);
+    for (int32_t n : {1, 1}) put_bytes(s, n, big);
+    for (float v : {0.f, 9.f, 4.f}) put_bytes(s, v, big);
+    put_bytes<int32_t>(s, 1, big);
+    const DatasetPtr d = test::read_text("b.inp", s);
     CHECK(d->as<UnstructuredMesh>()->points.at(1) == Vec3(1, 0, 7));
     CHECK(cells_view(d->as<UnstructuredMesh>()->cells).point(0, 0) == 2);
     CHECK(d->fields().require("heat").array.get(0) == 4);
@@ -145,7 +131,7 @@ TEST_CASE("tecplot: zones of different times are steps") {
   Context context;
   ReadOptions o;
   o.time = 1.4;
-  const DatasetPtr d = test::read_one("t.dat", s, o);
+  const DatasetPtr d = test::read_text("t.dat", s, o);
   CHECK(d->time() == 1.5);
   CHECK(d->fields().require("T").array.get(1) == 4);
   CHECK(file_times(test::temp_folder() + "t.dat", {}, context) == std::vector<double>{0.5, 1.5});
@@ -166,8 +152,8 @@ TEST_CASE("tecplot: what is wrong is named with its line; damaged files are refu
 }
 
 TEST_CASE("gambit: bricks and pyramids run x fastest; groups and node sets become fields") {
-  const DatasetPtr d = test::read_one("a.neu", gambit);
-  CHECK(measure(d) == doctest::Approx(1 + 1.0 / 3));
+  const DatasetPtr d = test::read_text("a.neu", gambit);
+  CHECK(test::total_measure(d) == doctest::Approx(1 + 1.0 / 3));
   CHECK(d->fields().require("Material Type").array.get(0) == 0);
   CHECK(d->fields().require("Material Type").array.get(1) == 6);
   CHECK(d->fields().require("Boundary Condition").array.get(8) == 2);
@@ -183,10 +169,10 @@ TEST_CASE("nek5000: elements become linear cells between their own points, in ev
   for (int word : {4, 8})
     for (bool big : {false, true})
       for (bool solid : {false, true}) {
-        const DatasetPtr d = test::read_one("one.fld", nek(solid, word, big, true, 0.25));
+        const DatasetPtr d = test::read_text("one.fld", nek(solid, word, big, true, 0.25));
         CHECK(d->point_count() == (solid ? 12 : 6));
         CHECK(d->cell_count() == 2);
-        CHECK(measure(d) == doctest::Approx(2));
+        CHECK(test::total_measure(d) == doctest::Approx(2));
         CHECK(d->time() == 0.25);
         CHECK(d->fields().require("velocity").array.get(2, 0) == 2);
         CHECK(d->fields().require("velocity").array.get(2, 2) == (solid ? 3 : 0));
@@ -203,7 +189,7 @@ TEST_CASE("nek5000: steps by their template; a step without positions takes the 
   const std::string s = "filetemplate: flow%01d.f%05d\nfirsttimestep: 3\nnumtimesteps: 2\n";
   ReadOptions o;
   o.step = 1;
-  const DatasetPtr d = test::read_one("flow.nek5000", s, o);
+  const DatasetPtr d = test::read_text("flow.nek5000", s, o);
   CHECK(d->time() == 0.75);
   CHECK(d->bounds().hi == Vec3(2, 1, 0));
   CHECK(d->fields().require("pressure").array.get(0) == 0.75);

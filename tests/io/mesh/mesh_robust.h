@@ -3,22 +3,9 @@
 #pragma once
 #include <algorithm>
 
-#include "base/file/file.h"
-#include "io/io.h"
-#include "support/test.h"
+#include "io/io_files.h"
 
 namespace sg::test {
-
-inline Data read_bytes(const std::string& name, std::string_view bytes, const ReadOptions& options = {}) {
-  const std::string path = temp_folder() + name;
-  write_file(path, bytes);
-  Context context;
-  return read_data(path, options, context);
-}
-
-inline DatasetPtr read_one(const std::string& name, std::string_view bytes, const ReadOptions& options = {}) {
-  return std::get<DatasetPtr>(read_bytes(name, bytes, options));
-}
 
 /// The file cut at every 1/64th of its length, and with each of its first 200 bytes (and every 1/64th) flipped in turn.
 inline void check_survives(const std::string& name, const std::string& bytes) {

@@ -5,6 +5,7 @@
 
 #include "data/cells/cell_topology.h"
 #include "data/cells/shape/cell_map.h"
+#include "io/mesh/total_measure.h"
 #include "io/mfem/element.h"
 #include "io/text/mesh_text.h"
 #include "mesh_robust.h"
@@ -21,13 +22,6 @@ constexpr const char* triangle_and_square =
 double polynomial(Vec3 x, int p) {
   double sum = 0, f = 1;
   for (int k = 0; k <= p; ++k, f *= 0.7 * x.x - 0.4 * x.y + 0.9 * x.z + 0.1) sum += f;
-  return sum;
-}
-
-double measure(const DatasetPtr& d) {
-  CellMap map(d);
-  double sum = 0;
-  for (size_t c = 0; c < d->cell_count(); ++c) map.open(c), sum += map.measure();
   return sum;
 }
 
@@ -128,7 +122,7 @@ TEST_CASE("mfem: matrices reproduce polynomials of every basis, geometry and ord
 }
 
 TEST_CASE("mfem: a linear mesh keeps its vertices, attributes and order") {
-  const DatasetPtr d = test::read_one("linear.mesh", std::string(triangle_and_square) + "2\n1 0\n0 0\n1 1\n0 1\n1 2\n");
+  const DatasetPtr d = test::read_text("linear.mesh", std::string(triangle_and_square) + "2\n1 0\n0 0\n1 1\n0 1\n1 2\n");
   CHECK(d->point_count() == 5);
   CHECK(cell_type_counts(d->mesh()) == std::vector<std::pair<std::string_view, size_t>>{{"Triangle", 1}, {"Quad", 1}});
   CHECK(d->fields().require("attribute").array.get(0) == 3);
@@ -149,7 +143,7 @@ TEST_CASE("mfem: degrees of freedom of order 3 lie on vertices, edges from the s
   node(b, 1), node(a, 1);                          // edge 2-3, from vertex 2
   node(0, a), node(0, b);                          // edge 3-1, from vertex 1
   node(a, a), node(b, a), node(a, b), node(b, b);
-  const DatasetPtr d = test::read_one("cubic.mesh", s);
+  const DatasetPtr d = test::read_text("cubic.mesh", s);
   CHECK(d->point_count() == 16);
   const auto& m = *d->as<UnstructuredMesh>();
   const CellsView cells = cells_view(m.cells);
@@ -163,25 +157,25 @@ TEST_CASE("mfem: a discontinuous field opens the mesh only where it jumps") {
   const std::string mesh = std::string(triangle_and_square) + "2\n1 0\n0 0\n1 1\n0 1\n1 2\n";
   // On the square 1 everywhere; on the triangle 1 at vertices 3 and 2, 5 at vertex 4.
   const std::string field = "\nFiniteElementSpace\nFiniteElementCollection: L2_T1_2D_P1\nVDim: 1\nOrdering: 0\n\n1\n1\n1\n1\n1\n1\n5\n";
-  DatasetPtr d = test::read_one("jump.saved", "solution\n" + mesh + field);
+  DatasetPtr d = test::read_text("jump.saved", "solution\n" + mesh + field);
   CHECK(d->point_count() == 5);
   CHECK(d->fields().require("solution").array.get(4) == 5);
-  d = test::read_one(
+  d = test::read_text(
       "jump.saved",
       "solution\n" + mesh + "\nFiniteElementSpace\nFiniteElementCollection: L2_T1_2D_P1\nVDim: 1\nOrdering: 0\n\n1\n1\n1\n1\n2\n2\n5\n");
   CHECK(d->point_count() == 7);
   // A field of higher order raises the geometry; one of order 0 lies on the cells.
   std::string quadratic = "\nFiniteElementSpace\nFiniteElementCollection: L2_T4_2D_P2\nVDim: 1\nOrdering: 0\n\n";
   for (int k = 0; k < 15; ++k) quadratic += "1\n";
-  d = test::read_one("jump.saved", "solution\n" + mesh + quadratic);
+  d = test::read_text("jump.saved", "solution\n" + mesh + quadratic);
   CHECK(d->as<UnstructuredMesh>()->type(0) == CellType::lagrange_quad);
-  CHECK(measure(d) == doctest::Approx(1.5));
-  d = test::read_one("jump.saved",
-                     "solution\n" + mesh + "\nFiniteElementSpace\nFiniteElementCollection: L2_2D_P0\nVDim: 1\nOrdering: 0\n\n3\n4\n");
+  CHECK(test::total_measure(d) == doctest::Approx(1.5));
+  d = test::read_text("jump.saved",
+                      "solution\n" + mesh + "\nFiniteElementSpace\nFiniteElementCollection: L2_2D_P0\nVDim: 1\nOrdering: 0\n\n3\n4\n");
   CHECK(d->fields().require("solution", Association::cell).array.get(1) == 4);
   ReadOptions none;
   none.fields = {"attribute"};
-  CHECK(test::read_one("jump.saved", "solution\n" + mesh + quadratic, none)->as<UnstructuredMesh>()->type(0) == CellType::quad);
+  CHECK(test::read_text("jump.saved", "solution\n" + mesh + quadratic, none)->as<UnstructuredMesh>()->type(0) == CellType::quad);
 }
 
 TEST_CASE("mfem: grid functions beside a mesh, and a mesh beside a grid function") {
@@ -202,14 +196,14 @@ TEST_CASE("mfem: grid functions beside a mesh, and a mesh beside a grid function
 TEST_CASE("mfem: meshes made from a few numbers fill their box") {
   for (auto [type, cells] : std::vector<std::pair<const char*, size_t>>{{"hex", 24}, {"tet", 144}, {"wedge", 48}, {"pyramid", 144}}) {
     CAPTURE(type);
-    const DatasetPtr d = test::read_one(
+    const DatasetPtr d = test::read_text(
         "inline.mesh", fmt::format("MFEM INLINE mesh v1.0\ntype = {}\nnx = 2\nny = 3\nnz = 4\nsx = 1.0\nsy = 2.0\nsz = 3.0\n", type));
     CHECK(d->cell_count() == cells);
-    CHECK(measure(d) == doctest::Approx(6));
+    CHECK(test::total_measure(d) == doctest::Approx(6));
     CHECK(smallest_jacobian(d) > 0);
   }
-  CHECK(test::read_one("inline.mesh", "MFEM INLINE mesh v1.0\ntype = tri\nnx = 2\nny = 3\n")->cell_count() == 12);
-  CHECK(test::read_one("inline.mesh", "MFEM INLINE mesh v1.0\ntype = segment\nnx = 5\n")->cell_count() == 5);
+  CHECK(test::read_text("inline.mesh", "MFEM INLINE mesh v1.0\ntype = tri\nnx = 2\nny = 3\n")->cell_count() == 12);
+  CHECK(test::read_text("inline.mesh", "MFEM INLINE mesh v1.0\ntype = segment\nnx = 5\n")->cell_count() == 5);
   CHECK(test::error_of([&] {
           test::read_bytes("inline.mesh", "MFEM INLINE mesh v1.0\ntype = hex\nnx = 90000\nny = 90000\nnz = 90000\n");
         }).find("at most") != std::string::npos);
@@ -293,9 +287,9 @@ TEST_CASE("mfem: no element of the real meshes is folded" * doctest::skip(test::
     CAPTURE(name);
     CHECK(smallest_jacobian(data(name)) > 0);
   }
-  CHECK(measure(data("amr-quad.mesh")) == doctest::Approx(1));
-  CHECK(measure(data("navier.saved")) == doctest::Approx(1));
-  CHECK(measure(data("laghos.saved")) == doctest::Approx(1));
-  CHECK(measure(data("triple-pt-1/triple-pt-1.mesh")) == doctest::Approx(21));
-  CHECK(measure(data("tinyzoo-3d.mesh")) == doctest::Approx(1 + 0.5 + 1.0 / 3 + 1.0 / 6));
+  CHECK(test::total_measure(data("amr-quad.mesh")) == doctest::Approx(1));
+  CHECK(test::total_measure(data("navier.saved")) == doctest::Approx(1));
+  CHECK(test::total_measure(data("laghos.saved")) == doctest::Approx(1));
+  CHECK(test::total_measure(data("triple-pt-1/triple-pt-1.mesh")) == doctest::Approx(21));
+  CHECK(test::total_measure(data("tinyzoo-3d.mesh")) == doctest::Approx(1 + 0.5 + 1.0 / 3 + 1.0 / 6));
 }

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "data/cells/shape/cell_map.h"
+#include "io/mesh/total_measure.h"
 #include "mesh_robust.h"
 
 using namespace sg;
@@ -23,19 +23,12 @@ std::string identity(bool turn, std::string_view weights = "1 1 1 1 1 1 1 1") {
   return s + "0 0\n3 0\n3 1\n0 1\n0.5 0\n2 0\n2 1\n0.5 1\n";
 }
 
-double measure(const DatasetPtr& d) {
-  CellMap map(d);
-  double sum = 0;
-  for (size_t c = 0; c < d->cell_count(); ++c) map.open(c), sum += map.measure();
-  return sum;
-}
-
 }  // namespace
 
 TEST_CASE("nurbs: knot spans become Bezier cells that lie where the spline does") {
   for (bool turn : {false, true}) {
     CAPTURE(turn);
-    const DatasetPtr d = test::read_one("identity.mesh", identity(turn));
+    const DatasetPtr d = test::read_text("identity.mesh", identity(turn));
     REQUIRE(d->cell_count() == 2);
     CHECK(d->as<UnstructuredMesh>()->type(0) == CellType::bezier_quad);
     CHECK(d->as<UnstructuredMesh>()->weights.empty());
@@ -63,19 +56,19 @@ TEST_CASE("nurbs: a quarter of a ring is exact, as a mesh of numbered points and
                                          "1 0 1\n2 0 1\n{1} {1} {0}\n{2} {2} {0}\n0 1 1\n0 2 1\n",
                                          w, w, 2 * w);
   for (const std::string& text : {numbered, patches}) {
-    const DatasetPtr d = test::read_one("ring.mesh", text);
+    const DatasetPtr d = test::read_text("ring.mesh", text);
     REQUIRE(d->cell_count() == 1);
     CHECK(d->as<UnstructuredMesh>()->weights.count() == 9);
     CellMap map(d);
     map.open(0);
     for (double t : {0.1, 0.35, 0.8})
       for (double r : {0.0, 0.5, 1.0}) CHECK(length(map.position({r, t, 0})) == doctest::Approx(1 + r).epsilon(1e-14));
-    CHECK(measure(d) == doctest::Approx(M_PI * 3 / 4).epsilon(1e-4));
+    CHECK(test::total_measure(d) == doctest::Approx(M_PI * 3 / 4).epsilon(1e-4));
   }
   // A field in the same space: x itself.
-  const DatasetPtr d =
-      test::read_one("ring.saved", "solution\n" + numbered +
-                                       "\nFiniteElementSpace\nFiniteElementCollection: NURBS2\nVDim: 1\nOrdering: 0\n\n1\n2\n0\n0\n2\n1\n");
+  const DatasetPtr d = test::read_text(
+      "ring.saved",
+      "solution\n" + numbered + "\nFiniteElementSpace\nFiniteElementCollection: NURBS2\nVDim: 1\nOrdering: 0\n\n1\n2\n0\n0\n2\n1\n");
   CellMap map(d);
   map.open(0);
   CellPlace place;
@@ -94,8 +87,8 @@ TEST_CASE("nurbs: a disc in one patch has its corners at (+-2, +-2) and the area
   for (int k = 0; k < 4; ++k) s += "0.70710678118654752\n";
   s +=
       "1\nFiniteElementSpace\nFiniteElementCollection: NURBS2\nVDim: 2\nOrdering: 1\n\n-2 -2\n2 -2\n2 2\n-2 2\n0 -4\n4 0\n0 4\n-4 0\n0 0\n";
-  const DatasetPtr d = test::read_one("disc.mesh", s);
-  CHECK(measure(d) == doctest::Approx(8 * M_PI).epsilon(1e-4));
+  const DatasetPtr d = test::read_text("disc.mesh", s);
+  CHECK(test::total_measure(d) == doctest::Approx(8 * M_PI).epsilon(1e-4));
   CellMap map(d);
   map.open(0);
   for (double t : {0.0, 0.2, 0.7})
@@ -140,7 +133,7 @@ TEST_CASE("nurbs: circles of the real meshes are round" * doctest::skip(test::no
     }
   }
   CHECK(most - least < 1e-8);  // nine digits
-  CHECK(measure(d) == doctest::Approx(1 - M_PI * most * most).epsilon(1e-4));
+  CHECK(test::total_measure(d) == doctest::Approx(1 - M_PI * most * most).epsilon(1e-4));
 
   d = std::get<DatasetPtr>(read_data(test::data_file("meshes/high-order/pipe-nurbs.mesh"), {}, context));
   CHECK(d->cell_count() == 8);

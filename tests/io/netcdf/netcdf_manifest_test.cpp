@@ -27,11 +27,6 @@ bool is_ours(const std::string& path) {
   return false;
 }
 
-Data read_any(const std::string& path, const ReadOptions& options = {}) {
-  Context context;
-  return read_data(data_file(path), options, context);
-}
-
 // Numbers that another reader rounded to f32 on its way agree to six digits.
 void check_number(double ours, const Json& theirs, double tolerance) {
   if (theirs.is_number()) CHECK(ours == doctest::Approx(theirs.get<double>()).epsilon(tolerance));
@@ -122,7 +117,7 @@ void check_variables(const std::string& path, const Json& variables) {
   for (size_t s = 0; s < steps; ++s) {
     ReadOptions o;
     if (steps > 1) o.step = int64_t(s);
-    for_each_dataset(read_any(path, o), [&](const std::string&, const DatasetPtr& d) {
+    for_each_dataset(read_any(data_file(path), o), [&](const std::string&, const DatasetPtr& d) {
       for (const Field& f : d->fields()) {
         ranges[f.name].add(d->range(f));
         valid[f.name] += f.array.count() - size_t(d->stats(f).nan);
@@ -154,7 +149,7 @@ TEST_CASE("netcdf: every Exodus II, CF, MINC and CGNS file agrees with the manif
     ++files;
     Data data;
     try {
-      data = read_any(path);
+      data = read_any(data_file(path));
     } catch (const Error& e) {
       FAIL_CHECK(e.what());
       continue;
@@ -207,11 +202,11 @@ TEST_CASE("netcdf: a step of moving eddies reads alike with one thread and with 
   ReadOptions o;
   o.step = 5;
   o.fields = {"vozocrtx"};
-  const auto read = [&] { return std::get<DatasetPtr>(read_any("vectors/moving_eddies/moving_eddiesU.nc", o)); };
+  const auto read = [&] { return std::get<DatasetPtr>(read_any(data_file("vectors/moving_eddies/moving_eddiesU.nc"), o)); };
   const DatasetPtr a = with_threads(1, read), b = with_threads(8, read);
   REQUIRE(a->fields().size() == 1);
   CHECK(same_array(a->fields()[0].array, b->fields()[0].array));
-  const auto exodus = [&] { return read_any("meshes/exodus/disk_out_ref.ex2"); };
+  const auto exodus = [&] { return read_any(data_file("meshes/exodus/disk_out_ref.ex2")); };
   std::vector<DatasetPtr> one, eight;
   for_each_dataset(with_threads(1, exodus), [&](const std::string&, const DatasetPtr& d) { one.push_back(d); });
   for_each_dataset(with_threads(8, exodus), [&](const std::string&, const DatasetPtr& d) { eight.push_back(d); });

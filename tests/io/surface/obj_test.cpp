@@ -8,7 +8,6 @@ using namespace sg::test;
 
 namespace {
 
-const SurfaceMesh& surface(const DatasetPtr& d) { return std::get<SurfaceMesh>(d->mesh()); }
 const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 }  // namespace
@@ -17,7 +16,7 @@ TEST_CASE("obj: faces, lines and points with absolute and relative indices") {
   const auto d =
       read_text("a.obj", "# a remark\n" + square + "f 1 2 3 4\nf -4 -3 \\\n -2\nl 1 2 3\np 4\nv 5 5 5 1.0\nf 1 -1 2 # the last one\n");
   CHECK(d->point_count() == 5);
-  const SurfaceMesh& s = surface(d);
+  const SurfaceMesh& s = surface_of(d);
   REQUIRE(s.polygons.size() == 3);
   const CellsView v = cells_view(s.polygons);
   CHECK(v.size(0) == 4);
@@ -98,15 +97,15 @@ TEST_CASE("obj: a file of many chunks is the same for 1 and 4 threads, and comes
   CHECK(one->point_count() == size_t(n * n));
   CHECK(one->cell_count() == size_t((n - 1) * (n - 1)));
   auto same = [](const DatasetPtr& a, const DatasetPtr& b) {
-    CHECK(same_array(surface(a).points.xyz, surface(b).points.xyz));
-    CHECK(same_array(surface(a).polygons.connectivity, surface(b).polygons.connectivity));
-    CHECK(same_array(surface(a).polygons.offsets, surface(b).polygons.offsets));
+    CHECK(same_array(surface_of(a).points.xyz, surface_of(b).points.xyz));
+    CHECK(same_array(surface_of(a).polygons.connectivity, surface_of(b).polygons.connectivity));
+    CHECK(same_array(surface_of(a).polygons.offsets, surface_of(b).polygons.offsets));
     CHECK(same_array(a->fields().require("TCoords").array, b->fields().require("TCoords").array));
   };
   same(one, four);
   CHECK(same_array(one->fields().require("GroupIds").array, four->fields().require("GroupIds").array));
   CHECK(same_array(one->fields().require("MaterialIds").array, four->fields().require("MaterialIds").array));
-  const CellsView v = cells_view(surface(one).polygons);
+  const CellsView v = cells_view(surface_of(one).polygons);
   bool right = true;
   for (size_t j = 1, c = 0; j < size_t(n); ++j)
     for (size_t i = 1; i < size_t(n); ++i, ++c)

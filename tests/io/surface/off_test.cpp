@@ -28,7 +28,7 @@ const std::string colored =
 }  // namespace
 
 TEST_CASE("off: colours, normals and faces of any size") {
-  const DatasetPtr d = test::read_one("a.off", colored);
+  const DatasetPtr d = test::read_text("a.off", colored);
   const auto& m = *d->as<SurfaceMesh>();
   CHECK(d->point_count() == 4);
   CHECK(m.lines.size() == 1);
@@ -45,7 +45,7 @@ TEST_CASE("off: colours, normals and faces of any size") {
 }
 
 TEST_CASE("off: header and numbers wherever blanks allow them") {
-  const DatasetPtr d = test::read_one("b.off", "\t\n  OFF3 1 0\n0 0\n0\n 1 0 0\r\n  0 1\t0\n\n 3 0\n 1 2");
+  const DatasetPtr d = test::read_text("b.off", "\t\n  OFF3 1 0\n0 0\n0\n 1 0 0\r\n  0 1\t0\n\n 3 0\n 1 2");
   CHECK(d->point_count() == 3);
   CHECK(d->as<SurfaceMesh>()->polygons.size() == 1);
 }
@@ -57,7 +57,7 @@ TEST_CASE("off: binary files are big-endian") {
     for (float v : {float(k), float(k * k), 0.5f, 0.25f, 0.75f}) put(s, v);
   for (int32_t n : {3, 2, 1, 0, 3}) put(s, n);
   for (float v : {0.f, 1.f, 0.f}) put(s, v);
-  const DatasetPtr d = test::read_one("c.off", s);
+  const DatasetPtr d = test::read_text("c.off", s);
   CHECK(d->as<SurfaceMesh>()->points.at(2) == Vec3(2, 4, 0.5));
   CHECK(d->fields().require("TCoords").array.get(1, 1) == 0.75);
   CHECK(d->fields().require("RGBA").array.get(0, 1) == 255);

@@ -8,8 +8,6 @@ using namespace sg::test;
 
 namespace {
 
-const SurfaceMesh& surface(const DatasetPtr& d) { return std::get<SurfaceMesh>(d->mesh()); }
-
 struct Bytes {
   std::string s;
   bool big = false;
@@ -80,9 +78,9 @@ DatasetPtr grid_surface(int n) {
 }
 
 bool same_surface(const DatasetPtr& a, const DatasetPtr& b) {
-  if (!same_array(surface(a).points.xyz, surface(b).points.xyz) ||
-      !same_array(surface(a).polygons.connectivity, surface(b).polygons.connectivity) ||
-      !same_array(surface(a).polygons.offsets, surface(b).polygons.offsets) || a->fields().size() != b->fields().size())
+  if (!same_array(surface_of(a).points.xyz, surface_of(b).points.xyz) ||
+      !same_array(surface_of(a).polygons.connectivity, surface_of(b).polygons.connectivity) ||
+      !same_array(surface_of(a).polygons.offsets, surface_of(b).polygons.offsets) || a->fields().size() != b->fields().size())
     return false;
   for (size_t i = 0; i < a->fields().size(); ++i)
     if (a->fields()[i].name != b->fields()[i].name || !same_array(a->fields()[i].array, b->fields()[i].array)) return false;
@@ -95,8 +93,8 @@ TEST_CASE("ply: the three encodings of one surface, with lists and properties in
   const auto text = read_text("m.ply", mixed_file(0));
   CHECK(text->point_count() == 4);
   CHECK(text->cell_count() == 2);
-  CHECK(surface(text).points.xyz.type() == ElementType::f64);
-  CHECK(surface(text).points.xyz.get(3, 0) == 0.1);
+  CHECK(surface_of(text).points.xyz.type() == ElementType::f64);
+  CHECK(surface_of(text).points.xyz.get(3, 0) == 0.1);
   const Field& c = text->fields().require("RGBA");
   CHECK(c.role == Role::colors);
   CHECK(c.array.get(1, 2) == 30);
@@ -104,8 +102,8 @@ TEST_CASE("ply: the three encodings of one surface, with lists and properties in
   CHECK(text->fields().require("tag").array.type() == ElementType::i32);
   CHECK(text->fields().require("quality", Association::cell).array.get(1) == 2.5);
   CHECK(text->fields().require("flag", Association::cell).array.get(0) == 9);
-  CHECK(cells_view(surface(text).polygons).size(1) == 4);
-  CHECK(cells_view(surface(text).polygons).point(1, 3) == 3);
+  CHECK(cells_view(surface_of(text).polygons).size(1) == 4);
+  CHECK(cells_view(surface_of(text).polygons).point(1, 3) == 3);
   CHECK(text->notes().at(0).second == "a remark");
   CHECK(same_surface(text, read_text("m.ply", mixed_file(1))));
   CHECK(same_surface(text, read_text("m.ply", mixed_file(2))));
@@ -141,7 +139,7 @@ TEST_CASE("ply: normals, texture coordinates and colours come back under their r
   write_data(temp_folder() + "r.ply", make_dataset(m, f), {}, context);
   const auto d = read_file(temp_folder() + "r.ply");
   CHECK(d->cell_count() == 2);
-  CHECK(surface(d).points.at(1).x == 1e7 + 1);
+  CHECK(surface_of(d).points.at(1).x == 1e7 + 1);
   CHECK(d->fields().require("N").array.get(3, 1) == 1);
   CHECK(d->fields().require("uv").array.get(1, 0) == 1);
   CHECK(d->fields().require("col").array.get(3, 2) == 12);
@@ -162,12 +160,12 @@ TEST_CASE("ply: strips, edges, points alone, and fields on request") {
   const std::string rows = "0 0 0 1 2\n1 0 0 1 2\n0 1 0 1 2\n1 1 0 1 2\n2 2 0 1 2\n";
   auto d = read_text(
       "s.ply", header("ascii", points + "element tristrips 1\nproperty list int int vertex_indices\n") + rows + "8 0 1 2 3 -1 2 3 4\n");
-  CHECK(surface(d).strips.size() == 2);
-  CHECK(cells_view(surface(d).strips).size(0) == 4);
-  CHECK(cells_view(surface(d).strips).point(1, 2) == 4);
+  CHECK(surface_of(d).strips.size() == 2);
+  CHECK(cells_view(surface_of(d).strips).size(0) == 4);
+  CHECK(cells_view(surface_of(d).strips).point(1, 2) == 4);
   d = read_text("s.ply", header("ascii", points + "element edge 2\nproperty int vertex1\nproperty int vertex2\n") + rows + "0 1\n3 4\n");
-  CHECK(surface(d).lines.size() == 2);
-  CHECK(cells_view(surface(d).lines).point(1, 1) == 4);
+  CHECK(surface_of(d).lines.size() == 2);
+  CHECK(cells_view(surface_of(d).lines).point(1, 1) == 4);
   d = read_text("s.ply", header("ascii", points) + rows);
   CHECK(d->cell_count() == 0);
   CHECK(d->fields().size() == 2);

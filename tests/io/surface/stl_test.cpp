@@ -40,10 +40,8 @@ std::vector<float> torus(int n, int m) {
   return r;
 }
 
-const SurfaceMesh& surface(const DatasetPtr& d) { return std::get<SurfaceMesh>(d->mesh()); }
-
 bool corners_are(const DatasetPtr& d, const std::vector<float>& xyz) {
-  const SurfaceMesh& s = surface(d);
+  const SurfaceMesh& s = surface_of(d);
   const CellsView v = cells_view(s.polygons);
   if (v.count * 9 != xyz.size()) return false;
   for (size_t c = 0; c < v.count * 3; ++c)
@@ -59,8 +57,8 @@ TEST_CASE("stl: points of a binary file are merged exactly, in the order of thei
   const auto d = read_text("q.stl", binary_stl(xyz));
   CHECK(d->point_count() == 4);
   CHECK(d->cell_count() == 2);
-  CHECK(surface(d).polygons.fixed == 3);
-  const CellsView v = cells_view(surface(d).polygons);
+  CHECK(surface_of(d).polygons.fixed == 3);
+  const CellsView v = cells_view(surface_of(d).polygons);
   const int want[6] = {0, 1, 2, 1, 3, 2};
   for (size_t i = 0; i < 6; ++i) CHECK(v.connectivity[i] == want[i]);
   CHECK(corners_are(d, xyz));
@@ -75,11 +73,11 @@ TEST_CASE("stl: a large surface keeps every corner, is closed, and is the same f
   CHECK(one->point_count() == size_t(n * m));  // Euler: V - E + F = 0 with E = 3V, F = 2V
   CHECK(one->cell_count() == size_t(2 * n * m));
   CHECK(corners_are(one, xyz));
-  CHECK(same_array(surface(one).points.xyz, surface(four).points.xyz));
-  CHECK(same_array(surface(one).polygons.connectivity, surface(four).polygons.connectivity));
+  CHECK(same_array(surface_of(one).points.xyz, surface_of(four).points.xyz));
+  CHECK(same_array(surface_of(one).polygons.connectivity, surface_of(four).polygons.connectivity));
   int64_t seen = -1;
   bool ordered = true;
-  const CellsView v = cells_view(surface(one).polygons);
+  const CellsView v = cells_view(surface_of(one).polygons);
   for (size_t i = 0; i < v.count * 3; ++i) {
     ordered = ordered && v.connectivity[i] <= seen + 1;
     seen = std::max(seen, v.connectivity[i]);
@@ -108,8 +106,8 @@ TEST_CASE("stl: ASCII in any layout") {
   const auto d = read_text("a.stl", text);
   CHECK(d->point_count() == 3);
   CHECK(d->cell_count() == 1);
-  CHECK(surface(d).points.xyz.get(1, 0) == 1.5);
-  CHECK(surface(d).points.xyz.get(2, 2) == -0.25);
+  CHECK(surface_of(d).points.xyz.get(1, 0) == 1.5);
+  CHECK(surface_of(d).points.xyz.get(2, 2) == -0.25);
   CHECK(d->notes().at(0).second == "a name");
   CHECK(read_text("e.stl", "solid\nendsolid\n")->cell_count() == 0);
 }
@@ -139,7 +137,7 @@ TEST_CASE("stl: polygons and strips are cut into triangles that keep their side"
   write_data(path, make_dataset(m), {}, context);
   const auto d = read_file(path);
   CHECK(d->cell_count() == 4);
-  const SurfaceMesh& s = surface(d);
+  const SurfaceMesh& s = surface_of(d);
   const CellsView v = cells_view(s.polygons);
   double area = 0;
   for (size_t c = 0; c < 4; ++c) {

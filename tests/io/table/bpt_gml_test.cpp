@@ -25,7 +25,7 @@ const std::string graph =
 }  // namespace
 
 TEST_CASE("bpt: control points lie where the polynomial says") {
-  const DatasetPtr d = test::read_one("a.bpt", patches());
+  const DatasetPtr d = test::read_text("a.bpt", patches());
   CHECK(d->cell_count() == 2);
   CHECK(d->point_count() == 20);
   CHECK(d->as<UnstructuredMesh>()->type(1) == CellType::bezier_quad);

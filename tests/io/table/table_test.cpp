@@ -8,15 +8,15 @@ using namespace sg;
 
 namespace {
 
-TablePtr read_text(const std::string& name, const std::string& text) {
+TablePtr table_in(const std::string& name, const std::string& text) {
   const std::string path = test::temp_folder() + name;
   write_file(path, text);
   Context context;
   return std::get<TablePtr>(read_data(path, {}, context));
 }
-TablePtr csv(const std::string& text) { return read_text("t.csv", text); }
+TablePtr csv(const std::string& text) { return table_in("t.csv", text); }
 std::string error(const std::string& name, const std::string& text) {
-  return test::error_of([&] { read_text(name, text); });
+  return test::error_of([&] { table_in(name, text); });
 }
 
 std::string utf16(const std::string& s, bool big, bool mark) {
@@ -113,13 +113,13 @@ TEST_CASE("csv: the points of a mesh with their fields are a table") {
 }
 
 TEST_CASE("json: lists of objects, objects of lists, grids, and named tables") {
-  const TablePtr rows = read_text("t.json", R"([{"a":1,"b":"x"},{"a":2.5,"b":null},{"b":"x","c":true}])");
+  const TablePtr rows = table_in("t.json", R"([{"a":1,"b":"x"},{"a":2.5,"b":null},{"b":"x","c":true}])");
   REQUIRE(rows->columns.size() == 3);
   CHECK(rows->columns[0].array.get(1) == 2.5);
   CHECK(std::isnan(rows->columns[0].array.get(2)));
   CHECK(rows->columns[1].array.get(1) == -1);
   CHECK(rows->columns[1].array.get(2) == 0);
-  const TablePtr columns = read_text("t.json", R"({"a":[1,2],"b":["p","q"]})");
+  const TablePtr columns = table_in("t.json", R"({"a":[1,2],"b":["p","q"]})");
   CHECK(columns->columns[0].array.type() == ElementType::i32);
   CHECK((*columns->words(1))[1] == "q");
   Context context;

@@ -16,7 +16,7 @@ std::string floats(size_t n, bool big = false, size_t from = 0) {
   return s;
 }
 
-const std::string head = "# a brick\nTIME: 1.5\nDATA_FILE: v.dat\nDATA_SIZE: 4 3 2\nDATA_FORMAT: FLOAT\nVARIABLE: \"rho\"\n";
+const std::string bov_head = "# a brick\nTIME: 1.5\nDATA_FILE: v.dat\nDATA_SIZE: 4 3 2\nDATA_FORMAT: FLOAT\nVARIABLE: \"rho\"\n";
 
 DatasetPtr read_bov_case(const std::string& name, const CaseFiles& files, const ReadOptions& o = {}) {
   return std::get<DatasetPtr>(read_any(write_case(name, files) + "a.bov", o));
@@ -26,7 +26,7 @@ DatasetPtr read_bov_case(const std::string& name, const CaseFiles& files, const 
 
 TEST_CASE("bov: sizes, order of bytes, place in space and time") {
   const auto d = read_bov_case(
-      "bov1", {{"a.bov", head + "DATA_ENDIAN: BIG\nCENTERING: nodal\nBRICK_ORIGIN: 1 2 3\nBRICK_SIZE: 6 4 1\nBYTE_OFFSET: 8\n"},
+      "bov1", {{"a.bov", bov_head + "DATA_ENDIAN: BIG\nCENTERING: nodal\nBRICK_ORIGIN: 1 2 3\nBRICK_SIZE: 6 4 1\nBYTE_OFFSET: 8\n"},
                {"v.dat", "8 bytes." + floats(24, true)}});
   const auto* g = d->as<UniformGrid>();
   REQUIRE(g);
@@ -38,7 +38,7 @@ TEST_CASE("bov: sizes, order of bytes, place in space and time") {
 }
 
 TEST_CASE("bov: zonal values lie in the cells of a grid with one point more") {
-  const auto d = read_bov_case("bov2", {{"a.bov", head + "CENTERING: zonal\nBRICK_SIZE: 8 3 2\n"}, {"v.dat", floats(24)}});
+  const auto d = read_bov_case("bov2", {{"a.bov", bov_head + "CENTERING: zonal\nBRICK_SIZE: 8 3 2\n"}, {"v.dat", floats(24)}});
   CHECK(d->as<UniformGrid>()->dims == std::array<size_t, 3>{5, 4, 3});
   CHECK(d->as<UniformGrid>()->spacing == Vec3{2, 1, 1});
   CHECK(d->fields().require("rho", Association::cell).array.count() == 24);
@@ -62,11 +62,11 @@ TEST_CASE("bov: bricklets in several files are put together, and packed files un
 TEST_CASE("bov: fields that are not asked for are not read, nor values for a quick look") {
   ReadOptions o;
   o.header_only = true;
-  const auto d = read_bov_case("bov4", {{"a.bov", head + "DATA_COMPONENTS: 3\n"}}, o);  // without its data file
+  const auto d = read_bov_case("bov4", {{"a.bov", bov_head + "DATA_COMPONENTS: 3\n"}}, o);  // without its data file
   CHECK(d->fields().require("rho").components() == 3);
   o.header_only = false;
   o.fields = {"other"};
-  CHECK(read_bov_case("bov4", {{"a.bov", head}}, o)->fields().empty());
+  CHECK(read_bov_case("bov4", {{"a.bov", bov_head}}, o)->fields().empty());
 }
 
 TEST_CASE("bov: a brick without a header tells its size by its name and its type by its length") {
@@ -93,18 +93,18 @@ TEST_CASE("bov: errors say what is wrong and where") {
   auto refused = [](const std::string& header, const std::string& data = floats(24)) {
     return error_of([&] { read_bov_case("bov_bad", {{"a.bov", header}, {"v.dat", data}}); });
   };
-  CHECK(contains(refused(head, floats(23)), "96 bytes are needed"));
-  CHECK(contains(refused(head + "DATA_SIZE: 4 3\n"), "line 7: expected three numbers"));
-  CHECK(contains(refused(head + "DATA_SIZE: 4 3 0\n"), "'0' is not a valid count from 1"));
-  CHECK(contains(refused(head + "DATA_SIZE: 9223372036854775807 9223372036854775807 4\n"), "too large"));
-  CHECK(contains(refused(head + "DATA_FORMAT: HALF\n"), "unknown DATA_FORMAT 'HALF'"));
-  CHECK(contains(refused(head + "DATA_FILE: v%d.dat\nDATA_BRICKLETS: 3 3 2\n"), "do not divide"));
-  CHECK(contains(refused(head + "DATA_FILE: none.dat\n"), "none.dat"));
-  CHECK(contains(refused(head + "no colon\n"), "not of the form KEY: VALUE"));
+  CHECK(contains(refused(bov_head, floats(23)), "96 bytes are needed"));
+  CHECK(contains(refused(bov_head + "DATA_SIZE: 4 3\n"), "line 7: expected three numbers"));
+  CHECK(contains(refused(bov_head + "DATA_SIZE: 4 3 0\n"), "'0' is not a valid count from 1"));
+  CHECK(contains(refused(bov_head + "DATA_SIZE: 9223372036854775807 9223372036854775807 4\n"), "too large"));
+  CHECK(contains(refused(bov_head + "DATA_FORMAT: HALF\n"), "unknown DATA_FORMAT 'HALF'"));
+  CHECK(contains(refused(bov_head + "DATA_FILE: v%d.dat\nDATA_BRICKLETS: 3 3 2\n"), "do not divide"));
+  CHECK(contains(refused(bov_head + "DATA_FILE: none.dat\n"), "none.dat"));
+  CHECK(contains(refused(bov_head + "no colon\n"), "not of the form KEY: VALUE"));
 }
 
 TEST_CASE("bov: damaged files give an error or a valid brick") {
-  const CaseFiles files{{"a.bov", head + "DATA_ENDIAN: LITTLE\nBRICK_SIZE: 1 1 1\nBYTE_OFFSET: 0\n"}, {"v.dat", floats(24)}};
+  const CaseFiles files{{"a.bov", bov_head + "DATA_ENDIAN: LITTLE\nBRICK_SIZE: 1 1 1\nBYTE_OFFSET: 0\n"}, {"v.dat", floats(24)}};
   cut_and_damage_case("bov_damage", files, "a.bov", "a.bov");
   CHECK(cut_and_damage_case("bov_damage", files, "v.dat", "a.bov") == 63);
 }

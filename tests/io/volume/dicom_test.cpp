@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
-#include <filesystem>
-
 #include "data/lattice.h"
 #include "io/io_files.h"
 
@@ -112,13 +110,7 @@ std::string stored(const std::vector<int>& v, Syntax s = Syntax::little) {
   return d.shorts(v);
 }
 
-std::string folder(const std::string& name) {
-  const std::string path = temp_folder() + name;
-  std::filesystem::remove_all(path);
-  std::filesystem::create_directories(path);
-  return path;
-}
-double value(const DatasetPtr& d, size_t i, int c = 0) { return d->fields().require("DICOMImage").array.get(i, c); }
+double dicom_value(const DatasetPtr& d, size_t i, int c = 0) { return d->fields().require("DICOMImage").array.get(i, c); }
 std::string note(const DatasetPtr& d, std::string_view key) {
   for (const auto& [k, v] : d->notes())
     if (k == key) return v;
@@ -137,7 +129,7 @@ TEST_CASE("dicom: implicit, explicit, big endian and run-length files hold the s
     const auto d = read_text("a.dcm", slice(o));
     CHECK(lattice_dims(d->mesh()) == std::array<size_t, 3>{3, 2, 1});
     CHECK(d->fields()[0].array.type() == ElementType::i16);
-    for (size_t i = 0; i < 6; ++i) CHECK(value(d, i) == v[i]);
+    for (size_t i = 0; i < 6; ++i) CHECK(dicom_value(d, i) == v[i]);
     CHECK(d->as<UniformGrid>()->spacing.x == 0.5);
     CHECK(d->as<UniformGrid>()->spacing.y == 2);
     CHECK(note(d, "Modality") == "CT");
@@ -146,7 +138,7 @@ TEST_CASE("dicom: implicit, explicit, big endian and run-length files hold the s
 }
 
 TEST_CASE("dicom: slices are ordered along their normal, wherever they lie in the folder") {
-  const std::string path = folder("series");
+  const std::string path = empty_folder("series");
   // Rows run along y, columns along -x: the normal is (0,0,1) x ... = -z for these axes.
   const double z[] = {30, 10, 20, 40};
   for (int k = 0; k < 4; ++k) {
@@ -163,7 +155,7 @@ TEST_CASE("dicom: slices are ordered along their normal, wherever they lie in th
   const Lattice lattice(d->mesh());
   const int order[] = {3, 0, 2, 1};  // 40, 30, 20, 10
   for (size_t k = 0; k < 4; ++k) {
-    CHECK(value(d, 6 * k) == order[k]);
+    CHECK(dicom_value(d, 6 * k) == order[k]);
     CHECK(length(lattice.view().position(0, 0, k) - Vec3(5, 6, 40 - 10 * double(k))) < 1e-12);
   }
   CHECK(length(lattice.view().position(2, 1, 0) - Vec3(5 + 2, 6 + 1, 40)) < 1e-12);
@@ -174,8 +166,8 @@ TEST_CASE("dicom: slices are ordered along their normal, wherever they lie in th
   o.region.stride = {1, 1, 2};
   const auto p = read_file(path, o);
   CHECK(lattice_dims(p->mesh()) == std::array<size_t, 3>{2, 2, 2});
-  CHECK(value(p, 0) == 1);
-  CHECK(value(p, 7) == 5);
+  CHECK(dicom_value(p, 0) == 1);
+  CHECK(dicom_value(p, 7) == 5);
   o = {};
   o.header_only = true;
   CHECK(read_file(path, o)->point_count() == 24);
@@ -183,7 +175,7 @@ TEST_CASE("dicom: slices are ordered along their normal, wherever they lie in th
 }
 
 TEST_CASE("dicom: missing slices and a leaning gantry are reported") {
-  const std::string path = folder("gaps");
+  const std::string path = empty_folder("gaps");
   for (const int k : {0, 1, 2, 4, 5}) {
     SliceOptions o;
     o.position = fmt::format("0\\{}\\{}", 0.5 * k, 3 * k);
@@ -211,20 +203,20 @@ TEST_CASE("dicom: slope and intercept, and bits that are not stored") {
   o.pixels = stored({0, 1, 4095, 0xf001, 5, 6});  // the upper four bits are none of the number's
   auto d = read_text("s.dcm", slice(o));
   CHECK(d->fields()[0].array.type() == ElementType::i16);
-  CHECK(value(d, 0) == -1024);
-  CHECK(value(d, 2) == 2 * 4095 - 1024);
-  CHECK(value(d, 3) == -1022);
+  CHECK(dicom_value(d, 0) == -1024);
+  CHECK(dicom_value(d, 2) == 2 * 4095 - 1024);
+  CHECK(dicom_value(d, 3) == -1022);
   o.slope = "0.5";
   d = read_text("s.dcm", slice(o));
   CHECK(d->fields()[0].array.type() == ElementType::f32);
-  CHECK(value(d, 1) == -1023.5);
+  CHECK(dicom_value(d, 1) == -1023.5);
   o.slope = "", o.intercept = "";
   o.is_signed = true;
   o.pixels = stored({0x0fff, 0x0800, 0x07ff, 0, 0, 0});
   d = read_text("s.dcm", slice(o));
-  CHECK(value(d, 0) == -1);
-  CHECK(value(d, 1) == -2048);
-  CHECK(value(d, 2) == 2047);
+  CHECK(dicom_value(d, 0) == -1);
+  CHECK(dicom_value(d, 1) == -2048);
+  CHECK(dicom_value(d, 2) == 2047);
 }
 
 TEST_CASE("dicom: colours, by pixel or by plane") {
@@ -234,10 +226,10 @@ TEST_CASE("dicom: colours, by pixel or by plane") {
   for (int i = 0; i < 18; ++i) o.pixels += char(i);
   auto d = read_text("c.dcm", slice(o));
   CHECK(d->fields()[0].role == Role::colors);
-  CHECK(value(d, 1, 2) == 5);
+  CHECK(dicom_value(d, 1, 2) == 5);
   o.planar = 1;
   d = read_text("c.dcm", slice(o));
-  CHECK(value(d, 1, 2) == 13);
+  CHECK(dicom_value(d, 1, 2) == 13);
 }
 
 TEST_CASE("dicom: frames of one file are slices; several series and several volumes are parts") {
@@ -246,8 +238,8 @@ TEST_CASE("dicom: frames of one file are slices; several series and several volu
   o.pixels = stored({0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17});
   auto d = read_text("m.dcm", slice(o));
   CHECK(lattice_dims(d->mesh()) == std::array<size_t, 3>{3, 2, 3});
-  CHECK(value(d, 17) == 17);
-  const std::string path = folder("two");
+  CHECK(dicom_value(d, 17) == 17);
+  const std::string path = empty_folder("two");
   o.frames = 1;
   o.pixels = stored({1, 2, 3, 4, 5, 6});
   for (int k = 0; k < 2; ++k)
@@ -265,7 +257,7 @@ TEST_CASE("dicom: frames of one file are slices; several series and several volu
   REQUIRE(parts.size() == 3);
   CHECK(parts[0].name == "test 1.5");
   CHECK(parts[2].name == "test 1.6, volume 2");
-  CHECK(value(std::get<DatasetPtr>(parts[2].data), 0) == 1);
+  CHECK(dicom_value(std::get<DatasetPtr>(parts[2].data), 0) == 1);
 }
 
 TEST_CASE("dicom: what cannot be read is said") {
@@ -293,7 +285,7 @@ TEST_CASE("dicom: what cannot be read is said") {
   for (int i = 0; i < 1000; ++i)
     deep.body += i % 2 ? std::string("\xfe\xff\x00\xe0\xff\xff\xff\xff", 8) : std::string("\x08\x00\x40\x11SQ\0\0\xff\xff\xff\xff", 12);
   CHECK(contains(refusal("b.dcm", deep.file()), "more than 16 deep"));
-  CHECK(contains(error_of([] { read_file(folder("empty")); }), "folder of unknown kind"));
+  CHECK(contains(error_of([] { read_file(empty_folder("empty")); }), "folder of unknown kind"));
 }
 
 TEST_CASE("dicom: cut and damaged files give errors, never crashes") {

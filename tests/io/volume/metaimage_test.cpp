@@ -9,7 +9,7 @@ using namespace sg;
 using namespace sg::test;
 
 namespace {
-const std::string head = "ObjectType = Image\nNDims = 3\nDimSize = 3 2 2\n";
+const std::string mhd_head = "ObjectType = Image\nNDims = 3\nDimSize = 3 2 2\n";
 std::string shorts(bool big) {
   std::string s;
   for (int i = 0; i < 12; ++i) {
@@ -28,25 +28,26 @@ bool is_ramp(const DatasetPtr& d) {
 }  // namespace
 
 TEST_CASE("metaimage: local, separate, listed, numbered and packed data are the same numbers") {
-  CHECK(is_ramp(read_text("m.mha", head + "ElementType = MET_SHORT\nElementDataFile = LOCAL\n" + shorts(false))));
-  CHECK(
-      is_ramp(read_text("m.mha", head + "ElementByteOrderMSB = True\nElementType = MET_SHORT\nElementDataFile = LOCAL\n" + shorts(true))));
+  CHECK(is_ramp(read_text("m.mha", mhd_head + "ElementType = MET_SHORT\nElementDataFile = LOCAL\n" + shorts(false))));
   CHECK(is_ramp(
-      read_text("m.mha", head + "BinaryDataByteOrderMSB = True\nElementType = MET_SHORT\nElementDataFile = LOCAL\n" + shorts(true))));
+      read_text("m.mha", mhd_head + "ElementByteOrderMSB = True\nElementType = MET_SHORT\nElementDataFile = LOCAL\n" + shorts(true))));
+  CHECK(is_ramp(
+      read_text("m.mha", mhd_head + "BinaryDataByteOrderMSB = True\nElementType = MET_SHORT\nElementDataFile = LOCAL\n" + shorts(true))));
   temp_file("m.raw", "0123456789" + shorts(false));
-  CHECK(is_ramp(read_text("m.mhd", head + "ElementType = MET_SHORT\nHeaderSize = 10\nElementDataFile = m.raw\n")));
-  CHECK(is_ramp(read_text("m.mhd", head + "ElementType = MET_SHORT\nHeaderSize = -1\nElementDataFile = m.raw\n")));
+  CHECK(is_ramp(read_text("m.mhd", mhd_head + "ElementType = MET_SHORT\nHeaderSize = 10\nElementDataFile = m.raw\n")));
+  CHECK(is_ramp(read_text("m.mhd", mhd_head + "ElementType = MET_SHORT\nHeaderSize = -1\nElementDataFile = m.raw\n")));
   temp_file("m_1.raw", shorts(false).substr(0, 12));
   temp_file("m_2.raw", shorts(false).substr(12));
-  CHECK(is_ramp(read_text("m.mhd", head + "ElementType = MET_SHORT\nElementDataFile = LIST\nm_1.raw\nm_2.raw\n")));
-  CHECK(is_ramp(read_text("m.mhd", head + "ElementType = MET_SHORT\nElementDataFile = LIST 2D\nm_1.raw\nm_2.raw\n")));
-  CHECK(is_ramp(read_text("m.mhd", head + "ElementType = MET_SHORT\nElementDataFile = m_%d.raw 1 2 1\n")));
-  CHECK(is_ramp(read_text("m.mhd", head + "ElementType = MET_SHORT\nElementDataFile = m_%d.raw\n")));
-  CHECK(is_ramp(read_text("m.mha", head + "BinaryData = False\nElementType = MET_SHORT\nElementDataFile = LOCAL\n-3000 -2000 -1000 0 1000 "
-                                          "2000\n3000 4000 5000 6000 7000 8000\n")));
+  CHECK(is_ramp(read_text("m.mhd", mhd_head + "ElementType = MET_SHORT\nElementDataFile = LIST\nm_1.raw\nm_2.raw\n")));
+  CHECK(is_ramp(read_text("m.mhd", mhd_head + "ElementType = MET_SHORT\nElementDataFile = LIST 2D\nm_1.raw\nm_2.raw\n")));
+  CHECK(is_ramp(read_text("m.mhd", mhd_head + "ElementType = MET_SHORT\nElementDataFile = m_%d.raw 1 2 1\n")));
+  CHECK(is_ramp(read_text("m.mhd", mhd_head + "ElementType = MET_SHORT\nElementDataFile = m_%d.raw\n")));
+  CHECK(is_ramp(read_text("m.mha", mhd_head +
+                                       "BinaryData = False\nElementType = MET_SHORT\nElementDataFile = LOCAL\n-3000 -2000 -1000 0 1000 "
+                                       "2000\n3000 4000 5000 6000 7000 8000\n")));
   const std::string s = shorts(false);
   const auto packed = pack_gzip({reinterpret_cast<const std::byte*>(s.data()), s.size()});
-  CHECK(is_ramp(read_text("m.mha", head + "CompressedData = True\nElementType = MET_SHORT\nElementDataFile = LOCAL\n" +
+  CHECK(is_ramp(read_text("m.mha", mhd_head + "CompressedData = True\nElementType = MET_SHORT\nElementDataFile = LOCAL\n" +
                                        std::string(reinterpret_cast<const char*>(packed.data()), packed.size()))));
 }
 
@@ -125,22 +126,22 @@ TEST_CASE("metaimage: bad headers are refused") {
   CHECK(contains(refusal("b.mha", "NDims = 3\nDimSize = 3 2\n" + end), "2 numbers but NDims is 3"));
   CHECK(contains(refusal("b.mha", "NDims = 30\nDimSize = 3 2\n" + end), "NDims is '30'"));
   CHECK(contains(refusal("b.mha", "NDims = 2\nDimSize = 3 x\n" + end), "'x' is not a valid size"));
-  CHECK(contains(refusal("b.mha", head + "ElementType = MET_STRING\nElementDataFile = LOCAL\n"), "'MET_STRING' is unknown"));
-  CHECK(contains(refusal("b.mha", head + "ElementSpacing = 1 1\n" + end), "2 numbers, but 3 are needed"));
-  CHECK(contains(refusal("b.mha", head + "ElementSpacing = 1 1 nan\n" + end), "is not a number"));
-  CHECK(contains(refusal("b.mha", head + "TransformMatrix = 1 0 0 1 0 0 0 0 1\n" + end), "coplanar"));
-  CHECK(contains(refusal("b.mha", head + "ElementType = MET_SHORT\n"), "no ElementDataFile"));
-  CHECK(contains(refusal("b.mha", head + "ElementNumberOfChannels = 0\n" + end), "ElementNumberOfChannels"));
-  CHECK(contains(refusal("b.mha", head + "HeaderSize = -2\n" + end), "HeaderSize"));
-  CHECK(contains(refusal("b.mha", head + "ElementType = MET_SHORT\nElementDataFile = LIST\n"), "not followed by names"));
+  CHECK(contains(refusal("b.mha", mhd_head + "ElementType = MET_STRING\nElementDataFile = LOCAL\n"), "'MET_STRING' is unknown"));
+  CHECK(contains(refusal("b.mha", mhd_head + "ElementSpacing = 1 1\n" + end), "2 numbers, but 3 are needed"));
+  CHECK(contains(refusal("b.mha", mhd_head + "ElementSpacing = 1 1 nan\n" + end), "is not a number"));
+  CHECK(contains(refusal("b.mha", mhd_head + "TransformMatrix = 1 0 0 1 0 0 0 0 1\n" + end), "coplanar"));
+  CHECK(contains(refusal("b.mha", mhd_head + "ElementType = MET_SHORT\n"), "no ElementDataFile"));
+  CHECK(contains(refusal("b.mha", mhd_head + "ElementNumberOfChannels = 0\n" + end), "ElementNumberOfChannels"));
+  CHECK(contains(refusal("b.mha", mhd_head + "HeaderSize = -2\n" + end), "HeaderSize"));
+  CHECK(contains(refusal("b.mha", mhd_head + "ElementType = MET_SHORT\nElementDataFile = LIST\n"), "not followed by names"));
   CHECK(contains(refusal("b.mha", "ObjectType = Tube\nNDims = 3\nDimSize = 1 1 1\n" + end), "MetaIO Tube"));
   CHECK(contains(refusal("b.mha", "NDims = 3\nDimSize = 9999999 9999999 9999999\n" + end), "too large"));
   CHECK(contains(refusal("b.mha", "NDims = 3\nDimSize = 3000 3000 30\n" + end), "bytes are needed, but there are 24"));
   CHECK(contains(refusal("b.mha", "NDims = 3\nDimSize = 3000 3000 30\nCompressedData = True\n" + end), "cannot hold"));
-  CHECK(contains(refusal("b.mha", head + "CompressedData = True\n" + end), "damaged"));
+  CHECK(contains(refusal("b.mha", mhd_head + "CompressedData = True\n" + end), "damaged"));
 }
 
 TEST_CASE("metaimage: cut and damaged files give errors, never crashes") {
-  CHECK(cut_and_damage("cut.mha", head + "ElementSpacing = 1 1 1\nOffset = 0 0 0\nElementType = MET_SHORT\nElementDataFile = LOCAL\n" +
+  CHECK(cut_and_damage("cut.mha", mhd_head + "ElementSpacing = 1 1 1\nOffset = 0 0 0\nElementType = MET_SHORT\nElementDataFile = LOCAL\n" +
                                       shorts(false)) == 63);
 }

@@ -77,7 +77,7 @@ std::string gzipped(const std::string& s) {
 }
 
 Vec3 position(const DatasetPtr& d, size_t i, size_t j, size_t k) { return Lattice(d->mesh()).view().position(i, j, k); }
-double value(const DatasetPtr& d, size_t i, int c = 0) { return d->fields().require("NIFTI").array.get(i, c); }
+double nifti_value(const DatasetPtr& d, size_t i, int c = 0) { return d->fields().require("NIFTI").array.get(i, c); }
 
 }  // namespace
 
@@ -93,7 +93,7 @@ TEST_CASE("nifti: both versions, both byte orders, plain and gzip give the same 
           const auto d = read_text(zip ? "v.nii.gz" : "v.nii", zip ? gzipped(bytes) : bytes);
           CHECK(lattice_dims(d->mesh()) == std::array<size_t, 3>{2, 3, 2});
           CHECK(d->as<UniformGrid>()->spacing == Vec3(0.5, 2, 3));
-          for (size_t i = 0; i < 12; ++i) CHECK(value(d, i) == double(i));
+          for (size_t i = 0; i < 12; ++i) CHECK(nifti_value(d, i) == double(i));
           CHECK(int(element_size(d->fields()[0].array.type())) == int(n.ramp(1).size()));
         }
 }
@@ -139,14 +139,14 @@ TEST_CASE("nifti: slope and intercept are applied, in double where the stored nu
   n.slope = 0.5, n.intercept = -1;
   auto d = read_text("s.nii", n.file(12));
   CHECK(d->fields()[0].array.type() == ElementType::f32);
-  for (size_t i = 0; i < 12; ++i) CHECK(value(d, i) == 0.5 * double(i) - 1);
+  for (size_t i = 0; i < 12; ++i) CHECK(nifti_value(d, i) == 0.5 * double(i) - 1);
   n.datatype = 8;
   CHECK(read_text("s.nii", n.file(12))->fields()[0].array.type() == ElementType::f64);
   n.datatype = 4;
   n.slope = 0;  // says: not scaled
   CHECK(read_text("s.nii", n.file(12))->fields()[0].array.type() == ElementType::i16);
   n.slope = std::nan("");
-  CHECK(value(read_text("s.nii", n.file(12)), 11) == 11);
+  CHECK(nifti_value(read_text("s.nii", n.file(12)), 11) == 11);
 }
 
 TEST_CASE("nifti: the fourth axis is time, one step at a time") {
@@ -163,11 +163,11 @@ TEST_CASE("nifti: the fourth axis is time, one step at a time") {
       o.step = step;
       const auto d = read_file(path, o);
       CHECK(d->time() == 1 + 2.5 * step);
-      for (size_t i = 0; i < 12; ++i) CHECK(value(d, i) == double(step) * 12 + double(i));
+      for (size_t i = 0; i < 12; ++i) CHECK(nifti_value(d, i) == double(step) * 12 + double(i));
     }
     ReadOptions o;
     o.time = 5.5;
-    CHECK(value(read_file(path, o), 0) == 24);
+    CHECK(nifti_value(read_file(path, o), 0) == 24);
     o.step = 4;
     CHECK(contains(error_of([&] { read_file(path, o); }), "no time step 4"));
   }
@@ -196,28 +196,28 @@ TEST_CASE("nifti: the fifth axis is components") {
   n.intent = 1007;
   auto d = read_text("v.nii", n.file(36));
   CHECK(d->fields()[0].role == Role::vectors);
-  CHECK(value(d, 5, 2) == 29);
+  CHECK(nifti_value(d, 5, 2) == 29);
   n.dim[5] = 6;
   n.intent = 1005;  // xx xy yy xz yz zz
   d = read_text("v.nii", n.file(72));
   CHECK(d->fields()[0].role == Role::tensors);
   const int order[9] = {0, 1, 3, 1, 2, 4, 3, 4, 5};
-  for (int c = 0; c < 9; ++c) CHECK(value(d, 7, c) == order[c] * 12 + 7);
+  for (int c = 0; c < 9; ++c) CHECK(nifti_value(d, 7, c) == order[c] * 12 + 7);
   n.dim = {5, 2, 3, 2, 2, 2};
   n.intent = 0;
   n.big = true;
   ReadOptions o;
   o.step = 1;
   d = read_text("v.nii", n.file(48), o);
-  CHECK(value(d, 0, 0) == 12);
-  CHECK(value(d, 0, 1) == 36);
+  CHECK(nifti_value(d, 0, 0) == 12);
+  CHECK(nifti_value(d, 0, 1) == 36);
   n = Nifti{};
   n.datatype = 128;
   std::string rgb;
   for (int i = 0; i < 36; ++i) rgb += char(i);
   d = read_text("c.nii", n.head() + rgb);
   CHECK(d->fields()[0].role == Role::colors);
-  CHECK(value(d, 3, 1) == 10);
+  CHECK(nifti_value(d, 3, 1) == 10);
 }
 
 TEST_CASE("nifti: zero in the place of dimensions or sizes means one") {
@@ -236,15 +236,15 @@ TEST_CASE("nifti: a pair of header and image, and Analyze without a magic") {
   temp_file("pair.hdr", n.head().substr(0, 348));
   CHECK(contains(error_of([] { read_file(temp_folder() + "pair.hdr"); }), "no data"));
   temp_file("pair.img", n.ramp(12));
-  CHECK(value(read_file(temp_folder() + "pair.hdr"), 11) == 11);
-  CHECK(value(read_file(temp_folder() + "pair.img"), 11) == 11);
+  CHECK(nifti_value(read_file(temp_folder() + "pair.hdr"), 11) == 11);
+  CHECK(nifti_value(read_file(temp_folder() + "pair.img"), 11) == 11);
   n.magic = "";
   n.big = true;
   n.sform = 1;  // means nothing here
   temp_file("old.hdr", n.head().substr(0, 348));
   temp_file("old.img.gz", gzipped(n.ramp(12)));
-  CHECK(value(read_file(temp_folder() + "old.hdr"), 11) == 11);
-  CHECK(value(read_file(temp_folder() + "old.img.gz"), 11) == 11);
+  CHECK(nifti_value(read_file(temp_folder() + "old.hdr"), 11) == 11);
+  CHECK(nifti_value(read_file(temp_folder() + "old.img.gz"), 11) == 11);
   CHECK(contains(refusal("alone.img", "0123456789"), "header of the .img file is missing"));
 }
 
@@ -265,7 +265,7 @@ TEST_CASE("nifti: a region reads the same points as cutting afterwards") {
       size_t at = 0;
       for (size_t k = 2; k < 5; ++k)
         for (size_t j = 0; j < 5; j += 3)
-          for (size_t i = 1; i < 7; i += 2) CHECK(value(d, at++) == double(210 + i + 7 * (j + 6 * k)));
+          for (size_t i = 1; i < 7; i += 2) CHECK(nifti_value(d, at++) == double(210 + i + 7 * (j + 6 * k)));
       CHECK(position(d, 1, 1, 1) == Vec3(3, 3, 3));
       o.region.lo = {7, 0, 0};
       CHECK(contains(error_of([&] { read_file(path, o); }), "axis x"));

@@ -28,7 +28,7 @@ std::string ramp(size_t n, bool big = false) {
   }
   return s;
 }
-double value(const DatasetPtr& d, size_t i, int c = 0) { return d->fields().require("values").array.get(i, c); }
+double npy_value(const DatasetPtr& d, size_t i, int c = 0) { return d->fields().require("values").array.get(i, c); }
 
 }  // namespace
 
@@ -39,7 +39,7 @@ TEST_CASE("npy: every type in both byte orders") {
       const auto d = read_text("a.npy", npy(dict(descr, "2, 3, 4"), body, version));
       CHECK(lattice_dims(d->mesh()) == std::array<size_t, 3>{4, 3, 2});
       CHECK(d->fields()[0].array.type() == type);
-      for (size_t i = 0; i < 24; ++i) CHECK(value(d, i) == double(i));
+      for (size_t i = 0; i < 24; ++i) CHECK(npy_value(d, i) == double(i));
     }
   };
   check("|u1", ramp<uint8_t>(24), ElementType::u8);
@@ -62,17 +62,17 @@ TEST_CASE("npy: halves, truth values and complex numbers") {
   const std::string half("\x00\x3c\x00\xc0\xff\x7b\x01\x00\x00\x7c\x00\x80", 12);
   auto d = read_text("h.npy", npy(dict("<f2", "6,"), half));
   CHECK(d->fields()[0].array.type() == ElementType::f32);
-  CHECK(value(d, 0) == 1);
-  CHECK(value(d, 1) == -2);
-  CHECK(value(d, 2) == 65504);
-  CHECK(value(d, 3) == std::ldexp(1.0, -24));
-  CHECK(std::isinf(value(d, 4)));
-  CHECK(std::signbit(value(d, 5)));
+  CHECK(npy_value(d, 0) == 1);
+  CHECK(npy_value(d, 1) == -2);
+  CHECK(npy_value(d, 2) == 65504);
+  CHECK(npy_value(d, 3) == std::ldexp(1.0, -24));
+  CHECK(std::isinf(npy_value(d, 4)));
+  CHECK(std::signbit(npy_value(d, 5)));
   d = read_text("h.npy", npy(dict("|b1", "2,"), std::string("\x00\x01", 2)));
-  CHECK(value(d, 1) == 1);
+  CHECK(npy_value(d, 1) == 1);
   d = read_text("h.npy", npy(dict("<c8", "2, 2"), ramp<float>(8)));
   CHECK(d->fields()[0].components() == 2);
-  CHECK(value(d, 3, 1) == 7);
+  CHECK(npy_value(d, 3, 1) == 7);
 }
 
 TEST_CASE("npy: the memory order does not change which number is where") {
@@ -92,14 +92,14 @@ TEST_CASE("npy: the memory order does not change which number is where") {
     const std::string shape = components == 1 ? "2, 3, 4" : "2, 3, 4, 3";
     const auto a = read_text("c.npy", npy(dict("<i4", shape), bytes(c_order)));
     const auto b = read_text("f.npy", npy(dict("<i4", shape, true), bytes(fortran)));
-    CHECK(value(a, 1 + 4 * (2 + 3 * 1), components - 1) == 1210 + components - 1);
+    CHECK(npy_value(a, 1 + 4 * (2 + 3 * 1), components - 1) == 1210 + components - 1);
     CHECK(same_array(a->fields()[0].array, b->fields()[0].array));
     ReadOptions o;
     o.region.lo = {1, 1, 0};
     o.region.stride = {2, 1, 1};
     const auto p = read_file(temp_folder() + "c.npy", o), q = read_file(temp_folder() + "f.npy", o);
     CHECK(lattice_dims(p->mesh()) == std::array<size_t, 3>{2, 2, 2});
-    CHECK(value(p, 3) == 230);
+    CHECK(npy_value(p, 3) == 230);
     CHECK(same_array(p->fields()[0].array, q->fields()[0].array));
   }
 }
@@ -139,7 +139,7 @@ TEST_CASE("npy: what is written reads back the same") {
   p.mesh = PointCloud{{Array::from_vector(std::vector<float>(9), 3), {}}};
   p.fields.add({"u", Association::point, Array::from_vector(std::vector<float>{4, 5, 6}), "", Role::none});
   write_data(temp_folder() + "w.npy", make_dataset(p), {}, context);
-  CHECK(value(read_file(temp_folder() + "w.npy"), 2) == 6);
+  CHECK(npy_value(read_file(temp_folder() + "w.npy"), 2) == 6);
 }
 
 TEST_CASE("npy: what cannot be read is said") {

@@ -37,26 +37,27 @@ bool holds(const Dataset& d, const std::vector<int16_t>& want) {
   return true;
 }
 
-const std::string head = "NRRD0004\ntype: short\ndimension: 3\nsizes: 4 3 2\n";
+const std::string nrrd_head = "NRRD0004\ntype: short\ndimension: 3\nsizes: 4 3 2\n";
 
 }  // namespace
 
 TEST_CASE("nrrd: raw data of both byte orders, in text, hexadecimal, attached and detached are the same numbers") {
   const auto v = ramp(24);
-  CHECK(holds(*read_text("a.nrrd", head + "encoding: raw\nendian: little\n\n" + bytes_of(v)), v));
-  CHECK(holds(*read_text("a.nrrd", head + "encoding: raw\nendian: big\n\n" + bytes_of(v, true)), v));
+  CHECK(holds(*read_text("a.nrrd", nrrd_head + "encoding: raw\nendian: little\n\n" + bytes_of(v)), v));
+  CHECK(holds(*read_text("a.nrrd", nrrd_head + "encoding: raw\nendian: big\n\n" + bytes_of(v, true)), v));
   CHECK(holds(*read_text("crlf.nrrd", "NRRD0004\r\ntype: int16\r\ndimension: 3\r\nsizes: 4 3 2\r\nencoding: raw\r\nendian: little\r\n\r\n" +
                                           bytes_of(v)),
               v));
   std::string text, hex;
   for (const int16_t x : v) text += std::to_string(x) + (text.size() % 3 ? " " : "\n");
   for (const char c : bytes_of(v, true)) hex += fmt::format("{:02x}{}", int(static_cast<unsigned char>(c)), hex.size() % 5 ? "" : "\n");
-  for (const char* e : {"ascii", "text", "txt", "ASCII"}) CHECK(holds(*read_text("a.nrrd", head + "encoding: " + e + "\n\n" + text), v));
-  CHECK(holds(*read_text("a.nrrd", head + "encoding: hex\nendian: big\n\n" + hex), v));
+  for (const char* e : {"ascii", "text", "txt", "ASCII"})
+    CHECK(holds(*read_text("a.nrrd", nrrd_head + "encoding: " + e + "\n\n" + text), v));
+  CHECK(holds(*read_text("a.nrrd", nrrd_head + "encoding: hex\nendian: big\n\n" + hex), v));
   temp_file("brick.raw", "header line\n" + bytes_of(v) + "xyz");
-  CHECK(holds(*read_text("d.nhdr", head + "encoding: raw\nendian: little\nline skip: 1\ndata file: brick.raw\n"), v));
-  CHECK(holds(*read_text("d.nhdr", head + "encoding: raw\nendian: little\nbyte skip: 12\ndatafile: brick.raw\n"), v));
-  CHECK(holds(*read_text("d.nhdr", head + "encoding: raw\nendian: little\nbyte skip: -4\ndata file: brick.raw\n"), v));
+  CHECK(holds(*read_text("d.nhdr", nrrd_head + "encoding: raw\nendian: little\nline skip: 1\ndata file: brick.raw\n"), v));
+  CHECK(holds(*read_text("d.nhdr", nrrd_head + "encoding: raw\nendian: little\nbyte skip: 12\ndatafile: brick.raw\n"), v));
+  CHECK(holds(*read_text("d.nhdr", nrrd_head + "encoding: raw\nendian: little\nbyte skip: -4\ndata file: brick.raw\n"), v));
 }
 
 TEST_CASE("nrrd: data in several files by list and by pattern") {
@@ -64,20 +65,21 @@ TEST_CASE("nrrd: data in several files by list and by pattern") {
   const std::string all = bytes_of(v);
   temp_file("slice01.raw", all.substr(0, 24));
   temp_file("slice02.raw", all.substr(24));
-  CHECK(holds(*read_text("p.nhdr", head + "encoding: raw\nendian: little\ndata file: slice%02d.raw 1 2 1\n"), v));
-  CHECK(holds(*read_text("p.nhdr", head + "encoding: raw\nendian: little\ndata file: slice%02d.raw 1 2 1 2\n"), v));
-  CHECK(holds(*read_text("p.nhdr", head + "encoding: raw\nendian: little\ndata file: LIST\nslice01.raw\nslice02.raw\n"), v));
+  CHECK(holds(*read_text("p.nhdr", nrrd_head + "encoding: raw\nendian: little\ndata file: slice%02d.raw 1 2 1\n"), v));
+  CHECK(holds(*read_text("p.nhdr", nrrd_head + "encoding: raw\nendian: little\ndata file: slice%02d.raw 1 2 1 2\n"), v));
+  CHECK(holds(*read_text("p.nhdr", nrrd_head + "encoding: raw\nendian: little\ndata file: LIST\nslice01.raw\nslice02.raw\n"), v));
   std::vector<int16_t> turned(v.begin() + 12, v.end());
   turned.insert(turned.end(), v.begin(), v.begin() + 12);
-  CHECK(holds(*read_text("p.nhdr", head + "encoding: raw\nendian: little\ndata file: slice%02d.raw 2 1 -1\n"), turned));
-  CHECK(contains(refusal("p.nhdr", head + "encoding: raw\nendian: little\ndata file: LIST\nslice01.raw\n"), "too short"));
-  CHECK(contains(refusal("p.nhdr", head + "encoding: raw\nendian: little\ndata file: slice%02d.raw 1 3 1\n"), "3 data files"));
-  CHECK(contains(refusal("p.nhdr", head + "encoding: raw\nendian: little\ndata file: slice%s.raw 1 3 1\n"), "not a pattern"));
-  CHECK(contains(refusal("p.nhdr", head + "encoding: raw\nendian: little\ndata file: slice%d.raw 1 3 0\n"), "steps of 0"));
-  CHECK(contains(refusal("p.nhdr", head + "encoding: raw\nendian: little\ndata file: slice%d.raw 0 2000000000000 1\n"), "files numbered"));
-  CHECK(contains(refusal("p.nhdr", head + "encoding: raw\nendian: little\ndata file: slice%d.raw 1 2 -9223372036854775808\n"),
+  CHECK(holds(*read_text("p.nhdr", nrrd_head + "encoding: raw\nendian: little\ndata file: slice%02d.raw 2 1 -1\n"), turned));
+  CHECK(contains(refusal("p.nhdr", nrrd_head + "encoding: raw\nendian: little\ndata file: LIST\nslice01.raw\n"), "too short"));
+  CHECK(contains(refusal("p.nhdr", nrrd_head + "encoding: raw\nendian: little\ndata file: slice%02d.raw 1 3 1\n"), "3 data files"));
+  CHECK(contains(refusal("p.nhdr", nrrd_head + "encoding: raw\nendian: little\ndata file: slice%s.raw 1 3 1\n"), "not a pattern"));
+  CHECK(contains(refusal("p.nhdr", nrrd_head + "encoding: raw\nendian: little\ndata file: slice%d.raw 1 3 0\n"), "steps of 0"));
+  CHECK(contains(refusal("p.nhdr", nrrd_head + "encoding: raw\nendian: little\ndata file: slice%d.raw 0 2000000000000 1\n"),
                  "files numbered"));
-  CHECK(contains(refusal("p.nhdr", head + "encoding: raw\nendian: little\ndata file: nothere.raw\n"), "no such file"));
+  CHECK(contains(refusal("p.nhdr", nrrd_head + "encoding: raw\nendian: little\ndata file: slice%d.raw 1 2 -9223372036854775808\n"),
+                 "files numbered"));
+  CHECK(contains(refusal("p.nhdr", nrrd_head + "encoding: raw\nendian: little\ndata file: nothere.raw\n"), "no such file"));
 }
 
 TEST_CASE("nrrd: space directions become spacing, direction and origin") {
@@ -139,6 +141,18 @@ TEST_CASE("nrrd: axes that are no space become components, wherever they stand")
     CHECK(d->fields()[0].components() == 4);
     CHECK(value(d, 1, 1) == 4);
     CHECK(value(d, 1, 2) == 9);
+  }
+  SUBCASE("none where no kind says so, however short the first axis") {
+    const auto d = read_text("c.nrrd", "NRRD0004\ntype: float\ndimension: 3\nsizes: 2 3 2\n" + six);
+    CHECK(d->as<UniformGrid>()->dims == std::array<size_t, 3>{2, 3, 2});
+    CHECK(d->fields()[0].components() == 1);
+    CHECK(value(d, 11, 0) == 12);
+    const std::string bytes(3 * 16 * 20, 'a');
+    const auto picture = read_text("p.nrrd", "NRRD0001\ntype: uchar\ndimension: 3\nsizes: 3 16 20\nencoding: raw\n\n" + bytes);
+    CHECK(picture->as<UniformGrid>()->dims == std::array<size_t, 3>{16, 20, 1});
+    CHECK(picture->fields()[0].role == Role::colors);
+    const auto thin = read_text("t.nrrd", "NRRD0001\ntype: uchar\ndimension: 3\nsizes: 3 15 20\nencoding: raw\n\n" + bytes.substr(0, 900));
+    CHECK(thin->as<UniformGrid>()->dims == std::array<size_t, 3>{3, 15, 20});
   }
   SUBCASE("a fourth axis without a kind") {
     const auto d = read_text("c.nrrd", "NRRD0004\ntype: float\ndimension: 4\nsizes: 3 2 1 2\nspacings: 1 1 1 1\n" + six);
@@ -228,7 +242,7 @@ TEST_CASE("nrrd: what cannot be written is said") {
 
 TEST_CASE("nrrd: bad headers are refused with their line") {
   const std::string ok = "endian: little\n\n" + bytes_of(ramp(24));
-  CHECK(contains(refusal("b.nrrd", head + "encoding: zip\n" + ok), "line 5: unknown encoding 'zip'"));
+  CHECK(contains(refusal("b.nrrd", nrrd_head + "encoding: zip\n" + ok), "line 5: unknown encoding 'zip'"));
   CHECK(contains(refusal("b.nrrd", "NRRD0004\ntype: block\n" + ok), "block"));
   CHECK(contains(refusal("b.nrrd", "NRRD0004\ntype: sixteen\n" + ok), "unknown type 'sixteen'"));
   CHECK(contains(refusal("b.nrrd", "NRRD0004\nsizes: 4 3\n" + ok), "before 'dimension'"));
@@ -237,15 +251,15 @@ TEST_CASE("nrrd: bad headers are refused with their line") {
   CHECK(contains(refusal("b.nrrd", "NRRD0004\ndimension: 2\nsizes: 4 -3\n" + ok), "'-3' is not a valid size"));
   CHECK(contains(refusal("b.nrrd", "NRRD0004\nsome words\n" + ok), "neither 'field: value'"));
   CHECK(contains(refusal("b.nrrd", "NRRD0004\ncolour: red\n" + ok), "unknown field 'colour'"));
-  CHECK(contains(refusal("b.nrrd", head + ok), "no 'encoding'"));
+  CHECK(contains(refusal("b.nrrd", nrrd_head + ok), "no 'encoding'"));
   CHECK(contains(refusal("b.nrrd", "NRRD0004\ntype: float\nencoding: raw\n" + ok), "no 'dimension'"));
-  CHECK(contains(refusal("b.nrrd", head + "encoding: raw\n"), "ends inside its header"));
-  CHECK(contains(refusal("b.nrrd", head + "encoding: raw\nspace directions: (1,0,0) (1,0,0) (0,0,1)\nspace dimension: 3\n" + ok),
+  CHECK(contains(refusal("b.nrrd", nrrd_head + "encoding: raw\n"), "ends inside its header"));
+  CHECK(contains(refusal("b.nrrd", nrrd_head + "encoding: raw\nspace directions: (1,0,0) (1,0,0) (0,0,1)\nspace dimension: 3\n" + ok),
                  "coplanar"));
-  CHECK(contains(refusal("b.nrrd", head + "encoding: raw\nspace directions: (1,0,0) (0,0,0) (0,0,1)\n" + ok), "no length"));
-  CHECK(contains(refusal("b.nrrd", head + "encoding: raw\nspace: lps\nspace directions: (1,0) (0,0,0) (0,0,1)\n" + ok),
+  CHECK(contains(refusal("b.nrrd", nrrd_head + "encoding: raw\nspace directions: (1,0,0) (0,0,0) (0,0,1)\n" + ok), "no length"));
+  CHECK(contains(refusal("b.nrrd", nrrd_head + "encoding: raw\nspace: lps\nspace directions: (1,0) (0,0,0) (0,0,1)\n" + ok),
                  "vector of 2 numbers"));
-  CHECK(contains(refusal("b.nrrd", head + "encoding: raw\nendian: middle\n" + ok), "use little or big"));
+  CHECK(contains(refusal("b.nrrd", nrrd_head + "encoding: raw\nendian: middle\n" + ok), "use little or big"));
 }
 
 TEST_CASE("nrrd: sizes are checked before memory is asked for") {
@@ -291,11 +305,11 @@ TEST_CASE("nrrd: a stream that unpacks to far more than promised is refused, not
 
 TEST_CASE("nrrd: cut and damaged files give errors, never crashes") {
   const auto v = ramp(24);
-  CHECK(cut_and_damage("cut.nrrd", head + "encoding: raw\nendian: little\nspace: lps\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n\n" +
+  CHECK(cut_and_damage("cut.nrrd", nrrd_head + "encoding: raw\nendian: little\nspace: lps\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n\n" +
                                        bytes_of(v)) == 63);
   std::string text;
   for (int i = 0; i < 24; ++i) text += std::to_string(i + 100) + " ";
-  CHECK(cut_and_damage("cut.nrrd", head + "encoding: ascii\n\n" + text) >= 62);
+  CHECK(cut_and_damage("cut.nrrd", nrrd_head + "encoding: ascii\n\n" + text) >= 62);
   DatasetParts p;
   UniformGrid g;
   g.dims = {10, 10, 10};

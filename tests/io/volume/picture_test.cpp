@@ -2,8 +2,6 @@
 #include <fmt/core.h>
 #include <png.h>
 
-#include <filesystem>
-
 #include "data/lattice.h"
 #include "data/lattice_crop.h"
 #include "image/codec.h"
@@ -13,13 +11,6 @@ using namespace sg;
 using namespace sg::test;
 
 namespace {
-
-std::string folder(const std::string& name) {
-  const std::string path = temp_folder() + name;
-  std::filesystem::remove_all(path);
-  std::filesystem::create_directories(path);
-  return path;
-}
 
 Image gradient(int channels, int seed) {
   Image m(7, 5, channels);
@@ -101,7 +92,7 @@ struct Tiff {
   }
 };
 
-double value(const DatasetPtr& d, size_t i, int c = 0) { return d->fields()[0].array.get(i, c); }
+double pixel_value(const DatasetPtr& d, size_t i, int c = 0) { return d->fields()[0].array.get(i, c); }
 
 }  // namespace
 
@@ -112,16 +103,16 @@ TEST_CASE("picture: PNG pixels stand upright, in 8 and 16 bits") {
     const auto d = read_file(temp_folder() + "p.png");
     CHECK(lattice_dims(d->mesh()) == std::array<size_t, 3>{7, 5, 1});
     CHECK(d->fields()[0].name == "PNGImage");
-    for (int c = 0; c < channels; ++c) CHECK(value(d, 0, c) == *(m.at(0, 4) + c));
-    CHECK(value(d, 7 * 4 + 6) == *m.at(6, 0));
+    for (int c = 0; c < channels; ++c) CHECK(pixel_value(d, 0, c) == *(m.at(0, 4) + c));
+    CHECK(pixel_value(d, 7 * 4 + 6) == *m.at(6, 0));
   }
   const auto d = read_text("q.png", png_16());
   CHECK(d->fields()[0].array.type() == ElementType::u16);
-  CHECK(value(d, 1) == 1001);
-  CHECK(value(d, 5) == 2);
+  CHECK(pixel_value(d, 1) == 1001);
+  CHECK(pixel_value(d, 5) == 2);
   ReadOptions o;
   o.region.lo = {1, 1, 0};
-  CHECK(value(read_text("q.png", png_16(), o), 1) == 2);
+  CHECK(pixel_value(read_text("q.png", png_16(), o), 1) == 2);
 }
 
 TEST_CASE("picture: JPEG pixels stand upright") {
@@ -131,8 +122,8 @@ TEST_CASE("picture: JPEG pixels stand upright") {
   write_image(temp_folder() + "p.jpg", m);
   const auto d = read_file(temp_folder() + "p.jpg");
   CHECK(d->fields()[0].components() == 3);
-  CHECK(value(d, 0) < 40);
-  CHECK(value(d, 255) > 220);
+  CHECK(pixel_value(d, 0) < 40);
+  CHECK(pixel_value(d, 255) > 220);
 }
 
 TEST_CASE("picture: TIFF in every number type, byte order and arrangement") {
@@ -156,13 +147,13 @@ TEST_CASE("picture: TIFF in every number type, byte order and arrangement") {
         CHECK(d->fields()[0].array.type() == k.type);
         CHECK(lattice_dims(d->mesh()) == std::array<size_t, 3>{3, 2, 1});
         const int shift = k.format == 2 ? -50 : 0;
-        CHECK(value(d, 0) == 10 + shift);
-        CHECK(value(d, 5) == 2 + shift);
-        if (planar == 2) CHECK(value(d, 1, 2) == 13 + shift);
+        CHECK(pixel_value(d, 0) == 10 + shift);
+        CHECK(pixel_value(d, 5) == 2 + shift);
+        if (planar == 2) CHECK(pixel_value(d, 1, 2) == 13 + shift);
       }
   Tiff t;
   t.orientation = 4;  // the first row is the lowest
-  CHECK(value(read_text("t.tif", t.file()), 0) == 0);
+  CHECK(pixel_value(read_text("t.tif", t.file()), 0) == 0);
 }
 
 TEST_CASE("picture: pages of a TIFF are layers, and a region reads only its own") {
@@ -171,7 +162,7 @@ TEST_CASE("picture: pages of a TIFF are layers, and a region reads only its own"
   const std::string path = temp_file("t.tif", t.file());
   const auto d = read_file(path);
   CHECK(lattice_dims(d->mesh()) == std::array<size_t, 3>{3, 2, 4});
-  CHECK(value(d, 6 * 3) == 310);
+  CHECK(pixel_value(d, 6 * 3) == 310);
   ReadOptions o;
   o.region.lo = {1, 0, 1};
   o.region.stride = {1, 1, 2};
@@ -181,13 +172,13 @@ TEST_CASE("picture: pages of a TIFF are layers, and a region reads only its own"
 }
 
 TEST_CASE("picture: a folder of pictures is a volume, in the order of the numbers in their names") {
-  const std::string path = folder("stack");
+  const std::string path = empty_folder("stack");
   for (const int k : {1, 2, 10, 3}) write_image(path + fmt::format("/s{}.png", k), gradient(1, k));
   write_file(path + "/readme.txt", "words");
   const auto d = with_threads(1, [&] { return read_file(path); });
   CHECK(lattice_dims(d->mesh()) == std::array<size_t, 3>{7, 5, 4});
   const int order[] = {1, 2, 3, 10};
-  for (size_t k = 0; k < 4; ++k) CHECK(value(d, 35 * k) == *gradient(1, order[k]).at(0, 4));
+  for (size_t k = 0; k < 4; ++k) CHECK(pixel_value(d, 35 * k) == *gradient(1, order[k]).at(0, 4));
   CHECK(same_array(d->fields()[0].array, with_threads(8, [&] { return read_file(path); })->fields()[0].array));
   ReadOptions o;
   o.region.lo = {2, 1, 1};
@@ -198,7 +189,7 @@ TEST_CASE("picture: a folder of pictures is a volume, in the order of the number
   CHECK(contains(error_of([&] { read_file(path); }), "differ in size"));
   write_image(path + "/s11.png", gradient(3, 0));
   CHECK(contains(error_of([&] { read_file(path); }), "size or type"));
-  const std::string tiffs = folder("tiffs");
+  const std::string tiffs = empty_folder("tiffs");
   Tiff t;
   for (int k = 0; k < 3; ++k) write_file(tiffs + fmt::format("/{}.tif", k), t.file());
   CHECK(lattice_dims(read_file(tiffs)->mesh()) == std::array<size_t, 3>{3, 2, 3});

@@ -47,6 +47,25 @@ TEST_CASE("slc: raw and packed slices are the same bytes") {
   }
 }
 
+TEST_CASE("slc: slices that lack up to a row at their end are read, and it is said") {
+  // 12 bytes are wanted, 11 come; the other slice is whole.
+  const std::string a = std::string("\x04\x07\x87") + slice_a.substr(4, 7) + std::string(1, '\0');
+  const std::string b = "\x88" + slice_b.substr(0, 8) + "\x04\x07" + std::string(1, '\0');
+  const std::string bytes = slc("4 3 2", 1, fmt::format("{} X", a.size()) + a + fmt::format("\n{} X", b.size()) + b);
+  std::vector<std::string> said;
+  Context context;
+  context.on_log = [&](LogLevel level, std::string_view text) {
+    if (level == LogLevel::warning) said.emplace_back(text);
+  };
+  const Data data = read_data(temp_file("short.slc", bytes), {}, context);
+  const auto& d = std::get<DatasetPtr>(data);
+  CHECK(d->fields()[0].array.get(10) == 8);
+  CHECK(d->fields()[0].array.get(11) == 0);
+  CHECK(d->fields()[0].array.get(12) == 9);
+  REQUIRE(said.size() == 1);
+  CHECK(contains(said[0], "slice 0 is 1 byte short; read as 0"));
+}
+
 TEST_CASE("slc: bad headers and slices are refused") {
   CHECK(contains(refusal("b.slc", slc("4 3 9", 0, slice_a)), "too short: slice 1"));
   CHECK(contains(refusal("b.slc", slc("0 3 2", 0, slice_a)), "size of 0"));

@@ -34,11 +34,6 @@ DatasetPtr amr(int dimension = 3) {
   return make_dataset(std::move(p));
 }
 
-Data read_any(const std::string& path, const ReadOptions& options = {}) {
-  Context context;
-  return read_data(path, options, context);
-}
-
 void write_patch(const std::string& name, std::array<size_t, 3> dims, Vec3 spacing, Vec3 origin) {
   DatasetParts p;
   UniformGrid g;

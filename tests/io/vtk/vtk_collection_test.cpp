@@ -9,7 +9,7 @@ using namespace sg::test;
 
 namespace {
 
-Data read_any(const std::string& name, const ReadOptions& options = {}) {
+Data read_in_temp(const std::string& name, const ReadOptions& options = {}) {
   Context context;
   return read_data(temp(name), options, context);
 }
@@ -52,7 +52,7 @@ TEST_CASE("vtm: blocks nest, keep their names, and blocks without a mesh are lef
   write_file(temp("tree.vtm"), vtm("<Block index=\"0\" name=\"wing &amp; tail\"><DataSet index=\"0\" name=\"left\" file=\"b1.vtu\"/>"
                                    "<Piece index=\"1\"><DataSet index=\"4\" file=\"b2.vtu\"/></Piece><DataSet index=\"2\"/></Block>"
                                    "<Block index=\"1\"/><DataSet index=\"2\" file=\"b3.vtu\"/>"));
-  const Data d = read_any("tree.vtm");
+  const Data d = read_in_temp("tree.vtm");
   CHECK(parts_of(d).parts.size() == 3);
   CHECK(names_of(d) == std::vector<std::string>{"wing & tail/left", "wing & tail/1/4", "2"});
   CHECK(cells_in(d) == 6);
@@ -61,14 +61,14 @@ TEST_CASE("vtm: blocks nest, keep their names, and blocks without a mesh are lef
     for (int i = 0; i < pieces; ++i) {
       ReadOptions o;
       o.piece = i, o.pieces = pieces;
-      cells += cells_in(read_any("tree.vtm", o));
+      cells += cells_in(read_in_temp("tree.vtm", o));
     }
     CHECK(cells == 6);
   }
 }
 
 TEST_CASE("vtm: what names itself, or names too much, is refused") {
-  auto error = [&](const std::string& name) { return error_of([&] { read_any(name); }); };
+  auto error = [&](const std::string& name) { return error_of([&] { read_in_temp(name); }); };
   write_file(temp("self.vtm"), vtm("<DataSet index=\"0\" file=\"self.vtm\"/>"));
   CHECK(error("self.vtm").find("contains itself") != std::string::npos);
   write_file(temp("ping.vtm"), vtm("<DataSet file=\"./pong.pvd\"/>"));
@@ -86,7 +86,7 @@ TEST_CASE("vtm: what names itself, or names too much, is refused") {
     write_file(temp("laugh" + std::to_string(i) + ".vtm"), vtm(body));
   }
   CHECK(error("laugh0.vtm").find("parts") != std::string::npos);
-  CHECK(cells_in(read_any("laugh6.vtm")) == 10000);  // read once, not ten thousand times
+  CHECK(cells_in(read_in_temp("laugh6.vtm")) == 10000);  // read once, not ten thousand times
   std::string deep;
   for (int i = 0; i < 5000; ++i) deep += "<Block>";
   for (int i = 0; i < 5000; ++i) deep += "</Block>";
@@ -106,35 +106,35 @@ TEST_CASE("pvd: steps are sorted, chosen by time or number, and only the chosen 
   Context context;
   CHECK(file_times(temp("run.pvd"), {}, context) == std::vector<double>{-1, 2.5, 1000});
   ReadOptions o;
-  CHECK(cells_in(read_any("run.pvd", o)) == 1);
+  CHECK(cells_in(read_in_temp("run.pvd", o)) == 1);
   o.step = 1;
-  const Data d = read_any("run.pvd", o);
+  const Data d = read_in_temp("run.pvd", o);
   REQUIRE(std::holds_alternative<DatasetPtr>(d));
   CHECK(std::get<DatasetPtr>(d)->cell_count() == 2);
   CHECK(std::get<DatasetPtr>(d)->time() == 2.5);
   o.step = -1, o.time = 3.0;
-  CHECK(cells_in(read_any("run.pvd", o)) == 2);
+  CHECK(cells_in(read_in_temp("run.pvd", o)) == 2);
   o.time = 900.0;
-  CHECK(error_of([&] { read_any("run.pvd", o); }).find("missing.vtu") != std::string::npos);
+  CHECK(error_of([&] { read_in_temp("run.pvd", o); }).find("missing.vtu") != std::string::npos);
   o.time.reset(), o.step = 3;
-  CHECK(error_of([&] { read_any("run.pvd", o); }).find("no time step 3") != std::string::npos);
+  CHECK(error_of([&] { read_in_temp("run.pvd", o); }).find("no time step 3") != std::string::npos);
 }
 
 TEST_CASE("pvd: several parts of one step become a collection, and a file without times has none") {
   write(temp("p1.vtu"), tetras(1)), write(temp("p2.vtu"), tetras(2));
   write_file(temp("parts.pvd"), pvd("<DataSet timestep=\"0\" group=\"a\" part=\"0\" file=\"p1.vtu\"/><DataSet timestep=\"0\" group=\"a\" "
                                     "part=\"1\" name=\"hub\" file=\"p2.vtu\"/><DataSet timestep=\"1\" file=\"p1.vtu\"/>"));
-  const Data d = read_any("parts.pvd");
+  const Data d = read_in_temp("parts.pvd");
   CHECK(names_of(d) == std::vector<std::string>{"0", "hub"});
   CHECK(cells_in(d) == 3);
   write_file(temp("still.pvd"), pvd("<DataSet file=\"p1.vtu\"/><DataSet file=\"p2.vtu\"/>"));
   Context context;
   CHECK(file_times(temp("still.pvd"), {}, context).empty());
-  CHECK(cells_in(read_any("still.pvd")) == 3);
+  CHECK(cells_in(read_in_temp("still.pvd")) == 3);
   write_file(temp("none.pvd"), pvd(""));
-  CHECK(error_of([&] { read_any("none.pvd"); }).find("no DataSet") != std::string::npos);
+  CHECK(error_of([&] { read_in_temp("none.pvd"); }).find("no DataSet") != std::string::npos);
   write_file(temp("nan.pvd"), pvd("<DataSet timestep=\"soon\" file=\"p1.vtu\"/>"));
-  CHECK(error_of([&] { read_any("nan.pvd"); }).find("timestep") != std::string::npos);
+  CHECK(error_of([&] { read_in_temp("nan.pvd"); }).find("timestep") != std::string::npos);
 }
 
 TEST_CASE("vtm and pvd: a file cut or changed anywhere reads or gives an Error") {
@@ -148,7 +148,7 @@ TEST_CASE("vtm and pvd: a file cut or changed anywhere reads or gives an Error")
     auto attempt = [&](const std::string& t) {
       write_file(temp(name), t);
       try {
-        read_any(name);
+        read_in_temp(name);
       } catch (const Error& e) {
         ++errors;
         CHECK(e.kind() == ErrorKind::data);
@@ -181,7 +181,7 @@ TEST_CASE("vtm: a tree is written and comes back with names, meshes and fields")
   Context context;
   for (const char* compression : {"none", "zlib"}) {  // the second time over the first
     write_data(temp("tree out.vtm"), CollectionPtr(outer), {VtkEncoding::appended, value_of_word<Compression>(compression)}, context);
-    const Data back = read_any("tree out.vtm");
+    const Data back = read_in_temp("tree out.vtm");
     CHECK(parts_of(back).parts.size() == 3);
     CHECK(names_of(back)[0] == "inner/a \"vti\" <b>");
     size_t i = 0;

@@ -3,11 +3,8 @@
 #pragma once
 #include <cstring>
 
-#include "base/file/file.h"
-#include "base/parallel.h"
 #include "io/formats.h"
-#include "io/io.h"
-#include "support/test.h"
+#include "io/io_files.h"
 
 namespace sg::test {
 
@@ -201,11 +198,6 @@ inline void write(const std::string& path, const DatasetPtr& d, const WriteOptio
 }
 
 inline std::string temp(const std::string& name) { return test::temp_folder() + name; }
-
-inline DatasetPtr read_text(const std::string& name, const std::string& text, const ReadOptions& options = {}) {
-  write_file(temp(name), text);
-  return read(temp(name), options);
-}
 
 // `body` inside the elements of an unstructured grid.
 inline std::string vtu(const std::string& body) {

@@ -13,13 +13,6 @@ using namespace sg::test;
 
 namespace {
 
-std::string fresh(const std::string& name) {
-  const std::string path = temp_folder() + name;
-  std::filesystem::remove_all(path);
-  std::filesystem::create_directories(path);
-  return path;
-}
-
 std::string good(const std::string& name) {
   DatasetParts parts;
   UniformGrid g;
@@ -36,7 +29,7 @@ std::string good(const std::string& name) {
 }
 
 std::string array_with(std::string_view shape, std::string_view chunks, std::string_view more = "") {
-  const std::string path = fresh("hostile.zarr");
+  const std::string path = empty_folder("hostile.zarr");
   write_file(path + "/.zarray",
              fmt::format(R"({{"zarr_format": 2, "shape": {}, "chunks": {}, "dtype": "<f4", "compressor": null, "order": "C"{}}})", shape,
                          chunks, more));
@@ -159,11 +152,11 @@ TEST_CASE("zarr: descriptions that cannot be right are refused, and say where") 
   CHECK(contains(moved(R"({"type": "affine", "affine": []})"), "affine"));
   // Levels must go together.
   CHECK(contains(described(R"({"multiscales": [{"axes": ["z", "y", "x"], "datasets": [{"path": "1"}, {"path": "0"}]}]})"), "in level 0"));
-  CHECK(contains(refused(fresh("empty.zarr")), "folder of unknown kind"));
+  CHECK(contains(refused(empty_folder("empty.zarr")), "folder of unknown kind"));
 }
 
 TEST_CASE("zarr: version 3 that cannot be right is refused") {
-  const std::string path = fresh("three.zarr");
+  const std::string path = empty_folder("three.zarr");
   auto with = [&](std::string_view text) {
     write_file(path + "/zarr.json", text);
     return refused(path);

@@ -48,7 +48,7 @@ TEST_CASE("catalog: every operation, way to show, reader and writer is an entry,
 }
 
 TEST_CASE("catalog: an operation as JSON has name, family, sentence, inputs and the schema of its parameters") {
-  const Operation& op = find_operation("scale", test::operations());
+  const Operation& op = find_operation("scale", test::counted_operations());
   const ParamSet params = op.make_params();
   const CatalogEntry e{EntryKind::operation, "scale", std::string(op.sentence), params.values, params.schema, &op, nullptr};
   CHECK(json::parse(entry_json(e)) == json::parse(R"({"name":"scale","kind":"operation","sentence":"Multiplies a field.","family":"scalar",

@@ -39,7 +39,7 @@ bool has(const std::string& text, const std::string& part) {
 GraphOptions test_options() {
   test::reset_runs();
   GraphOptions o;
-  o.operations = test::operations();
+  o.operations = test::counted_operations();
   o.read = [](const std::string& path, const ReadOptions& r, const Request&, Context&) -> Data {
     CHECK(path == test::temp_folder() + "in.raw");
     CHECK(r.raw_dims[0] == (r.raw_type.empty() ? 0 : 4));

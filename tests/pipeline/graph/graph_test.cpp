@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/graph/graph.h"
 #include "pipeline/file/read_part.h"
+#include "pipeline/graph/some_file.h"
 
 #include <algorithm>
 #include <atomic>
@@ -13,6 +14,7 @@
 using namespace sg;
 using test::first;
 using test::runs;
+using test::some_file;
 using test::value_at;
 
 namespace {
@@ -24,10 +26,10 @@ struct Reads {
 };
 
 /// Test operations, and a reader that makes a line with the fields T, p, q without looking into the file.
-GraphOptions options(uint64_t cache_limit = 1 << 20, Reads* reads = nullptr) {
+GraphOptions line_options(uint64_t cache_limit = 1 << 20, Reads* reads = nullptr) {
   test::reset_runs();
   GraphOptions o;
-  o.operations = test::operations();
+  o.operations = test::counted_operations();
   o.cache_limit = cache_limit;
   o.read = [reads](const std::string&, const ReadOptions& r, const Request& request, Context&) -> Data {
     const DatasetPtr d = test::line_of(8, r.fields.empty() ? std::vector<std::string>{"T", "p", "q"} : r.fields);
@@ -41,16 +43,10 @@ GraphOptions options(uint64_t cache_limit = 1 << 20, Reads* reads = nullptr) {
   return o;
 }
 
-std::string some_file(const std::string& name = "graph.raw") {
-  const std::string path = test::temp_folder() + name;
-  if (!file_exists(path)) write_file(path, std::string(4000, 'x'));
-  return path;
-}
-
 }  // namespace
 
 TEST_CASE("graph: a chain gives the numbers of its operations") {
-  Graph g(options());
+  Graph g(line_options());
   Context context;
   const NodeId n = g.add_operation("scale", {"by=3"}, {g.add_operation("ramp", {"start=1"})});
   const Data d = g.evaluate(n, {}, context);
@@ -59,7 +55,7 @@ TEST_CASE("graph: a chain gives the numbers of its operations") {
 }
 
 TEST_CASE("graph: what the cache holds is not run again") {
-  Graph g(options());
+  Graph g(line_options());
   Context context;
   const NodeId ramp = g.add_operation("ramp"), a = g.add_operation("scale", {"by=3"}, {ramp}), b = g.add_operation("scale", {"by=4"}, {a});
   g.evaluate(b, {}, context);
@@ -73,7 +69,7 @@ TEST_CASE("graph: what the cache holds is not run again") {
 }
 
 TEST_CASE("graph: two nodes with equal keys are one, and a diamond's top runs once, without any cache") {
-  Graph g(options(0));
+  Graph g(line_options(0));
   Context context;
   const NodeId r1 = g.add_operation("ramp", {"n=4"}), r2 = g.add_operation("ramp", {"n=4"}, {}, "again");
   const NodeId left = g.add_operation("scale", {"by=2"}, {r1}), right = g.add_operation("scale", {"by=5"}, {r2});
@@ -87,7 +83,7 @@ TEST_CASE("graph: two nodes with equal keys are one, and a diamond's top runs on
 }
 
 TEST_CASE("graph: several sinks share one evaluation") {
-  Graph g(options(0));
+  Graph g(line_options(0));
   Context context;
   const NodeId ramp = g.add_operation("ramp"), a = g.add_operation("scale", {"by=2"}, {ramp}),
                b = g.add_operation("scale", {"by=3"}, {ramp});
@@ -104,7 +100,7 @@ TEST_CASE("graph: several sinks share one evaluation") {
 
 TEST_CASE("graph: with limit 0 intermediates die with their last consumer") {
   Reads reads;
-  Graph g(options(0, &reads));
+  Graph g(line_options(0, &reads));
   Context context;
   const NodeId read = g.add_read(some_file());
   const NodeId a = g.add_operation("scale", {"by=2"}, {read}), b = g.add_operation("scale", {"by=3"}, {a}),
@@ -126,7 +122,7 @@ TEST_CASE("graph: with limit 0 intermediates die with their last consumer") {
 
 TEST_CASE("graph: the cache keeps intermediates up to its limit") {
   Reads reads;
-  Graph g(options(1 << 20, &reads));
+  Graph g(line_options(1 << 20, &reads));
   Context context;
   const NodeId n = g.add_operation("scale", {"field=T"}, {g.add_read(some_file())});
   g.evaluate(n, Request::only({"T"}), context);
@@ -138,7 +134,7 @@ TEST_CASE("graph: the cache keeps intermediates up to its limit") {
 
 TEST_CASE("graph: the request reaches the reader with only the fields that are needed") {
   Reads reads;
-  Graph g(options(0, &reads));
+  Graph g(line_options(0, &reads));
   Context context;
   const NodeId read = g.add_read(some_file());
   const NodeId scaled = g.add_operation("scale", {"field=T"}, {read});
@@ -166,7 +162,7 @@ TEST_CASE("graph: the request reaches the reader with only the fields that are n
 }
 
 TEST_CASE("graph: a field that the user chose must be in the file, one that a filter makes need not") {
-  GraphOptions o = options(0);
+  GraphOptions o = line_options(0);
   o.read = [](const std::string&, const ReadOptions& r, const Request&, Context&) -> Data {
     std::vector<std::string> have;
     for (const char* name : {"T", "p"})
@@ -191,7 +187,7 @@ TEST_CASE("graph: a field that the user chose must be in the file, one that a fi
 
 TEST_CASE("graph: branches that need different fields share one read with the fields of both") {
   Reads reads;
-  Graph g(options(0, &reads));
+  Graph g(line_options(0, &reads));
   Context context;
   const NodeId read = g.add_read(some_file());
   const std::vector<Target> targets{{g.add_operation("pick", {"field=T"}, {read}), {}}, {g.add_operation("pick", {"field=q"}, {read}), {}}};
@@ -202,7 +198,7 @@ TEST_CASE("graph: branches that need different fields share one read with the fi
 
 TEST_CASE("graph: time, region and piece reach a reader that knows them, and separate its results") {
   Reads reads;
-  Graph g(options(1 << 20, &reads));
+  Graph g(line_options(1 << 20, &reads));
   Context context;
   const NodeId read = g.add_read(some_file()), scaled = g.add_operation("scale", {}, {read});
   Request r;
@@ -226,7 +222,7 @@ TEST_CASE("graph: time, region and piece reach a reader that knows them, and sep
 }
 
 TEST_CASE("graph: a source follows the time asked for unless its own is stated") {
-  Graph g(options());
+  Graph g(line_options());
   Context context;
   Request r;
   r.time = 2.5;
@@ -242,7 +238,7 @@ TEST_CASE("graph: a source follows the time asked for unless its own is stated")
 }
 
 TEST_CASE("graph: all mistakes are told together before anything runs") {
-  GraphOptions o = options();
+  GraphOptions o = line_options();
   o.field_names = [](const std::string&, const ReadOptions&) { return std::optional(std::vector<std::string>{"T", "p"}); };
   Graph g(o);
   Context context;
@@ -266,7 +262,7 @@ TEST_CASE("graph: all mistakes are told together before anything runs") {
 }
 
 TEST_CASE("graph: mistakes in steps that are not needed do not stop the others") {
-  Graph g(options());
+  Graph g(line_options());
   Context context;
   const NodeId good = g.add_operation("ramp");
   g.add_operation("rmap");
@@ -279,7 +275,7 @@ TEST_CASE("graph: mistakes in steps that are not needed do not stop the others")
 }
 
 TEST_CASE("graph: a missing file alone is an error of data, beside wrong words one of usage") {
-  Graph g(options());
+  Graph g(line_options());
   Context context;
   const NodeId absent = g.add_read(test::temp_folder() + "absent.vti"), wrong = g.add_operation("scale", {"by=x"}, {absent});
   auto kind = [&](NodeId n) {
@@ -295,7 +291,7 @@ TEST_CASE("graph: a missing file alone is an error of data, beside wrong words o
 }
 
 TEST_CASE("graph: a chain too long for the stack is refused") {
-  Graph g(options());
+  Graph g(line_options());
   Context context;
   NodeId n = g.add_operation("ramp");
   for (int i = 0; i < 999; ++i) n = g.add_operation("whole", {}, {n});
@@ -305,7 +301,7 @@ TEST_CASE("graph: a chain too long for the stack is refused") {
 }
 
 TEST_CASE("graph: an error names the step, and the part of a collection") {
-  Graph g(options());
+  Graph g(line_options());
   Context context;
   const NodeId ramp = g.add_operation("ramp", {}, {}, "line"), both = g.add_operation("join", {}, {ramp, ramp});
   const NodeId bad = g.add_operation("fail", {}, {both}), end = g.add_operation("scale", {}, {bad});
@@ -315,7 +311,7 @@ TEST_CASE("graph: an error names the step, and the part of a collection") {
 }
 
 TEST_CASE("graph: without a reader of its own it reads files by read_data") {
-  GraphOptions o = options();
+  GraphOptions o = line_options();
   o.read = nullptr;
   Graph g(o);
   Context context;
@@ -328,7 +324,7 @@ TEST_CASE("graph: without a reader of its own it reads files by read_data") {
 TEST_CASE("graph: pieces of a request are cut behind a format that has none") {
   const std::string path = test::temp_folder() + "pieces.raw";
   write_file(path, std::string(8 * 3 * 3, 'x'));
-  GraphOptions o = options();
+  GraphOptions o = line_options();
   o.read = nullptr;
   Graph g(o);
   ReadOptions brick;
@@ -365,7 +361,7 @@ TEST_CASE("read_part: a region of space names the points of the cells that it me
 }
 
 TEST_CASE("graph: cancelling stops between steps") {
-  Graph g(options());
+  Graph g(line_options());
   Context context;
   NodeId n = g.add_operation("ramp");
   for (int i = 0; i < 4; ++i) n = g.add_operation("scale", {"by=" + std::to_string(i + 2)}, {n});
@@ -389,7 +385,7 @@ TEST_CASE("graph: cancelling stops between steps") {
 }
 
 TEST_CASE("graph: progress rises from 0 to 1 over the steps") {
-  Graph g(options());
+  Graph g(line_options());
   Context context;
   std::vector<double> seen;
   std::string doing;
@@ -403,7 +399,7 @@ TEST_CASE("graph: progress rises from 0 to 1 over the steps") {
 }
 
 TEST_CASE("graph: eight threads evaluating at once run each step once and get the same") {
-  Graph g(options());
+  Graph g(line_options());
   const NodeId ramp = g.add_operation("ramp", {"n=1000"});
   std::vector<NodeId> sinks;
   for (int i = 0; i < 8; ++i) {
@@ -427,7 +423,7 @@ TEST_CASE("graph: eight threads evaluating at once run each step once and get th
 }
 
 TEST_CASE("graph: graphs that share a cache share results") {
-  GraphOptions o = options();
+  GraphOptions o = line_options();
   o.cache = std::make_shared<Cache>(1 << 20);
   Graph a(o), b(o);
   Context context;
@@ -439,7 +435,7 @@ TEST_CASE("graph: graphs that share a cache share results") {
 
 TEST_CASE("graph: explain shows the plan and runs nothing") {
   Reads reads;
-  Graph g(options(1 << 20, &reads));
+  Graph g(line_options(1 << 20, &reads));
   Context context;
   const NodeId head = g.add_read(some_file(), {}, "head"), bone = g.add_operation("scale", {"field=T"}, {head}, "bone");
   const NodeId end = g.add_operation("scale", {"field=T", "by=3"}, {bone});
@@ -475,12 +471,12 @@ TEST_CASE("graph: explain shows the plan and runs nothing") {
 }
 
 TEST_CASE("graph: an operation may state its own estimate") {
-  std::vector<Operation> table(test::operations().begin(), test::operations().end());
+  std::vector<Operation> table(test::counted_operations().begin(), test::counted_operations().end());
   table[0].estimate = [](const ParamSet& p, std::span<const uint64_t> in) {
     CHECK(in.empty());
     return Estimate{uint64_t(std::get<int64_t>(p.schema.find("n")->ref.get())) * 8, 2.5};
   };
-  GraphOptions o = options();
+  GraphOptions o = line_options();
   o.operations = table;
   Graph g(o);
   const NodeId n = g.add_operation("scale", {}, {g.add_operation("ramp", {"n=1000000"})});

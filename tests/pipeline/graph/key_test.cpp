@@ -15,7 +15,7 @@ using namespace sg;
 namespace {
 Graph graph() {
   GraphOptions o;
-  o.operations = test::operations();
+  o.operations = test::counted_operations();
   return Graph(o);
 }
 
@@ -61,7 +61,7 @@ TEST_CASE("keys: parts of a key do not run together") {
 }
 
 TEST_CASE("keys: the version of an operation is part of the key") {
-  std::vector<Operation> newer(test::operations().begin(), test::operations().end());
+  std::vector<Operation> newer(test::counted_operations().begin(), test::counted_operations().end());
   newer[0].version = 2;
   GraphOptions o;
   o.operations = newer;

@@ -19,7 +19,7 @@ using namespace sg::test;
 namespace {
 
 // A scalar, a vector and a tensor on the points, and values on the cells, none of them linear.
-DatasetPtr with_values(const DatasetPtr& mesh) {
+DatasetPtr with_nonlinear_fields(const DatasetPtr& mesh) {
   DatasetParts parts = mesh->parts();
   const Array xyz = point_positions(mesh->mesh());
   std::vector<double> s, v, t, c, d;
@@ -53,7 +53,7 @@ std::vector<Kind> sample_kinds() {
   std::vector<Kind> r;
   for (const MeshKind& k : every_mesh())
     for (const char* name : {"uniform", "curvilinear", "tetra", "bent hexahedron", "polyhedron", "mixed", "amr", "triangles"})
-      if (k.name == name) r.push_back({k.name, with_values(k.make(6, 1))});
+      if (k.name == name) r.push_back({k.name, with_nonlinear_fields(k.make(6, 1))});
   return r;
 }
 

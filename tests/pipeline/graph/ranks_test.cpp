@@ -17,7 +17,7 @@ using namespace sg::test;
 
 namespace {
 
-DatasetPtr with_values(const DatasetPtr& mesh) {
+DatasetPtr with_labelled_fields(const DatasetPtr& mesh) {
   DatasetParts parts = mesh->parts();
   const Array xyz = point_positions(mesh->mesh());
   std::vector<float> s, v;
@@ -41,10 +41,10 @@ std::vector<DatasetPtr> shared_meshes() {
   std::vector<DatasetPtr> r;
   for (const MeshKind& k : every_mesh())
     for (const char* name : {"uniform", "tetra", "polyhedron"})
-      if (k.name == name) r.push_back(with_values(k.make(5, 1)));
+      if (k.name == name) r.push_back(with_labelled_fields(k.make(5, 1)));
   UniformGrid few;  // fewer cells than ranks: some have none
   few.dims = {4, 2, 2};
-  r.push_back(with_values(make_dataset(Mesh(few))));
+  r.push_back(with_labelled_fields(make_dataset(Mesh(few))));
   return r;
 }
 

@@ -5,11 +5,13 @@
 #include "data/dataset.h"
 #include "pipeline/graph/graph.h"
 #include "pipeline/graph/series_input.h"
+#include "pipeline/graph/some_file.h"
 #include "pipeline/operation/operation_table.h"
 #include "pipeline/operation/test_operations.h"
 #include "support/test.h"
 
 using namespace sg;
+using test::some_file;
 
 namespace {
 
@@ -51,7 +53,7 @@ DatasetPtr alone(const Series& series, const SumParams& p, Context& context) { r
 
 std::span<const Operation> table() {
   static const std::vector<Operation> all = [] {
-    std::vector<Operation> ops(test::operations().begin(), test::operations().end());
+    std::vector<Operation> ops(test::counted_operations().begin(), test::counted_operations().end());
     ops.push_back(SG_FILTER(sum, SumParams, sum, "flow", "Looks at every step.", takes_further(kinds::meshes | kinds::table)));
     ops.push_back(SG_FILTER(alone, SumParams, alone, "flow", "Looks at every step."));
     return ops;
@@ -60,7 +62,7 @@ std::span<const Operation> table() {
 }
 
 /// A reader of files with the times 0, 10, 20, whose T starts at the time asked for (-1: none).
-GraphOptions options(uint64_t cache = 1 << 24) {
+GraphOptions series_options(uint64_t cache = 1 << 24) {
   test::reset_runs();
   GraphOptions o;
   o.operations = table();
@@ -79,16 +81,10 @@ GraphOptions options(uint64_t cache = 1 << 24) {
   return o;
 }
 
-std::string some_file(const std::string& name) {
-  const std::string path = test::temp_folder() + name;
-  if (!file_exists(path)) write_file(path, std::string(4000, 'x'));
-  return path;
-}
-
 }  // namespace
 
 TEST_CASE("series: an operation sees all times of a file, through the filters between") {
-  Graph g(options());
+  Graph g(series_options());
   Context context;
   const NodeId read = g.add_read(some_file("moving.raw")), scaled = g.add_operation("scale", {"by=3"}, {read});
   g.evaluate(g.add_operation("alone", {}, {scaled}), {}, context);
@@ -98,7 +94,7 @@ TEST_CASE("series: an operation sees all times of a file, through the filters be
 }
 
 TEST_CASE("series: a source of any time takes the times of the parameter") {
-  Graph g(options());
+  Graph g(series_options());
   Context context;
   const NodeId moment = g.add_operation("moment"), scaled = g.add_operation("scale", {"by=2"}, {moment});
   g.evaluate(g.add_operation("alone", {"times=1:3:5"}, {scaled}), {}, context);
@@ -112,7 +108,7 @@ TEST_CASE("series: a source of any time takes the times of the parameter") {
 }
 
 TEST_CASE("series: a time asked for goes to the operation, not to what lies above") {
-  Graph g(options());
+  Graph g(series_options());
   Context context;
   const NodeId node = g.add_operation("alone", {}, {g.add_read(some_file("moving.raw"))});
   Request r;
@@ -125,7 +121,7 @@ TEST_CASE("series: a time asked for goes to the operation, not to what lies abov
 }
 
 TEST_CASE("series: times that the file does not have are refused") {
-  Graph g(options());
+  Graph g(series_options());
   Context context;
   const NodeId read = g.add_read(some_file("moving.raw"));
   g.evaluate(g.add_operation("alone", {"times=10,20"}, {read}), {}, context);
@@ -135,7 +131,7 @@ TEST_CASE("series: times that the file does not have are refused") {
 }
 
 TEST_CASE("series: files with and without time stand together; different times do not") {
-  Graph g(options());
+  Graph g(series_options());
   Context context;
   const NodeId moving = g.add_read(some_file("moving.raw")), still = g.add_read(some_file("still.raw")),
                other = g.add_read(some_file("other.raw"));
@@ -146,7 +142,7 @@ TEST_CASE("series: files with and without time stand together; different times d
 }
 
 TEST_CASE("series: a file whose step the user chose, and given data, are one step") {
-  Graph g(options());
+  Graph g(series_options());
   Context context;
   ReadOptions third;
   third.step = 2;
@@ -160,7 +156,7 @@ TEST_CASE("series: a file whose step the user chose, and given data, are one ste
 }
 
 TEST_CASE("series: what hangs on no time is made once, the rest passes by the cache") {
-  Graph g(options());
+  Graph g(series_options());
   Context context;
   const NodeId fixed = g.add_operation("scale", {"by=3"}, {g.add_operation("ramp", {"n=4"})});
   const NodeId both = g.add_operation("add", {}, {g.add_operation("moment"), fixed});
@@ -176,7 +172,7 @@ TEST_CASE("series: what hangs on no time is made once, the rest passes by the ca
 }
 
 TEST_CASE("series: of 1,000 steps two are alive at once") {
-  Graph g(options(1 << 30));
+  Graph g(series_options(1 << 30));
   Context context;
   const NodeId scaled = g.add_operation("scale", {}, {g.add_operation("moment")});
   g.evaluate(g.add_operation("alone", {"times=0:999:1000"}, {scaled}), {}, context);
@@ -186,7 +182,7 @@ TEST_CASE("series: of 1,000 steps two are alive at once") {
 }
 
 TEST_CASE("series: further inputs are plain, and a result above may serve both") {
-  Graph g(options());
+  Graph g(series_options());
   Context context;
   const NodeId read = g.add_read(some_file("moving.raw"));
   const NodeId node = g.add_operation("sum", {}, {read, g.add_operation("measure", {}, {read})});
@@ -197,7 +193,7 @@ TEST_CASE("series: further inputs are plain, and a result above may serve both")
 }
 
 TEST_CASE("series: the plan says what runs for each time, and keys hold parameters and input") {
-  Graph g(options());
+  Graph g(series_options());
   const NodeId moment = g.add_operation("moment"), scaled = g.add_operation("scale", {}, {moment});
   const NodeId a = g.add_operation("alone", {"times=0:9:10"}, {scaled}), b = g.add_operation("alone", {"times=0:9:11"}, {scaled}),
                c = g.add_operation("alone", {"times=0:9:10"}, {moment});

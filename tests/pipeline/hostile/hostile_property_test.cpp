@@ -17,8 +17,6 @@ using namespace sg::test;
 
 namespace {
 
-const char* only() { return std::getenv("SG_HOSTILE_ONLY"); }
-
 std::string about(const Data& data) {
   std::string s;
   for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
@@ -62,7 +60,7 @@ void stays_calm(const std::string& what, Count& count, const std::function<void(
 void run_one(uint64_t seed, Count& count) {
   Random random(seed);
   const auto all = operations();
-  const Operation& o = only() ? find_operation(only()) : all[size_t(random.whole(0, int(all.size()) - 1))];
+  const Operation& o = hostile::only() ? find_operation(hostile::only()) : all[size_t(random.whole(0, int(all.size()) - 1))];
   std::vector<Data> inputs;
   if (o.kind != OperationKind::source)
     for (int n = std::max(1, o.min_inputs + (o.max_inputs > o.min_inputs || o.max_inputs < 0 ? random.whole(0, 1) : 0)); n > 0; --n)
@@ -133,7 +131,7 @@ void show_one(uint64_t seed, Count& count) {
   const auto kinds = show_kinds();
   std::vector<std::pair<std::string_view, std::vector<std::string>>> shows;
   for (int n = random.chance(0.3) ? 2 : 1; n > 0; --n) {
-    const std::string_view kind = only()               ? find_show(only()).name
+    const std::string_view kind = hostile::only()      ? find_show(hostile::only()).name
                                   : random.chance(0.3) ? "volume"
                                                        : kinds[size_t(random.whole(0, int(kinds.size()) - 1))].name;
     shows.emplace_back(kind, hostile::random_words(random, find_show(kind).make_params().schema, data, chance));
@@ -150,7 +148,8 @@ void show_one(uint64_t seed, Count& count) {
 }  // namespace
 
 TEST_CASE("property: every operation answers or refuses random data and words, soon and without gigabytes") {
-  if (only() && std::any_of(show_kinds().begin(), show_kinds().end(), [](const ShowKind& k) { return k.name == only(); })) return;
+  if (hostile::only() && std::any_of(show_kinds().begin(), show_kinds().end(), [](const ShowKind& k) { return k.name == hostile::only(); }))
+    return;
   Count count;
   for (const uint64_t seed : property_seeds(250)) {
     CAPTURE(seed);
@@ -161,7 +160,9 @@ TEST_CASE("property: every operation answers or refuses random data and words, s
 }
 
 TEST_CASE("property: every way to show draws or refuses random data and words, soon and without gigabytes") {
-  if (only() && std::none_of(show_kinds().begin(), show_kinds().end(), [](const ShowKind& k) { return k.name == only(); })) return;
+  if (hostile::only() &&
+      std::none_of(show_kinds().begin(), show_kinds().end(), [](const ShowKind& k) { return k.name == hostile::only(); }))
+    return;
   Count count;
   for (const uint64_t seed : property_seeds(150)) {
     CAPTURE(seed);

@@ -17,10 +17,9 @@ using namespace sg::test;
 
 namespace {
 
-const char* only() { return std::getenv("SG_HOSTILE_ONLY"); }
-bool all_asked() { return only() || std::getenv("SG_HOSTILE_ALL"); }
-bool tells() { return only() || std::getenv("SG_HOSTILE_TELL"); }
-bool wanted(const Operation& o) { return !only() || o.name == only(); }
+bool all_asked() { return hostile::only() || std::getenv("SG_HOSTILE_ALL"); }
+bool tells() { return hostile::only() || std::getenv("SG_HOSTILE_TELL"); }
+bool wanted(const Operation& o) { return !hostile::only() || o.name == hostile::only(); }
 
 size_t refused, answered;
 

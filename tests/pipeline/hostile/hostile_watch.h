@@ -25,6 +25,9 @@ constexpr bool shadow_memory = true;  // ten times as slow, and memory that nobo
 constexpr bool shadow_memory = false;
 #endif
 
+/// The operation that is asked for alone, or null.
+inline const char* only() { return std::getenv("SG_HOSTILE_ONLY"); }
+
 /// So many seconds of this program without a watch over its memory; $SG_HOSTILE_SLOW as many where that is set.
 inline double seconds(double s) {
   if (const char* slow = std::getenv("SG_HOSTILE_SLOW")) return s * std::atof(slow);

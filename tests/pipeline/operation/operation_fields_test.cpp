@@ -30,7 +30,7 @@ DatasetPtr with_fields(Mesh mesh) {
   return make_dataset(std::move(mesh), fields_for(bare->point_count(), bare->cell_count()));
 }
 
-std::vector<DatasetPtr> meshes() {
+std::vector<DatasetPtr> sample_meshes() {
   UniformGrid solid, flat;
   solid.dims = {4, 4, 4}, flat.dims = {6, 6, 1};
   SurfaceMesh triangles, lines;
@@ -87,7 +87,7 @@ TEST_CASE("operations: every parameter that names a field says which fields it t
 }
 
 TEST_CASE("operations: what a declaration refuses, the operation does not take either") {
-  const std::vector<DatasetPtr> all = meshes();
+  const std::vector<DatasetPtr> all = sample_meshes();
   for (const Operation& o : operations()) {
     if (o.kind == OperationKind::source) continue;
     const ParamSet plain = o.make_params();
@@ -120,7 +120,7 @@ TEST_CASE("operations: what a declaration refuses, the operation does not take e
 }
 
 TEST_CASE("operations: a field of the wrong kind is refused with what is wrong, where, and which fields would do") {
-  const std::vector<DatasetPtr> all = meshes();
+  const std::vector<DatasetPtr> all = sample_meshes();
   const auto run = [&](const char* name, const std::vector<std::string>& words) {
     Context context;
     return run_operation(find_operation(name), {all[0]}, words, context);

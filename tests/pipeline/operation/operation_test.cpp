@@ -12,12 +12,12 @@ using test::first;
 namespace {
 Data run(const char* name, const std::vector<Data>& in, const std::vector<std::string>& words = {}) {
   Context context;
-  return run_operation(find_operation(name, test::operations()), in, words, context);
+  return run_operation(find_operation(name, test::counted_operations()), in, words, context);
 }
 }  // namespace
 
 TEST_CASE("operations: help of one operation is made from its declaration") {
-  CHECK(ops_help("scale", test::operations()) ==
+  CHECK(ops_help("scale", test::counted_operations()) ==
         "scale (scalar filter)\n"
         "  Multiplies a field.\n"
         "  Takes: a mesh; makes: the same kind of mesh.\n"
@@ -26,14 +26,14 @@ TEST_CASE("operations: help of one operation is made from its declaration") {
         "  field  Field to scale; default: the active scalar. [any field of points or cells]\n"
         "  by     Factor. [number, from -1000 to 1000, in units of 'field', default 2]\n"
         "  mode   How. [plain|fancy, default plain]\n");
-  CHECK(ops_help("whole", test::operations()) ==
+  CHECK(ops_help("whole", test::counted_operations()) ==
         "whole (parts filter)\n  Passes everything on.\n  Takes: a mesh; makes: the same kind of mesh.\n\nNo parameters.\n");
-  CHECK(ops_help("add", test::operations()).find("Takes 2 inputs.") != std::string::npos);
-  CHECK(ops_help("ramp", test::operations()).starts_with("ramp (source)\n"));
+  CHECK(ops_help("add", test::counted_operations()).find("Takes 2 inputs.") != std::string::npos);
+  CHECK(ops_help("ramp", test::counted_operations()).starts_with("ramp (source)\n"));
 }
 
 TEST_CASE("operations: the overview lists families in the order of the table") {
-  const std::string help = ops_help("", test::operations());
+  const std::string help = ops_help("", test::counted_operations());
   CHECK(help.starts_with(
       "source\n  ramp     A line of points with a rising field.\n  moment   A line at a moment.\n\nscalar\n  scale    Multiplies"));
   CHECK(help.find("\nparts\n") < help.find("\nstats\n"));
@@ -55,9 +55,9 @@ TEST_CASE("operations: every operation of this build has a sentence, a family, a
 
 TEST_CASE("operations: an unknown name gets the nearest one") {
   CHECK(test::error_of([] {
-          find_operation("scael", test::operations());
+          find_operation("scael", test::counted_operations());
         }).find("unknown operation 'scael'; did you mean 'scale'? available: ramp, moment") == 0);
-  CHECK(&find_operation("add", test::operations()) == &test::operations()[4]);
+  CHECK(&find_operation("add", test::counted_operations()) == &test::counted_operations()[4]);
 }
 
 TEST_CASE("operations: words set parameters and the function runs with them") {
@@ -103,9 +103,9 @@ TEST_CASE("operations: filters are applied to each part of a collection, and err
 }
 
 TEST_CASE("requests: the fields wanted go up with those that parameters name; a field left open asks for everything") {
-  const Operation& scale = find_operation("scale", test::operations());
-  const Operation& pick = find_operation("pick", test::operations());
-  const Operation& add = find_operation("add", test::operations());
+  const Operation& scale = find_operation("scale", test::counted_operations());
+  const Operation& pick = find_operation("pick", test::counted_operations());
+  const Operation& add = find_operation("add", test::counted_operations());
   const Request p = Request::only({"p", "b", "p"});
   CHECK(p.fields == std::vector<std::string>{"b", "p"});
   CHECK(upstream_request(add, add.make_params(), p, 1).fields == std::vector<std::string>{"T", "b", "p"});

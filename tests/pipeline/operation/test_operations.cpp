@@ -121,7 +121,7 @@ void reset_runs() {
   on_run = nullptr;
 }
 
-std::span<const Operation> operations() {
+std::span<const Operation> counted_operations() {
   static constexpr Operation table[] = {
       SG_SOURCE(ramp, RampParams, ramp, "A line of points with a rising field."),
       SG_SOURCE(moment, MomentParams, moment, "A line at a moment."),

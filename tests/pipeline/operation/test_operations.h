@@ -21,7 +21,7 @@ extern std::function<void(const std::string& name, Context& context)> on_run;
 
 /// ramp: source; scale, shift: filters with a field; add: two inputs; join: any number; whole: sees collections; fail: throws;
 /// measure: a table; moment: source with a time.
-std::span<const Operation> operations();
+std::span<const Operation> counted_operations();
 
 /// 1-D lattice of `n` points with the point fields named, each 0..n-1.
 DatasetPtr line_of(size_t n, const std::vector<std::string>& fields = {"T"});

@@ -22,7 +22,6 @@ DatasetPtr images(const std::string& file) {
   p.path = data_file(file);
   return gradient_images(p, context);
 }
-double value(const DatasetPtr& d, const std::string& field, int c = 0) { return d->fields().require(field).array.get(0, c); }
 Vec3 fsl_vector(const std::string& file) {
   Context context;
   const DatasetPtr d = std::get<DatasetPtr>(read_data(data_file(one + file), {}, context));
@@ -48,8 +47,8 @@ TEST_CASE("one voxel: eigenvalues, eigenvectors, FA, MD, mode and S0 agree with 
   for (int k = 1; k <= 3; ++k) {
     CHECK(value(d, fmt::format("eigenvalue {}", k)) == doctest::Approx(fsl_number(fmt::format("dti_L{}.nii.gz", k))).epsilon(1e-4));
     const Vec3 v = fsl_vector(fmt::format("dti_V{}.nii.gz", k)),
-               mine(value(d, fmt::format("eigenvector {}", k), 0), value(d, fmt::format("eigenvector {}", k), 1),
-                    value(d, fmt::format("eigenvector {}", k), 2));
+               mine(value(d, fmt::format("eigenvector {}", k), 0, 0), value(d, fmt::format("eigenvector {}", k), 0, 1),
+                    value(d, fmt::format("eigenvector {}", k), 0, 2));
     CHECK(std::abs(dot(v, mine)) == doctest::Approx(1).epsilon(1e-4));
   }
   CHECK(value(d, "FA") == doctest::Approx(fsl_number("dti_FA.nii.gz")).epsilon(1e-4));

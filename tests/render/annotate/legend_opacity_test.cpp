@@ -10,7 +10,7 @@ using namespace sg;
 
 namespace {
 
-ColorScale temperature() {
+ColorScale temperature_to_100() {
   ColorScale s;
   s.map = find_colormap("sight");
   s.lo = 0, s.hi = 100, s.title = "temperature";
@@ -18,8 +18,8 @@ ColorScale temperature() {
 }
 
 Legend volume(OpacityCurve opacity, TransferDetail detail = {}) {
-  VolumeLegend v{std::move(opacity), std::move(detail), temperature(), "gradient"};
-  return Legend(temperature(), v);
+  VolumeLegend v{std::move(opacity), std::move(detail), temperature_to_100(), "gradient"};
+  return Legend(temperature_to_100(), v);
 }
 
 struct Drawn {
@@ -123,11 +123,11 @@ TEST_CASE("legend: colour by another field puts the opacity's own axis below the
   TransferDetail detail;
   detail.second = SecondAxis::field, detail.second_field = "temperature";
   detail.color_by_second = true;
-  detail.second_color = temperature();
+  detail.second_color = temperature_to_100();
   ColorScale density;
   density.map = find_colormap("gray");
   density.lo = 0, density.hi = 4, density.title = "density";
-  const Legend legend(temperature(), VolumeLegend{{{{0, 0}, {4, 0.5}}}, detail, density, "temperature"});
+  const Legend legend(temperature_to_100(), VolumeLegend{{{{0, 0}, {4, 0.5}}}, detail, density, "temperature"});
   const Drawn d = draw(legend);
   CHECK(d.layout.panel_right == "4");
   CHECK(d.layout.panel_caption == "opacity by density");

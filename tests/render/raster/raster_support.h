@@ -3,6 +3,7 @@
 #pragma once
 #include <cmath>
 #include <cstring>
+#include <numbers>
 #include <vector>
 
 #include "base/parallel.h"
@@ -13,7 +14,7 @@
 
 namespace sg::test {
 
-inline constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 inline SurfaceMesh triangle_mesh(std::vector<float> xyz, std::vector<int32_t> triangles, Vec3 origin = {}) {
   SurfaceMesh m;

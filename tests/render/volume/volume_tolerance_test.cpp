@@ -93,18 +93,18 @@ Lattice sum_of_waves(double cells) {
   });
 }
 
-enum class Way { packets, rectilinear_packets, single_rays };
+enum class DrawnBy { packets, rectilinear_packets, single_rays };
 
 /// The default picture against brute force at these pixels and some others, `apart` from each other.
 void check_waves(double cells, OpacityCurve opacity, double unit, bool shaded, int per_cell, std::vector<std::pair<int, int>> pixels,
-                 int apart, Way way = Way::packets) {
+                 int apart, DrawnBy by = DrawnBy::packets) {
   const Projection view = perspective_view(64, 64, 80, {1.9, 1.4, 2.6}, {0, 0, 0});
   Case c{"", sum_of_waves(cells), nullptr, colored(-1.7, 1.7), std::move(opacity), unit, shaded, per_cell};
-  c.data = dataset_of(c.lattice, way == Way::rectilinear_packets);
+  c.data = dataset_of(c.lattice, by == DrawnBy::rectilinear_packets);
   VolumeItem v = item(c.data, c.color, c.opacity);
   v.unit_distance = unit, v.shaded = shaded;
   const Scene scene = scene_of({v});
-  const Frame f = draw(scene, view, {}, way == Way::single_rays ? by_single_rays(view) : FragmentLists());
+  const Frame f = draw(scene, view, {}, by == DrawnBy::single_rays ? by_single_rays(view) : FragmentLists());
   for (int y = 5; y < view.height; y += apart)
     for (int x = 5; x < view.width; x += apart) pixels.emplace_back(x, y);
   for (const auto& [x, y] : pixels) {
@@ -123,8 +123,8 @@ TEST_CASE("volume: rays that graze dense lit surfaces stay within the tolerance"
   const OpacityCurve ramp = curve({{-1.7, 0}, {-0.2, 0}, {1.7, 0.8}}), solid = curve({{-2, 0}, {0.2, 0}, {0.6, 0.95}, {2, 0.95}});
   for (const double cells : {2.2, 3.0, 4.0, 6.0, 10.0})
     for (const OpacityCurve& opacity : {ramp, solid})
-      for (const Way way : {Way::packets, Way::rectilinear_packets, Way::single_rays})
-        check_waves(cells, opacity, 0.03, true, 2000, {{46, 26}, {28, 35}, {30, 36}, {16, 21}, {61, 11}, {46, 51}, {23, 63}}, 9, way);
+      for (const DrawnBy by : {DrawnBy::packets, DrawnBy::rectilinear_packets, DrawnBy::single_rays})
+        check_waves(cells, opacity, 0.03, true, 2000, {{46, 26}, {28, 35}, {30, 36}, {16, 21}, {61, 11}, {46, 51}, {23, 63}}, 9, by);
 }
 
 TEST_CASE("volume: strides through waves of all lengths stay within the tolerance") {

@@ -175,8 +175,8 @@ Frame picture(const std::string& kind, const Way& way, double value, double leng
   return draw(scene_of({v, other}), view);
 }
 
-const char* const kinds[] = {"uniform", "rectilinear",       "curvilinear", "tetrahedra", "tetrahedra with a field of cells",
-                             "AMR",     "AMR grid of cells", "bricked"};
+const char* const dataset_kinds[] = {"uniform", "rectilinear",       "curvilinear", "tetrahedra", "tetrahedra with a field of cells",
+                                     "AMR",     "AMR grid of cells", "bricked"};
 /// Some are tried in every unit, the others in a few.
 bool often(const std::string& kind) { return kind == "uniform" || kind == "tetrahedra"; }
 
@@ -190,7 +190,7 @@ double covered(const Frame& f) {
 }  // namespace
 
 TEST_CASE("volume units: values and lengths times powers of two give the same bytes, on every mesh and in every way") {
-  for (const std::string kind : kinds)
+  for (const std::string kind : dataset_kinds)
     for (const Way& way : ways) {
       if (!can_draw(kind, way)) continue;
       const Frame truth = picture(kind, way, 1, 1, ElementType::f32);
@@ -210,7 +210,7 @@ TEST_CASE("volume units: values and lengths times powers of two give the same by
 }
 
 TEST_CASE("volume units: a field in any unit looks the same") {
-  for (const std::string kind : kinds)
+  for (const std::string kind : dataset_kinds)
     for (const Way& way : ways) {
       if (!can_draw(kind, way)) continue;
       INFO(kind, ", ", std::string(way.name));

@@ -8,7 +8,7 @@
 
 #include "color/parse_color.h"
 #include "filter/scalar/bands.h"
-#include "scene/choose/scale.h"
+#include "scene/choose/chosen_scale.h"
 #include "scene/choose/volume_look.h"
 #include "support/test.h"
 
@@ -29,16 +29,11 @@ DatasetPtr image(size_t n, const std::function<T(size_t, size_t, size_t)>& f) {
   return make_dataset(g, fields);
 }
 
-ColorScale scale_of(const DatasetPtr& d, ColoringParams p = {}) {
-  Context quiet;
-  return choose_scale(*d, d->fields()[0], p, quiet);
-}
-
 }  // namespace
 
 TEST_CASE("choose_scale: signed data gets a diverging map with zero in the middle, other data a sequential one") {
   const auto is_signed = image<float>(4, [](size_t i, size_t, size_t) { return float(i) - 1.f; });  // -1 .. 2
-  const ColorScale s = scale_of(is_signed);
+  const ColorScale s = test::chosen_scale(is_signed);
   CHECK(s.map.kind == MapKind::diverging);
   CHECK(s.lo == -2);
   CHECK(s.hi == 2);
@@ -46,14 +41,14 @@ TEST_CASE("choose_scale: signed data gets a diverging map with zero in the middl
   CHECK(s.title == "v");
   CHECK(s.unit == "K");
   const auto positive = image<float>(4, [](size_t i, size_t, size_t) { return float(i); });
-  CHECK(scale_of(positive).map.kind == MapKind::sequential);
-  CHECK(scale_of(positive).hi == 3);
+  CHECK(test::chosen_scale(positive).map.kind == MapKind::sequential);
+  CHECK(test::chosen_scale(positive).hi == 3);
 }
 
 TEST_CASE("choose_scale: labels in pieces get one colour each, noisy integers do not") {
   const auto pieces = image<uint8_t>(16, [](size_t i, size_t j, size_t) { return uint8_t(i < 4 ? 0 : i < 9 ? 3 : j < 8 ? 7 : 12); });
   CHECK(looks_like_labels(*pieces, pieces->fields()[0]));
-  const ColorScale s = scale_of(pieces);
+  const ColorScale s = test::chosen_scale(pieces);
   CHECK(s.map.categorical());
   CHECK(s.labels == std::vector<double>{0, 3, 7, 12});
   const auto noise = image<uint8_t>(16, [](size_t i, size_t j, size_t k) { return uint8_t((i * 37 + j * 101 + k * 53) % 60); });
@@ -65,33 +60,33 @@ TEST_CASE("choose_scale: labels in pieces get one colour each, noisy integers do
 TEST_CASE("choose_scale: labels have the names that the dataset notes, when it names all of them") {
   DatasetParts parts = image<int32_t>(8, [](size_t i, size_t, size_t) { return i < 3 ? 1 : 4; })->parts();
   parts.notes.emplace_back("labels of v", "1=saddle\n3=node\n4=focus");
-  CHECK(scale_of(make_dataset(parts)).label_names == std::vector<std::string>{"saddle", "focus"});
+  CHECK(test::chosen_scale(make_dataset(parts)).label_names == std::vector<std::string>{"saddle", "focus"});
   parts.notes.back().second = "1=saddle\nx=node";
-  CHECK(scale_of(make_dataset(parts)).label_names.empty());
+  CHECK(test::chosen_scale(make_dataset(parts)).label_names.empty());
   parts.notes.back().first = "labels of w";
-  CHECK(scale_of(make_dataset(parts)).label_names.empty());
+  CHECK(test::chosen_scale(make_dataset(parts)).label_names.empty());
 }
 
 TEST_CASE("choose_scale: a log scale begins at the smallest positive value, and refuses data without one") {
   const auto d = image<float>(4, [](size_t i, size_t, size_t) { return i == 0 ? 0.f : float(i) * 10; });
   ColoringParams p;
   p.scale = ScaleKind::log;
-  const ColorScale s = scale_of(d, p);
+  const ColorScale s = test::chosen_scale(d, p);
   CHECK(s.lo == 10);
   CHECK(s.hi == 30);
   const auto negative = image<float>(4, [](size_t i, size_t, size_t) { return -float(i); });
-  CHECK(test::error_of([&] { scale_of(negative, p); }).find("symlog") != std::string::npos);
+  CHECK(test::error_of([&] { test::chosen_scale(negative, p); }).find("symlog") != std::string::npos);
 }
 
 TEST_CASE("choose_scale: constant and NaN-only fields give a usable range") {
   const auto constant = image<float>(4, [](size_t, size_t, size_t) { return 5.f; });
-  CHECK(scale_of(constant).lo < 5);
-  CHECK(scale_of(constant).hi > 5);
+  CHECK(test::chosen_scale(constant).lo < 5);
+  CHECK(test::chosen_scale(constant).hi > 5);
   const auto nan = image<float>(4, [](size_t, size_t, size_t) { return NAN; });
-  CHECK(scale_of(nan).lo < scale_of(nan).hi);
+  CHECK(test::chosen_scale(nan).lo < test::chosen_scale(nan).hi);
   ColoringParams p;
   p.range = {3, 1};
-  CHECK(test::error_of([&] { scale_of(constant, p); }).find("lower one first") != std::string::npos);
+  CHECK(test::error_of([&] { test::chosen_scale(constant, p); }).find("lower one first") != std::string::npos);
 }
 
 TEST_CASE("choose_scale: jet is drawn with a warning") {

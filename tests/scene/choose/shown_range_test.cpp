@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "data/fields/known_looks.h"
-#include "scene/choose/scale.h"
+#include "scene/choose/chosen_scale.h"
 #include "scene/choose/volume_look.h"
 #include "scene/look.h"
 #include "scene/show/glyphs.h"
@@ -39,14 +39,6 @@ DatasetPtr spiked(const std::string& name) {
   return cube(name, [&](double i, double j, double k) { return ++at % 500 == 0 ? -100 : std::sin(0.7 * i) * std::cos(0.5 * j + 0.3 * k); });
 }
 
-ColorScale scale_of(const DatasetPtr& d, ColoringParams p = {}, std::string* log = nullptr) {
-  Context context;
-  context.on_log = [&](LogLevel, std::string_view text) {
-    if (log) *log += std::string(text) + "\n";
-  };
-  return choose_scale(*d, d->fields()[0], p, context);
-}
-
 OpacityCurve opacity_of(const DatasetPtr& d) {
   Context context;
   Scene scene;
@@ -77,30 +69,30 @@ DatasetPtr wind(double x0, size_t nx, double speed) {
 
 TEST_CASE("choose_scale: ftle gets a sequential map though some values are negative, other signed fields a diverging one") {
   const auto f = [](double i, double, double) { return i / 10 - 0.5; };
-  CHECK(scale_of(cube("ftle", f)).map.kind == MapKind::sequential);
-  CHECK(scale_of(cube("ftle", f)).lo == doctest::Approx(-0.5));
-  CHECK(scale_of(cube("temperature", f)).map.kind == MapKind::diverging);
+  CHECK(test::chosen_scale(cube("ftle", f)).map.kind == MapKind::sequential);
+  CHECK(test::chosen_scale(cube("ftle", f)).lo == doctest::Approx(-0.5));
+  CHECK(test::chosen_scale(cube("temperature", f)).map.kind == MapKind::diverging);
   const auto lopsided = [](double i, double, double) { return i == 0 ? -100 : i / 24; };
-  CHECK(scale_of(cube("Q", lopsided)).map.kind == MapKind::diverging);
-  CHECK(scale_of(cube("temperature", lopsided)).map.kind == MapKind::sequential);
+  CHECK(test::chosen_scale(cube("Q", lopsided)).map.kind == MapKind::diverging);
+  CHECK(test::chosen_scale(cube("temperature", lopsided)).map.kind == MapKind::sequential);
 }
 
 TEST_CASE("choose_scale: a few extreme values of a signed field are cut off, with triangles and a note; a stated range is kept") {
   std::string log;
-  const ColorScale s = scale_of(spiked("Q"), {}, &log);
+  const ColorScale s = test::chosen_scale(spiked("Q"), {}, &log);
   CHECK(s.hi == doctest::Approx(1).epsilon(0.02));
   CHECK(s.lo == -s.hi);
   CHECK(s.below.has_value());
   CHECK(log.find("range=-100,") != std::string::npos);
   ColoringParams stated;
   stated.range = {-100, 100};
-  CHECK(scale_of(spiked("Q"), stated).lo == -100);
+  CHECK(test::chosen_scale(spiked("Q"), stated).lo == -100);
   // Unknown fields of one sign keep their peaks: they may be what matters.
   int at = 0;
   const auto stress = cube("stress", [&](double i, double, double) { return ++at % 500 == 0 ? 100 : 0.1 * i; });
-  CHECK(scale_of(stress).hi == 100);
+  CHECK(test::chosen_scale(stress).hi == 100);
   // So do signed ones whose ends are not far.
-  CHECK(scale_of(cube("t", [](double i, double j, double) { return std::sin(i) * j; })).above.has_value() == false);
+  CHECK(test::chosen_scale(cube("t", [](double i, double j, double) { return std::sin(i) * j; })).above.has_value() == false);
 }
 
 TEST_CASE("volume: high values of ftle and Q are seen, low ones of lambda2; the other side of zero is clear") {
@@ -128,14 +120,15 @@ TEST_CASE("volume: the side of Q that matters says how far its colours go, and a
   // Strong shear in a fifth of the cube, weak vortices elsewhere.
   const auto flow = [](double i, double j, double) { return i < 5 ? -1000 : std::sin(0.7 * i) * std::cos(0.5 * j); };
   std::string log;
-  const ColorScale s = scale_of(cube("Q", flow), {}, &log);
+  const ColorScale s = test::chosen_scale(cube("Q", flow), {}, &log);
   CHECK(s.hi == doctest::Approx(1).epsilon(0.02));
   CHECK(s.lo == -s.hi);
   CHECK(s.below.has_value());
   CHECK_FALSE(s.above.has_value());
   CHECK(log.find("range=-1000,") != std::string::npos);
   CHECK(opacity_of(cube("Q", flow)).at(0.9) > 0.5);
-  CHECK(scale_of(cube("lambda2", [&](double i, double j, double k) { return -flow(i, j, k); })).hi == doctest::Approx(1).epsilon(0.02));
+  CHECK(test::chosen_scale(cube("lambda2", [&](double i, double j, double k) { return -flow(i, j, k); })).hi ==
+        doctest::Approx(1).epsilon(0.02));
   const auto bent = [](const std::string& name) {
     CurvilinearGrid g;
     g.dims = {3, 3, 3};

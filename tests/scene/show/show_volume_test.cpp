@@ -13,6 +13,7 @@
 #include "support/test.h"
 
 using namespace sg;
+using test::contains;
 
 namespace {
 
@@ -44,8 +45,6 @@ std::string show_error(const DatasetPtr& d, const std::vector<std::string>& word
 std::string check_error(const std::vector<std::string>& words) {
   return test::error_of([&] { show_params(find_show("volume"), words); });
 }
-
-bool says(const std::string& text, std::string_view what) { return text.find(what) != std::string::npos; }
 
 // A field "r" (radius) and one "T" (x).
 DatasetPtr two_fields() {
@@ -130,36 +129,36 @@ TEST_CASE("volume words: everything about sampling, light and method reaches the
 
 TEST_CASE("volume words: what cannot be is refused before any data is read, all mistakes at once") {
   for (const char* t : {"tolerance=0", "tolerance=-1", "tolerance=inf", "tolerance=nan", "tolerance=1.5"})
-    CHECK(says(check_error({t}), "it must be above 0 and at most 1"));
-  CHECK(says(check_error({"opacity=0:0,1:1.5"}), "1.5 is not between 0 and 1"));
-  CHECK(says(check_error({"opacity=0:0,0.7:1,0.5:0"}), "ascending"));
-  CHECK(says(check_error({"opacity="}), "empty"));
-  CHECK(says(check_error({"step=inf"}), "finite"));
-  CHECK(says(check_error({"unit=inf"}), "finite"));
-  CHECK(says(check_error({"levels=1,nan"}), "not in range"));
-  CHECK(says(check_error({"preset=ct_bnoe"}), "did you mean 'ct_bone'"));
-  CHECK(says(check_error({"transfer=boundary"}), "did you mean 'boundaries'"));
-  CHECK(says(check_error({"mode=maximal"}), "did you mean 'maximum'"));
-  CHECK(says(check_error({"kernel=cubic"}), "choices"));
-  CHECK(says(check_error({"second_opacity=0:0,0.2:1"}), "second=gradient"));
-  CHECK(says(check_error({"opacity_by=a", "color_by=b"}), "give one of them"));
-  CHECK(says(check_error({"color_by=b", "second=gradient"}), "already is the second axis"));
-  CHECK(says(check_error({"widgets=triangle 0 1 0 1", "opacity=0:0,1:1"}), "leave out one"));
-  CHECK(says(check_error({"clip=1,0,0"}), "has 3 numbers"));
-  CHECK(says(check_error({"clip=0,0,0,1"}), "no direction"));
-  CHECK(says(check_error({"clip=box 0,0,0,1,0,1"}), "empty"));
-  CHECK(says(check_error({"clip=1,0,x,1"}), "'x'"));
-  CHECK(says(check_error({"clip=;"}), "no planes"));
-  CHECK(says(check_error({"colors=0:black,1:nocolour"}), "not a colour"));
+    CHECK(contains(check_error({t}), "it must be above 0 and at most 1"));
+  CHECK(contains(check_error({"opacity=0:0,1:1.5"}), "1.5 is not between 0 and 1"));
+  CHECK(contains(check_error({"opacity=0:0,0.7:1,0.5:0"}), "ascending"));
+  CHECK(contains(check_error({"opacity="}), "empty"));
+  CHECK(contains(check_error({"step=inf"}), "finite"));
+  CHECK(contains(check_error({"unit=inf"}), "finite"));
+  CHECK(contains(check_error({"levels=1,nan"}), "not in range"));
+  CHECK(contains(check_error({"preset=ct_bnoe"}), "did you mean 'ct_bone'"));
+  CHECK(contains(check_error({"transfer=boundary"}), "did you mean 'boundaries'"));
+  CHECK(contains(check_error({"mode=maximal"}), "did you mean 'maximum'"));
+  CHECK(contains(check_error({"kernel=cubic"}), "choices"));
+  CHECK(contains(check_error({"second_opacity=0:0,0.2:1"}), "second=gradient"));
+  CHECK(contains(check_error({"opacity_by=a", "color_by=b"}), "give one of them"));
+  CHECK(contains(check_error({"color_by=b", "second=gradient"}), "already is the second axis"));
+  CHECK(contains(check_error({"widgets=triangle 0 1 0 1", "opacity=0:0,1:1"}), "leave out one"));
+  CHECK(contains(check_error({"clip=1,0,0"}), "has 3 numbers"));
+  CHECK(contains(check_error({"clip=0,0,0,1"}), "no direction"));
+  CHECK(contains(check_error({"clip=box 0,0,0,1,0,1"}), "empty"));
+  CHECK(contains(check_error({"clip=1,0,x,1"}), "'x'"));
+  CHECK(contains(check_error({"clip=;"}), "no planes"));
+  CHECK(contains(check_error({"colors=0:black,1:nocolour"}), "not a colour"));
   const std::string both = check_error({"opacity=0:2", "clip=1,2"});
-  CHECK(says(both, "not between"));
-  CHECK(says(both, "has 2 numbers"));
+  CHECK(contains(both, "not between"));
+  CHECK(contains(both, "has 2 numbers"));
   CHECK_NOTHROW(show_params(find_show("volume"), {"scale=log", "opacity=@5:0,@500:1"}));
   // Which of a position and a value comes first, only the data can tell.
   CHECK_NOTHROW(show_params(find_show("volume"), {"opacity=0:0,@-500:0.1,1:1", "colors=0:black,@-500:white", "widgets="}));
   CHECK_NOTHROW(show_params(find_show("volume"), {"widgets=triangle 0 @-500 0 1"}));
   const DatasetPtr d = two_fields();
-  CHECK(says(show_error(d, {"field=T", "opacity=0:0,@100:0.5,1:1"}), "'@100:0.5' lies below the previous point (100 after 200)"));
+  CHECK(contains(show_error(d, {"field=T", "opacity=0:0,@100:0.5,1:1"}), "'@100:0.5' lies below the previous point (100 after 200)"));
   CHECK(show(d, {"field=T", "opacity=0:0,@250:0.5,1:1"}).item.opacity.at(250) == 0.5);
 }
 
@@ -182,13 +181,13 @@ TEST_CASE("volume words: opacity by one field, colour by another") {
     CHECK(m.legend.volume->value.title == "r");
   }
   CHECK(show(d, {"field=r", "opacity_by=r"}).item.detail.plain());
-  CHECK(says(show_error(d, {"field=r", "color_by=TT"}), "did you mean 'T'"));
+  CHECK(contains(show_error(d, {"field=r", "color_by=TT"}), "did you mean 'T'"));
   Context context;
   DatasetParts parts = d->parts();
   Field cells = point_to_cell(d, {}, context)->fields().require("T", Association::cell);
   cells.name = "C";
   parts.fields.add(cells);
-  CHECK(says(show_error(make_dataset(parts), {"field=r", "color_by=C"}), "cell_to_point"));
+  CHECK(contains(show_error(make_dataset(parts), {"field=r", "color_by=C"}), "cell_to_point"));
 }
 
 TEST_CASE("volume words: second axes and their ranges") {
@@ -206,7 +205,7 @@ TEST_CASE("volume words: second axes and their ranges") {
   const Made c = show(ball, {"second=curvature"});
   CHECK(c.item.detail.second_lo == -c.item.detail.second_hi);
   CHECK(c.item.detail.second_hi > 1);  // 1/R, R from 0 to sqrt(3)
-  CHECK(says(show_error(ball, {"second=gradiant"}), "did you mean 'gradient'"));
+  CHECK(contains(show_error(ball, {"second=gradiant"}), "did you mean 'gradient'"));
   const Made f = show(two_fields(), {"field=r", "second=T"});
   CHECK(f.item.detail.second == SecondAxis::field);
   CHECK(f.item.detail.second_lo == 200);
@@ -235,16 +234,16 @@ TEST_CASE("volume: ray functions that collect something else have the range of t
   const Made sum = show(d, {"mode=sum"});
   CHECK(sum.item.color.lo == 0);
   CHECK(sum.item.color.hi == doctest::Approx(6));  // 3 times 2 lengths
-  CHECK(says(sum.legend.title, "sum of f"));
+  CHECK(contains(sum.legend.title, "sum of f"));
   CHECK_FALSE(sum.legend.volume);
   const Made distance = show(d, {"mode=distance", "levels=2"});
   CHECK(distance.item.color.hi == doctest::Approx(std::sqrt(12.0)));
-  CHECK(says(distance.legend.title, "distance to f = 2"));
+  CHECK(contains(distance.legend.title, "distance to f = 2"));
   CHECK(show(d, {"mode=sum", "range=1,2"}).item.color.hi == 2);
   const Made level = show(test::cube_of(33, "f", [](Vec3 p) { return std::erf(-6 * (length(p) - 0.6)); }), {"mode=first_hit"});
   REQUIRE(level.item.levels.size() == 1);
   CHECK(std::abs(level.item.levels[0]) < 0.15);
-  CHECK(says(level.notes, "level"));
+  CHECK(contains(level.notes, "level"));
 }
 
 TEST_CASE("volume presets: each is a whole look that passes its own checks; stated words win") {
@@ -253,7 +252,7 @@ TEST_CASE("volume presets: each is a whole look that passes its own checks; stat
   for (const VolumePreset& p : volume_presets()) {
     const Made m = show(d, {"preset=" + std::string(p.name)});
     INFO(p.name);
-    CHECK(says(m.notes, "preset " + std::string(p.name)));
+    CHECK(contains(m.notes, "preset " + std::string(p.name)));
     CHECK(m.item.opacity.points.size() >= (p.name == "xray" ? 1 : 2));
     CHECK(m.item.color.lo < m.item.color.hi);
   }
@@ -262,7 +261,7 @@ TEST_CASE("volume presets: each is a whole look that passes its own checks; stat
   CHECK(bone.item.opacity.at(1200) > 0.8);
   CHECK(bone.item.shaded);
   CHECK(bone.item.light.specular == 0.3);
-  CHECK(says(bone.notes, "Hounsfield units"));
+  CHECK(contains(bone.notes, "Hounsfield units"));
   const Made skin = show(d, {"preset=ct_skin", "specular=0", "shaded=false"});
   CHECK(skin.item.opacity.at(40) > 0.5);
   CHECK(skin.item.light.specular == 0);
@@ -279,7 +278,7 @@ TEST_CASE("volume presets: each is a whole look that passes its own checks; stat
   CHECK(skin.item.color.lo == -700);
   // Values that are no Hounsfield units: it says how it took them.
   const Made other = show(test::cube_of(9, "f", [](Vec3 p) { return length(p); }), {"preset=ct_bone"});
-  CHECK(says(other.notes, "does not look like CT"));
+  CHECK(contains(other.notes, "does not look like CT"));
   CHECK(other.item.color.hi <= std::sqrt(3.0) + 1e-6);
   CHECK(other.item.color.lo >= 0);
   // A constant field is no reason to fail.
@@ -323,11 +322,11 @@ TEST_CASE("volume: the words of a look make the same look again") {
 }
 
 TEST_CASE("volume: automatic looks say in one line what was chosen and why") {
-  CHECK(says(show(two_fields(), {"field=r"}).notes, "values"));
-  CHECK(says(show(ct(), {}).notes, "CT"));
-  CHECK_FALSE(says(show(ct(), {"transfer=histogram"}).notes, "CT"));
+  CHECK(contains(show(two_fields(), {"field=r"}).notes, "values"));
+  CHECK(contains(show(ct(), {}).notes, "CT"));
+  CHECK_FALSE(contains(show(ct(), {"transfer=histogram"}).notes, "CT"));
   const Made b = show(test::cube_of(49, "f", test::nested_balls), {"transfer=boundaries"});
-  CHECK(says(b.notes, "material boundaries"));
+  CHECK(contains(b.notes, "material boundaries"));
   CHECK(b.item.detail.second == SecondAxis::gradient);
   CHECK(std::count(b.notes.begin(), b.notes.end(), '\n') == 1);
   // White noise has no borders: the histogram decides, and it says so.
@@ -335,7 +334,7 @@ TEST_CASE("volume: automatic looks say in one line what was chosen and why") {
   const Made none =
       show(test::cube_of(17, "f", [&](Vec3) { return double((state = state * 6364136223846793005u + 1442695040888963407u) >> 40); }),
            {"transfer=boundaries"});
-  CHECK(says(none.notes, "no material boundaries"));
+  CHECK(contains(none.notes, "no material boundaries"));
 }
 
 TEST_CASE("volume: a spike of one value, like letters burnt in, is not the background") {
@@ -348,11 +347,11 @@ TEST_CASE("volume: a spike of one value, like letters burnt in, is not the backg
     });
   };
   const Made letters = show(head(0.1), {"transfer=histogram"});
-  CHECK(says(letters.notes, "background below is left out"));
+  CHECK(contains(letters.notes, "background below is left out"));
   CHECK(letters.item.opacity.at(15) == 0);
   CHECK(letters.item.opacity.at(200) > 0.05);
   const Made bright = show(head(0.8), {"transfer=histogram"});
-  CHECK(says(bright.notes, "the background is bright"));
+  CHECK(contains(bright.notes, "the background is bright"));
 }
 
 TEST_CASE("volume show: a constant field is drawn evenly, not left out") {

@@ -112,13 +112,14 @@ CurvilinearGrid as_curvilinear(const Mesh& mesh, const Affine& t) {
   r.dims = v.dims;
   double* to = nullptr;
   r.points.xyz = Array::make<double>(v.points(), 3, &to);
-  parallel_for(v.dims[1] * v.dims[2], std::max<size_t>(1, points_per_chunk / std::max<size_t>(v.dims[0], 1)), [&](size_t begin, size_t end) {
-    for (size_t row = begin; row < end; ++row)
-      for (size_t i = 0; i < v.dims[0]; ++i) {
-        const Vec3 p = t(v.position(i, row % v.dims[1], row / v.dims[1]));
-        for (int c = 0; c < 3; ++c) to[3 * (row * v.dims[0] + i) + size_t(c)] = p[c];
-      }
-  });
+  parallel_for(v.dims[1] * v.dims[2], std::max<size_t>(1, points_per_chunk / std::max<size_t>(v.dims[0], 1)),
+               [&](size_t begin, size_t end) {
+                 for (size_t row = begin; row < end; ++row)
+                   for (size_t i = 0; i < v.dims[0]; ++i) {
+                     const Vec3 p = t(v.position(i, row % v.dims[1], row / v.dims[1]));
+                     for (int c = 0; c < 3; ++c) to[3 * (row * v.dims[0] + i) + size_t(c)] = p[c];
+                   }
+               });
   return r;
 }
 

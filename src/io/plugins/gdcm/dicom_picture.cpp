@@ -25,7 +25,6 @@ namespace sg {
 
 namespace {
 
-
 bool vector_of(const std::vector<double>& n, size_t at, Vec3& v) {
   if (n.size() < at + 3) return false;
   v = {n[at], n[at + 1], n[at + 2]};

@@ -23,7 +23,8 @@ struct Compressor {
 };
 
 // The numbers of the chunk that begins at `at`; what lies outside the dataset is 0.
-void gather(const std::byte* values, const Extents& dims, const Extents& chunk, const Extents& at, size_t size, std::vector<std::byte>& out) {
+void gather(const std::byte* values, const Extents& dims, const Extents& chunk, const Extents& at, size_t size,
+            std::vector<std::byte>& out) {
   std::fill(out.begin(), out.end(), std::byte(0));
   const size_t rank = dims.size(), last = rank - 1;
   const size_t run = size_t(std::min(chunk[last], dims[last] - at[last])) * size;

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/lines/even_streamlines.h"
 
+#include <numbers>
+
 #include "filter/every_mesh.h"
 
 using namespace sg;
 
 namespace {
+
+using std::numbers::pi;
 
 template <class F>
 DatasetPtr flow_on(std::array<size_t, 3> n, F&& velocity) {
@@ -43,10 +47,7 @@ struct Lines {
 
 TEST_CASE("even streamlines: no two come nearer than the test distance, and none of the plane is far from a line") {
   Context context;
-  const auto gyre = [](Vec3 x) {
-    const double pi = 3.14159265358979323846;
-    return Vec3(-std::sin(pi * x.x) * std::cos(pi * x.y), std::cos(pi * x.x) * std::sin(pi * x.y), 0);
-  };
+  const auto gyre = [](Vec3 x) { return Vec3(-std::sin(pi * x.x) * std::cos(pi * x.y), std::cos(pi * x.x) * std::sin(pi * x.y), 0); };
   EvenStreamlinesParams p;
   p.spacing = 0.05, p.min_length = 0;
   const Lines found(even_streamlines(flow_on({33, 33, 1}, gyre), p, context));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Topology across blocks, levels and ghost cells.
-#include "base/parallel.h"
-
 #include <numbers>
+
+#include "base/parallel.h"
 #include "data/cells/cell_reader.h"
 #include "filter/flow/flow_meshes.h"
 #include "filter/flow/topology/topology.h"

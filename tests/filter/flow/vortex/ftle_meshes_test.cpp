@@ -10,17 +10,13 @@ using namespace sg::test;
 
 namespace {
 
-Series steady(const Data& d) {
-  return {{0}, [=](size_t) -> Data { return d; }};
-}
-
 void check_even(const Data& data, bool flat, double rate) {
   for (const double duration : {1.2, -0.9}) {
     Context context;
     FtleParams p;
     p.duration = duration, p.dims = {3, 3, flat ? 1 : 2}, p.integration.tolerance = 1e-8;
     p.bounds = {-0.25, 0.35, -0.3, 0.2, flat ? 0 : -0.2, flat ? 0 : 0.2};
-    const DatasetPtr d = ftle(steady(data), p, context);
+    const DatasetPtr d = ftle(steady_series(data), p, context);
     const Field &f = d->fields().require("ftle"), &along = d->fields().require("stretch direction");
     REQUIRE(f.array.count() == (flat ? 9 : 18));
     double worst = 0;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numbers>
 
 #include "base/parallel.h"
 #include "filter/flow/flow_support.h"
@@ -11,6 +12,8 @@
 using namespace sg;
 
 namespace {
+
+using std::numbers::pi;
 
 // By steps of Runge-Kutta that leave errors far below those of the differences.
 template <class F>
@@ -29,13 +32,9 @@ FlowMap map_of(F velocity, double start, double duration) {
   };
 }
 
-Series steady(const DatasetPtr& d) {
-  return {{0}, [=](size_t) -> Data { return d; }};
-}
-
 // Shadden, Lekien, Marsden 2005 with A = 0.1, epsilon = 0.25, period 10.
 Vec3 gyre_velocity(Vec3 x, double t) {
-  const double pi = 3.14159265358979323846, e = 0.25 * std::sin(2 * pi / 10 * t);
+  const double e = 0.25 * std::sin(2 * pi / 10 * t);
   const double f = e * x.x * x.x + (1 - 2 * e) * x.x, slope = 2 * e * x.x + 1 - 2 * e;
   return {-pi * 0.1 * std::sin(pi * f) * std::cos(pi * x.y), pi * 0.1 * std::cos(pi * f) * std::sin(pi * x.y) * slope, 0};
 }
@@ -92,16 +91,16 @@ TEST_CASE("ftle: places that leave the flow have neighbours on one side only, or
   FtleParams p;
   p.duration = 2, p.size = 40;
   set_thread_count(1);
-  const DatasetPtr one = ftle(steady(in), p, context);
+  const DatasetPtr one = ftle(test::steady_series(in), p, context);
   set_thread_count(8);
-  const DatasetPtr many = ftle(steady(in), p, context);
+  const DatasetPtr many = ftle(test::steady_series(in), p, context);
   set_thread_count(0);
   const Array &a = one->fields().require("ftle").array, &b = many->fields().require("ftle").array;
   CHECK(std::memcmp(a.raw(), b.raw(), a.bytes()) == 0);
   CHECK(test::error_of([&] {
           FtleParams none;
           none.duration = 0;
-          ftle(steady(in), none, context);
+          ftle(test::steady_series(in), none, context);
         }).find("duration") != std::string::npos);
   // Uniform wind: whatever reaches the border has left.
   UniformGrid g = test::even_grid({11, 11, 1}, {0, 0, 0}, 0.1);
@@ -111,7 +110,7 @@ TEST_CASE("ftle: places that leave the flow have neighbours on one side only, or
   fields.add({"wind", Association::point, Array::from_vector(std::move(v), 3), "", Role::vectors});
   FtleParams wind;
   wind.duration = 0.5, wind.dims = {11, 11, 1};
-  const DatasetPtr d = ftle(steady(make_dataset(Mesh(g), std::move(fields))), wind, context);
+  const DatasetPtr d = ftle(test::steady_series(make_dataset(Mesh(g), std::move(fields))), wind, context);
   const Field& f = d->fields().require("ftle");
   CHECK(f.array.get(3) == doctest::Approx(0).epsilon(1e-5));
   CHECK(std::isnan(f.array.get(9)));
@@ -156,7 +155,7 @@ TEST_CASE("ftle: without a duration the mean speed goes a tenth of the diagonal,
   std::vector<float> v;
   for (int i = 0; i < 11 * 6 * 6; ++i) v.insert(v.end(), {0, 2, 0});
   fields.add({"wind", Association::point, Array::from_vector(std::move(v), 3), "", Role::vectors});
-  const DatasetPtr d = ftle(steady(make_dataset(Mesh(g), std::move(fields))), {}, context);
+  const DatasetPtr d = ftle(test::steady_series(make_dataset(Mesh(g), std::move(fields))), {}, context);
   const UniformGrid& seeds = *d->as<UniformGrid>();
   CHECK(seeds.dims[0] == 64);
   const Array& went = d->fields().require("flow map").array;
@@ -204,12 +203,12 @@ TEST_CASE("ftle: how many particles leave is told, and none when all stay") {
   FtleParams p;
   p.duration = 0.5, p.size = 9;
   const DatasetPtr wind =
-      ftle(steady(test::cube_flow(9, -1, 1, [](Vec3) { return Vec3(0.9, 0, 0); })), p, context);  // two of nine columns leave
+      ftle(test::steady_series(test::cube_flow(9, -1, 1, [](Vec3) { return Vec3(0.9, 0, 0); })), p, context);  // two of nine columns leave
   CHECK(log.find("22.2 % of the particles") != std::string::npos);
   CHECK(std::isnan(wind->fields().require("ftle").array.get(8)));
   log.clear();
   const DatasetPtr still =
-      ftle(steady(test::cube_flow(9, -1, 1, [](Vec3 x) { return Vec3(x.x * (1 - x.x * x.x), 0, 0) * 0.1; })), p, context);
+      ftle(test::steady_series(test::cube_flow(9, -1, 1, [](Vec3 x) { return Vec3(x.x * (1 - x.x * x.x), 0, 0) * 0.1; })), p, context);
   CHECK(still->stats(still->fields().require("ftle")).nan == 0);
   CHECK(log.find("particles") == std::string::npos);
 }

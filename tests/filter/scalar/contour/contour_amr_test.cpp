@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contours of AMR grids: closed at level jumps, planes for linear fields (correctness.md I12, I13).
 #include "filter/scalar/contour/contour_support.h"
+#include "filter/scalar/contour/known_surfaces.h"
 
 using namespace sg;
 using namespace sg::test;
@@ -75,9 +76,6 @@ DatasetPtr amr(int n, int ratio, const std::vector<std::vector<Box>>& finer, F&&
   return make_dataset(std::move(parts));
 }
 
-const Vec3 direction = normalize(Vec3(1, 2, 0.7));
-double plane(Vec3 p) { return dot(direction, p) - 0.1234; }
-
 // Nested boxes off the middle, ratio r: jumps inside, at edges and at corners, and two levels at one face.
 std::vector<std::vector<Box>> nested(int r) {
   const int a = 2 * r, b = 6 * r - 1;
@@ -89,23 +87,23 @@ std::vector<std::vector<Box>> nested(int r) {
 
 TEST_CASE("contour: on AMR grids a linear field gives a plane, exact and without cracks, at jumps of any ratio") {
   // The area of the plane in the box, from the one lattice contour that is tested elsewhere.
-  const double area = Surface(contour_at(cube(9, 1, plane), 0)).area();
+  const double area = Surface(contour_at(cube(9, 1, oblique_plane), 0)).area();
   for (int ratio : {2, 3, 4})
     for (bool at_points : {false, true}) {
       CAPTURE(ratio);
       CAPTURE(at_points);
-      const auto d = amr(8, ratio, nested(ratio), plane, at_points);
+      const auto d = amr(8, ratio, nested(ratio), oblique_plane, at_points);
       const auto c = contour_at(d, 0);
       const Surface s(c);
       CHECK(s.faults(d->bounds()) == 0);
       CHECK(s.every_point_used());
       CHECK(s.area() == doctest::Approx(area).epsilon(1e-6));
       double off = 0, turned = 0;
-      for (Vec3 p : s.points) off = std::max(off, std::abs(plane(p)));
+      for (Vec3 p : s.points) off = std::max(off, std::abs(oblique_plane(p)));
       CHECK(off < 1e-6);
       const Field& n = c->fields().require("Normals", Association::point);
       for (size_t i = 0; i < n.array.count(); ++i)
-        turned = std::max(turned, length(Vec3(n.array.get(i, 0), n.array.get(i, 1), n.array.get(i, 2)) + direction));
+        turned = std::max(turned, length(Vec3(n.array.get(i, 0), n.array.get(i, 1), n.array.get(i, 2)) + plane_normal));
       CHECK(turned < 1e-5);
     }
 }
@@ -162,11 +160,11 @@ TEST_CASE("contour: random values on AMR grids leave no holes; a flat AMR grid g
 }
 
 TEST_CASE("contour: cells without a value and no value in range leave clean results on AMR grids") {
-  auto hole = [](Vec3 p) { return length(p - Vec3(0.3, 0.2, 0.1)) < 0.3 ? std::nan("") : plane(p); };
+  auto hole = [](Vec3 p) { return length(p - Vec3(0.3, 0.2, 0.1)) < 0.3 ? std::nan("") : oblique_plane(p); };
   const auto c = contour_at(amr(8, 2, nested(2), hole), 0);
   for (Vec3 p : Surface(c).points) CHECK(std::isfinite(p.x));
   CHECK(Surface(c).triangles.size() > 100);
-  const auto none = contour_at(amr(8, 2, nested(2), plane), 99);
+  const auto none = contour_at(amr(8, 2, nested(2), oblique_plane), 99);
   CHECK(none->cell_count() == 0);
   CHECK(none->fields().find("f", Association::point));
 }

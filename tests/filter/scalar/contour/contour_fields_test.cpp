@@ -3,27 +3,20 @@
 #include <tuple>
 
 #include "filter/cell_meshes.h"
+#include "filter/scalar/contour/known_surfaces.h"
 
 using namespace sg;
 using namespace sg::test;
 
 namespace {
 
-double sphere(Vec3 p) { return length(p) - 1; }
-
-DatasetPtr with(const DatasetPtr& d, std::vector<Field> more, Array cell_ghost = {}, Array point_ghost = {}) {
+DatasetPtr carrying(const DatasetPtr& d, std::vector<Field> more, Array cell_ghost = {}, Array point_ghost = {}) {
   DatasetParts p = d->parts();
   for (Field& f : more) p.fields.add(std::move(f));
   p.cell_ghost = std::move(cell_ghost);
   p.point_ghost = std::move(point_ghost);
   p.time = 2.5;
   return make_dataset(std::move(p));
-}
-
-DatasetPtr run(const DatasetPtr& d, const ContourParams& p, std::string* log = nullptr) {
-  Context c;
-  if (log) c.on_log = [&](LogLevel, std::string_view text) { *log += std::string(text) + "\n"; };
-  return contour(d, p, c);
 }
 
 }  // namespace
@@ -34,10 +27,10 @@ TEST_CASE("contour: carries point fields along edges, cell fields from cells, an
   const Mesh& g = base->mesh();
   std::vector<int32_t> ids(cells);
   std::iota(ids.begin(), ids.end(), 0);
-  const auto d = with(base, {point_field<float>(
-                                 g, {n, n, n}, [](Vec3 p) { return 2 * p.x - p.y + 3; }, "linear"),
-                             {"cell id", Association::cell, Array::from_vector(ids), "", Role::none},
-                             {"title", Association::whole, Array::from_vector(std::vector<double>{7}), "m", Role::none}});
+  const auto d = carrying(base, {point_field<float>(
+                                     g, {n, n, n}, [](Vec3 p) { return 2 * p.x - p.y + 3; }, "linear"),
+                                 {"cell id", Association::cell, Array::from_vector(ids), "", Role::none},
+                                 {"title", Association::whole, Array::from_vector(std::vector<double>{7}), "m", Role::none}});
   const auto c = contour_at(d, 0);
   const Surface s(c);
   CHECK(c->time() == 2.5);
@@ -66,7 +59,7 @@ TEST_CASE("contour: several values give one mesh with the value on the cells") {
   ContourParams p;
   p.values = {0.2, -0.3};
   const auto d = cube(20, 1.5, sphere);
-  const auto both = run(d, p);
+  const auto both = contoured(d, p);
   const auto first = contour_at(d, 0.2), second = contour_at(d, -0.3);
   CHECK(both->point_count() == first->point_count() + second->point_count());
   REQUIRE(both->cell_count() == first->cell_count() + second->cell_count());
@@ -86,7 +79,7 @@ TEST_CASE("contour: without values it takes the middle of the range, without nor
   ContourParams p;
   p.normals = false;
   const auto d = cube(16, 1, [](Vec3 v) { return v.z * 3 + 5; });
-  const auto c = run(d, p);
+  const auto c = contoured(d, p);
   CHECK(!c->fields().find("Normals"));
   for (Vec3 v : Surface(c).points) CHECK(std::abs(v.z) < 1e-7);
 }
@@ -130,8 +123,8 @@ TEST_CASE("contour: ghost and blanked cells and hidden points are left out") {
   for (size_t c = 0; c < cells.size(); ++c)
     cells[c] = c % 13 < 6 ? uint8_t(c % 3 == 0 ? ghost_duplicate : c % 3 == 1 ? ghost_hidden_cell : ghost_refined_cell) : 0;
   for (size_t p = 0; p < points.size(); ++p) points[p] = p % n < 6 ? ghost_hidden_point : 0;
-  const Surface by_cells(contour_at(with(d, {}, Array::from_vector(cells)), 0)),
-      by_points(contour_at(with(d, {}, {}, Array::from_vector(points)), 0));
+  const Surface by_cells(contour_at(carrying(d, {}, Array::from_vector(cells)), 0)),
+      by_points(contour_at(carrying(d, {}, {}, Array::from_vector(points)), 0));
   const double x = -1.5 + 3.0 / 13 * 6;
   CHECK(by_cells.points.size() > 100);
   for (Vec3 p : by_cells.points) CHECK(p.x > x - 1e-6);
@@ -140,7 +133,7 @@ TEST_CASE("contour: ghost and blanked cells and hidden points are left out") {
   CHECK(by_points.triangles == by_cells.triangles);
   // The same on hexahedra.
   const auto hexes = solid_mesh("hexahedron", 13, 1.5, sphere);
-  const Surface u(contour_at(with(hexes, {}, Array::from_vector(cells)), 0));
+  const Surface u(contour_at(carrying(hexes, {}, Array::from_vector(cells)), 0));
   CHECK(u.points.size() == by_cells.points.size());
   CHECK(u.triangles.size() == by_cells.triangles.size());
 }
@@ -155,7 +148,7 @@ TEST_CASE("contour: lines on a 2D grid stop at NaN and ghost cells") {
   CHECK(s.every_point_used());
   std::vector<uint8_t> ghost(81);
   ghost[9 * 4 + 8] = ghost_hidden_cell;
-  const Surface less(contour_at(with(d, {}, Array::from_vector(ghost)), 0));
+  const Surface less(contour_at(carrying(d, {}, Array::from_vector(ghost)), 0));
   CHECK(less.lines.size() == 6);
   CHECK(less.every_point_used());
 }
@@ -168,7 +161,7 @@ TEST_CASE("contour: nothing to see gives an empty mesh with its fields and a not
     std::string log;
     ContourParams p;
     p.values = {value};
-    const auto c = run(d, p, &log);
+    const auto c = contoured(d, p, &log);
     CHECK(c->point_count() == 0);
     CHECK(c->cell_count() == 0);
     CHECK(c->fields().find("f", Association::point));
@@ -178,7 +171,7 @@ TEST_CASE("contour: nothing to see gives an empty mesh with its fields and a not
   // A constant field has no surface at its own value either: no cell has an outside corner.
   CHECK(contour_at(cube(6, 1, [](Vec3) { return 3.0; }), 3)->cell_count() == 0);
   ContourParams none;
-  CHECK(run(cube(5, 1, [](Vec3) { return double(NAN); }), none)->cell_count() == 0);
+  CHECK(contoured(cube(5, 1, [](Vec3) { return double(NAN); }), none)->cell_count() == 0);
 }
 
 TEST_CASE("contour: one cell, infinite samples and far away grids") {
@@ -216,45 +209,47 @@ TEST_CASE("contour: of a component or the magnitude of a vector") {
   const auto d = make_dataset(g, fields);
   ContourParams p;
   p.values = {1};
-  const std::string message = error_of([&] { run(d, p); });
+  const std::string message = error_of([&] { contoured(d, p); });
   CHECK(message.find("magnitude") != std::string::npos);
   CHECK(message.find("component=0") != std::string::npos);
   p.component = "magnitude";
-  const Surface s(run(d, p));
+  const Surface s(contoured(d, p));
   CHECK(s.euler() == 2);
   p.component = "z";
-  for (Vec3 q : Surface(run(d, p)).points) CHECK(q.z == doctest::Approx(1));
+  for (Vec3 q : Surface(contoured(d, p)).points) CHECK(q.z == doctest::Approx(1));
   p.component = "3";
-  CHECK(error_of([&] { run(d, p); }).find("no component '3'") != std::string::npos);
+  CHECK(error_of([&] { contoured(d, p); }).find("no component '3'") != std::string::npos);
   p.component = "q";
-  CHECK(error_of([&] { run(d, p); }).find("no component 'q'") != std::string::npos);
+  CHECK(error_of([&] { contoured(d, p); }).find("no component 'q'") != std::string::npos);
 }
 
 TEST_CASE("contour: refuses what it cannot do and says what would be right") {
   const auto d = cube(5, 1, sphere);
   ContourParams p;
   p.field.name = "ff";
-  CHECK(error_of([&] { run(d, p); }).find("did you mean 'f'") != std::string::npos);
-  const auto cells = with(d, {{"c", Association::cell, Array::from_vector(std::vector<float>(64)), "", Role::none}});
+  CHECK(error_of([&] { contoured(d, p); }).find("did you mean 'f'") != std::string::npos);
+  const auto cells = carrying(d, {{"c", Association::cell, Array::from_vector(std::vector<float>(64)), "", Role::none}});
   p.field.name = "c";
-  CHECK(error_of([&] { run(cells, p); }).find("is a cell field") != std::string::npos);
+  CHECK(error_of([&] { contoured(cells, p); }).find("is a cell field") != std::string::npos);
   p.field.name = "f";
   p.values = {NAN};
-  CHECK(error_of([&] { run(d, p); }).find("finite") != std::string::npos);
+  CHECK(error_of([&] { contoured(d, p); }).find("finite") != std::string::npos);
   p = {};
-  CHECK(error_of([&] { run(grid_of<float>({5, 1, 1}, {1, 2, 3, 4, 5}), p); }).find("1 axis") != std::string::npos);
+  CHECK(error_of([&] { contoured(grid_of<float>({5, 1, 1}, {1, 2, 3, 4, 5}), p); }).find("1 axis") != std::string::npos);
   PointCloud cloud;
   cloud.points.xyz = Array::from_vector(std::vector<float>{0, 0, 0, 1, 0, 0}, 3);
   FieldSet fields;
   fields.add({"f", Association::point, Array::from_vector(std::vector<float>{0, 1}), "", Role::none});
-  CHECK(error_of([&] { run(make_dataset(cloud, fields), p); }).find("'points'") != std::string::npos);
-  CHECK(error_of([&] { run(make_dataset(uniform({3, 3, 3}, {0, 0, 0}, {1, 1, 1})), p); }).find("no point field") != std::string::npos);
+  CHECK(error_of([&] { contoured(make_dataset(cloud, fields), p); }).find("'points'") != std::string::npos);
+  CHECK(error_of([&] {
+          contoured(make_dataset(uniform({3, 3, 3}, {0, 0, 0}, {1, 1, 1})), p);
+        }).find("no point field") != std::string::npos);
   UnstructuredMesh line;
   line.points = cloud.points;
   line.cells.connectivity = Array::from_vector(std::vector<int32_t>{0, 1});
   line.cells.fixed = 2;
   line.single_type = CellType::line;
-  CHECK(error_of([&] { run(make_dataset(line, fields), p); }).find("faces or solids") != std::string::npos);
+  CHECK(error_of([&] { contoured(make_dataset(line, fields), p); }).find("faces or solids") != std::string::npos);
   UnstructuredMesh curved;
   curved.points.xyz = Array::from_vector(std::vector<float>(30), 3);
   curved.cells.connectivity = Array::from_vector(std::vector<int32_t>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
@@ -262,13 +257,13 @@ TEST_CASE("contour: refuses what it cannot do and says what would be right") {
   curved.single_type = CellType::quadratic_tetra;
   FieldSet ten;
   ten.add({"f", Association::point, Array::from_vector(std::vector<float>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9}), "", Role::none});
-  CHECK(run(make_dataset(curved, ten), p)->bounds().diagonal() == 0);  // all ten points lie in one place
+  CHECK(contoured(make_dataset(curved, ten), p)->bounds().diagonal() == 0);  // all ten points lie in one place
   AmrGrid amr;
   amr.levels.resize(1);
   amr.levels[0].patches.push_back({{0, 0, 0}, {1, 1, 1}, 0, 0});
   FieldSet points27;
   points27.add({"f", Association::point, Array::from_vector(std::vector<float>(27)), "", Role::none});
-  CHECK(run(make_dataset(amr, points27), p)->cell_count() == 0);
+  CHECK(contoured(make_dataset(amr, points27), p)->cell_count() == 0);
   Context cancelled;
   cancelled.cancel();
   CHECK_THROWS_AS(contour(d, {}, cancelled), Error);

@@ -7,10 +7,11 @@
 #include "base/random.h"
 #include "data/memory/memo.h"
 #include "filter/mesh/to_unstructured.h"
-#include "filter/scalar/contour/contour.h"
+#include "filter/scalar/contour/contour_support.h"
 #include "support/test.h"
 
 using namespace sg;
+using test::same_bytes;
 
 namespace {
 
@@ -38,11 +39,6 @@ DatasetPtr grid(std::array<size_t, 3> dims, double factor, bool holes, bool ghos
     parts.cell_ghost = Array::from_vector(std::move(cells));
   }
   return make_dataset(std::move(parts));
-}
-
-bool same_bytes(const Array& a, const Array& b) {
-  return a.type() == b.type() && a.count() == b.count() && a.components() == b.components() &&
-         (a.bytes() == 0 || std::memcmp(a.raw(), b.raw(), a.bytes()) == 0);
 }
 
 void check_equal(const DatasetPtr& a, const DatasetPtr& b) {

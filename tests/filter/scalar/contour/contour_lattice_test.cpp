@@ -11,11 +11,6 @@ using namespace sg::test;
 
 namespace {
 
-DatasetPtr run(const DatasetPtr& d, const ContourParams& p) {
-  Context c;
-  return contour(d, p, c);
-}
-
 const char* const kinds[] = {"uniform", "rectilinear", "curvilinear"};
 
 // The same points and samples as a uniform grid's.
@@ -72,7 +67,7 @@ DatasetPtr bent(size_t n, const std::string& kind, double (*f)(Vec3), double r) 
   return make_dataset(g, fields);
 }
 
-DatasetPtr noise(size_t n, uint64_t seed = 1) {
+DatasetPtr noise_grid(size_t n, uint64_t seed = 1) {
   return cube<float>(n, 1, [&](Vec3 p) {
     return float(random_unit(seed, uint64_t(std::lround((p.x + 1) * 1000) + 4000 * std::lround((p.y + 1) * 1000) +
                                             16000000 * std::lround((p.z + 1) * 1000))) -
@@ -142,7 +137,7 @@ TEST_CASE("contour: tunnels, deciders and ties come out the same on all kinds of
       ContourParams p;
       p.values = {0};
       p.topology = topology;
-      return Surface(run(as_kind(grid_of<double>(n, std::move(v)), kind), p));
+      return Surface(contoured(as_kind(grid_of<double>(n, std::move(v)), kind), p));
     };
     const Surface tunnel = surface({9, -1, -1, -1, -1, -1, -1, 9}, {2, 2, 2}, ContourTopology::trilinear);
     CHECK(tunnel.euler() == 0);
@@ -160,7 +155,7 @@ TEST_CASE("contour: tunnels, deciders and ties come out the same on all kinds of
 }
 
 TEST_CASE("contour: on noise all kinds of grids give one surface, closed but for the border, without triangles in faces") {
-  const auto d = noise(12);
+  const auto d = noise_grid(12);
   const Surface u(contour_at(d, 0));
   CHECK(u.faults(d->bounds()) == 0);
   CHECK(u.every_point_used());
@@ -185,7 +180,7 @@ TEST_CASE("contour: on noise all kinds of grids give one surface, closed but for
 
 TEST_CASE("contour: points inside cells carry fields with trilinear weights, cell fields and unit normals") {
   const size_t n = 10;
-  const auto base = noise(n, 5);
+  const auto base = noise_grid(n, 5);
   const Mesh& g = base->mesh();
   std::vector<int32_t> ids((n - 1) * (n - 1) * (n - 1));
   std::iota(ids.begin(), ids.end(), 0);
@@ -197,7 +192,7 @@ TEST_CASE("contour: points inside cells carry fields with trilinear weights, cel
     ContourParams p;
     p.field.name = "f";
     p.values = {0, 0.2};
-    const auto c = run(as_kind(d, kind), p);
+    const auto c = contoured(as_kind(d, kind), p);
     const Surface s(c);
     const Field &l = c->fields().require("linear"), &b = c->fields().require("bytes"), &f = c->fields().require("f"),
                 &normals = c->fields().require("Normals"), &value = c->fields().require("contour value");
@@ -233,16 +228,16 @@ TEST_CASE("contour: points inside cells carry fields with trilinear weights, cel
 }
 
 TEST_CASE("contour: noise gives the same bytes for 1 and 8 threads, several values the same as one by one") {
-  const auto base = noise(40, 9);
+  const auto base = noise_grid(40, 9);
   const auto d = with(base, {point_field<float>(
                                 base->mesh(), {40, 40, 40}, [](Vec3 p) { return p.x; }, "x")});
   ContourParams p;
   p.field.name = "f";
   p.values = {0.1, -0.2, 0.1, 0};  // unsorted and repeated: as asked
   set_thread_count(1);
-  const auto one = run(d, p);
+  const auto one = contoured(d, p);
   set_thread_count(8);
-  const auto eight = run(d, p);
+  const auto eight = contoured(d, p);
   set_thread_count(0);
   CHECK(same_surface(one, eight));
   for (const char* name : {"Normals", "f", "x", "contour value"})
@@ -252,7 +247,7 @@ TEST_CASE("contour: noise gives the same bytes for 1 and 8 threads, several valu
   for (double value : p.values) {
     ContourParams single = p;
     single.values = {value};
-    const auto c = run(d, single);
+    const auto c = contoured(d, single);
     const Surface s(c);
     bool same = points + s.points.size() <= all.points.size() && triangles + s.triangles.size() <= all.triangles.size();
     for (size_t i = 0; same && i < s.points.size(); ++i) same = s.points[i] == all.points[points + i];
@@ -266,7 +261,7 @@ TEST_CASE("contour: noise gives the same bytes for 1 and 8 threads, several valu
 }
 
 TEST_CASE("contour: cells with tubes keep clean borders beside NaN") {
-  const auto d = noise(14, 3);
+  const auto d = noise_grid(14, 3);
   auto v = d->fields().require("f").array.view<float>();
   std::vector<float> holes(v.data, v.data + v.count);
   for (size_t i = 0; i < holes.size(); i += 97) holes[i] = NAN;
@@ -291,25 +286,25 @@ TEST_CASE("contour: takes cell fields, averaged to the points, when asked") {
   ContourParams p;
   p.field.name = "radius";
   p.values = {1};
-  CHECK(error_of([&] { run(d, p); }).find("from_cells=true") != std::string::npos);
+  CHECK(error_of([&] { contoured(d, p); }).find("from_cells=true") != std::string::npos);
   p.from_cells = true;
-  const auto c = run(d, p);
+  const auto c = contoured(d, p);
   const Surface s(c);
   CHECK(s.euler() == 2);
   CHECK(s.faults() == 0);
   CHECK(s.area() == doctest::Approx(4 * M_PI).epsilon(0.02));
   CHECK(c->fields().require("radius", Association::cell).array.count() == s.triangles.size());
   p.field.name = "f";
-  CHECK(error_of([&] { run(d, p); }).find("is defined on the points") != std::string::npos);
+  CHECK(error_of([&] { contoured(d, p); }).find("is defined on the points") != std::string::npos);
   p.field.name = "";
   DatasetParts only = d->parts();
   only.fields.remove("f", Association::point);
-  CHECK(Surface(run(make_dataset(only), p)).euler() == 2);
+  CHECK(Surface(contoured(make_dataset(only), p)).euler() == 2);
   p.from_cells = false;
-  CHECK(error_of([&] { run(make_dataset(only), p); }).find("from_cells=true") != std::string::npos);
+  CHECK(error_of([&] { contoured(make_dataset(only), p); }).find("from_cells=true") != std::string::npos);
   only.fields.remove("radius", Association::cell);
   p.from_cells = true;
-  CHECK(error_of([&] { run(make_dataset(only), p); }).find("no cell field") != std::string::npos);
+  CHECK(error_of([&] { contoured(make_dataset(only), p); }).find("no cell field") != std::string::npos);
 }
 
 TEST_CASE("contour: bad values, bad words and grids with nothing in them") {
@@ -317,16 +312,16 @@ TEST_CASE("contour: bad values, bad words and grids with nothing in them") {
   ContourParams p;
   for (double v : {double(NAN), HUGE_VAL, -HUGE_VAL}) {
     p.values = {0, v};
-    CHECK(error_of([&] { run(d, p); }).find("finite") != std::string::npos);
+    CHECK(error_of([&] { contoured(d, p); }).find("finite") != std::string::npos);
   }
   p.values = {0};
   CHECK(error_of([&] { test::params_of<ContourParams>({"topology=classic"}); }).find("trilinear, fixed") != std::string::npos);
   p.values = {-7, 0, 9};  // two of three are out of range
-  const auto c = run(d, p);
+  const auto c = contoured(d, p);
   CHECK(c->cell_count() == contour_at(d, 0)->cell_count());
   CHECK(c->fields().require("contour value").array.get(0) == 0);
   p.values = {5, 6};
-  CHECK(run(d, p)->cell_count() == 0);
+  CHECK(contoured(d, p)->cell_count() == 0);
   for (const char* kind : kinds) {
     const Surface one(contour_at(as_kind(grid_of<double>({2, 2, 2}, {1, -1, -1, -1, -1, -1, -1, -1}), kind), 0));
     CHECK(one.triangles.size() == 1);

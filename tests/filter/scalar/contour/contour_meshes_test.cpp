@@ -3,15 +3,12 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "filter/cell_meshes.h"
+#include "filter/scalar/contour/known_surfaces.h"
 
 using namespace sg;
 using namespace sg::test;
 
 namespace {
-
-const Vec3 direction = normalize(Vec3(1, 2, 0.7));
-double plane(Vec3 p) { return dot(direction, p) - 0.1234; }
-double sphere(Vec3 p) { return length(p) - 1; }
 
 // Area of the plane n.x = d inside [-1,1]^3, by clipping a big square.
 double plane_in_cube(Vec3 n, double d) {
@@ -36,17 +33,17 @@ double plane_in_cube(Vec3 n, double d) {
 
 void check_plane(const DatasetPtr& d, const DatasetPtr& s) {
   const Surface surface(s);
-  CHECK(surface.area() == doctest::Approx(plane_in_cube(direction, 0.1234)).epsilon(1e-6));
+  CHECK(surface.area() == doctest::Approx(plane_in_cube(plane_normal, 0.1234)).epsilon(1e-6));
   double off = 0, turned = 0;
-  for (Vec3 p : surface.points) off = std::max(off, std::abs(plane(p)));
+  for (Vec3 p : surface.points) off = std::max(off, std::abs(oblique_plane(p)));
   const Field& n = s->fields().require("Normals", Association::point);
   for (size_t i = 0; i < n.array.count(); ++i)
-    turned = std::max(turned, length(Vec3(n.array.get(i, 0), n.array.get(i, 1), n.array.get(i, 2)) + direction));
+    turned = std::max(turned, length(Vec3(n.array.get(i, 0), n.array.get(i, 1), n.array.get(i, 2)) + plane_normal));
   CHECK(off < 1e-6);
   CHECK(turned < 1e-6);
   CHECK(surface.faults(d->bounds()) == 0);
   CHECK(surface.every_point_used());
-  for (size_t t = 0; t < surface.triangles.size(); ++t) CHECK(dot(surface.area_vector(t), direction) <= 1e-9);
+  for (size_t t = 0; t < surface.triangles.size(); ++t) CHECK(dot(surface.area_vector(t), plane_normal) <= 1e-9);
 }
 
 template <class Map>
@@ -86,10 +83,10 @@ DatasetPtr rectilinear(std::array<size_t, 3> n, double (*f)(Vec3), bool down) {
 }  // namespace
 
 TEST_CASE("contour: a linear field gives a plane, exact and without cracks, on every mesh of solids") {
-  const auto box = cube(8, 1, plane);
+  const auto box = cube(8, 1, oblique_plane);
   check_plane(box, contour_at(box, 0));
   for (bool down : {false, true}) {
-    const auto d = rectilinear({7, 9, 8}, plane, down);
+    const auto d = rectilinear({7, 9, 8}, oblique_plane, down);
     check_plane(d, contour_at(d, 0));
   }
   const auto curved = mapped(
@@ -98,14 +95,14 @@ TEST_CASE("contour: a linear field gives a plane, exact and without cracks, on e
         const double b = (1 - p.x * p.x) * (1 - p.y * p.y) * (1 - p.z * p.z);
         return p + b * Vec3(.1, -.15, .2);
       },
-      plane);
+      oblique_plane);
   check_plane(curved, contour_at(curved, 0));
   const auto mirrored = mapped(
-      {6, 7, 8}, [](Vec3 p) { return Vec3(-p.x, p.y, p.z); }, plane);
+      {6, 7, 8}, [](Vec3 p) { return Vec3(-p.x, p.y, p.z); }, oblique_plane);
   check_plane(mirrored, contour_at(mirrored, 0));
   for (const auto& kind : solid_kinds()) {
     CAPTURE(kind);
-    const auto d = solid_mesh(kind, 5, 1, plane);
+    const auto d = solid_mesh(kind, 5, 1, oblique_plane);
     check_plane(d, contour_at(d, 0));
   }
 }
@@ -115,7 +112,7 @@ TEST_CASE("contour: a turned and sheared uniform grid gives the same plane") {
   g.direction = Mat3{{{0, -1, 0}, {0, 0, -1}, {1, 0, 0}}};  // left-handed or not: the surface must not care
   g.origin = {1, 1, -1};
   FieldSet fields;
-  fields.add(point_field<float>(g, {9, 9, 9}, plane));
+  fields.add(point_field<float>(g, {9, 9, 9}, oblique_plane));
   const auto d = make_dataset(g, fields);
   check_plane(d, contour_at(d, 0));
 }

@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "data/dataset.h"
@@ -43,6 +44,15 @@ DatasetPtr cube(size_t n, double r, F&& f) {
   return make_dataset(g, fields);
 }
 
+/// Square of n^2 points over [-r, r]^2.
+template <class F>
+DatasetPtr square_grid(size_t n, F&& f, double r = 1.5) {
+  const Mesh g = uniform({n, n, 1}, {-r, -r, 0}, {r, r, 0});
+  FieldSet fields;
+  fields.add(point_field<double>(g, {n, n, 1}, f));
+  return make_dataset(g, fields);
+}
+
 /// A uniform grid with the given samples and spacing 1.
 template <class T>
 DatasetPtr grid_of(std::array<size_t, 3> n, std::vector<T> values) {
@@ -53,11 +63,16 @@ DatasetPtr grid_of(std::array<size_t, 3> n, std::vector<T> values) {
   return make_dataset(g, fields);
 }
 
-inline DatasetPtr contour_at(const DatasetPtr& d, double value) {
+/// The contour; what it logs is added to `log`.
+inline DatasetPtr contoured(const DatasetPtr& d, const ContourParams& p, std::string* log = nullptr) {
   Context context;
+  if (log) context.on_log = [&](LogLevel, std::string_view text) { *log += std::string(text) + "\n"; };
+  return contour(d, p, context);
+}
+inline DatasetPtr contour_at(const DatasetPtr& d, double value) {
   ContourParams p;
   p.values = {value};
-  const DatasetPtr r = contour(d, p, context);
+  const DatasetPtr r = contoured(d, p);
   validate(r->mesh());  // contour vouches for it without a look
   return r;
 }

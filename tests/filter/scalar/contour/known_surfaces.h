@@ -17,4 +17,8 @@ inline double tangle(Vec3 p) {
   return q(p.x) + q(p.y) + q(p.z) + 11.8;
 }
 
+/// A plane that lies along no axis.
+inline const Vec3 plane_normal = normalize(Vec3(1, 2, 0.7));
+inline double oblique_plane(Vec3 p) { return dot(plane_normal, p) - 0.1234; }
+
 }  // namespace sg::test

@@ -266,7 +266,8 @@ bool BernsteinZeros::solve(ZeroDomain domain, std::vector<Vec3>& zeros, std::spa
   while (!stack_.empty()) {
     Box box = stack_.back();
     stack_.pop_back();
-    if (domain != ZeroDomain::box && box.lo.x + box.lo.y + (domain == ZeroDomain::simplex && dimension_ == 3 ? box.lo.z : 0) > 1 + zero_margin)
+    if (domain != ZeroDomain::box &&
+        box.lo.x + box.lo.y + (domain == ZeroDomain::simplex && dimension_ == 3 ? box.lo.z : 0) > 1 + zero_margin)
       continue;
     if (--left < 0) {
       isolated = false;

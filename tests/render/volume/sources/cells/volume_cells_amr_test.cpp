@@ -9,7 +9,6 @@ using namespace sg::test;
 
 namespace {
 
-double linear(Vec3 p) { return 1 + p.x + 2 * p.y + 3 * p.z; }
 double wavy(Vec3 p) { return std::sin(2 * p.x) * std::cos(p.y) + p.z * p.z; }
 
 /// Chord of [-1,1]^3.

@@ -13,7 +13,7 @@ using namespace sg::test;
 
 namespace {
 
-double wavy(Vec3 p) { return std::sin(7 * p.x) * std::cos(6 * p.y) + p.z; }
+double fine_waves(Vec3 p) { return std::sin(7 * p.x) * std::cos(6 * p.y) + p.z; }
 
 VolumeItem look(DatasetPtr data, Association a = Association::point) {
   VolumeItem item = item_of(std::move(data), a);
@@ -118,7 +118,7 @@ TEST_CASE("volume cells: a cube of constant value is 1 - exp(-tau L), whatever d
 }
 
 TEST_CASE("volume cells: packets of rays, projection and the walker draw the same tetrahedra") {
-  const VolumeItem item = look(with_field(cube(CellType::tetra, 6, bent), wavy));
+  const VolumeItem item = look(with_field(cube(CellType::tetra, 6, bent), fine_waves));
   for (bool parallel : {false, true})
     for (Vec3 from : {Vec3(2.2, 1.7, 2.9), Vec3(0.5, 0.5, 3), Vec3(0.45, 0.52, 0.4), Vec3(0.5, 0.5, 1.0)}) {
       CAPTURE(parallel);
@@ -132,14 +132,14 @@ TEST_CASE("volume cells: packets of rays, projection and the walker draw the sam
 }
 
 TEST_CASE("volume cells: fields of cells and meshes with holes look the same by packets, projection and walker") {
-  const DatasetPtr points = with_field(cube(CellType::tetra, 5, bent), wavy);
+  const DatasetPtr points = with_field(cube(CellType::tetra, 5, bent), fine_waves);
   DatasetParts parts = points->parts();
   std::vector<uint8_t> ghost(points->cell_count());
   for (size_t c = 0; c < ghost.size(); ++c) ghost[c] = c % 7 < 2 ? uint8_t(ghost_hidden_cell) : uint8_t(0);
   parts.cell_ghost = Array::from_vector(ghost);
   const Projection p = make_projection(camera(false), 48, 48);
-  for (const VolumeItem& item : {look(make_dataset(parts)), look(with_field(parts, wavy, true), Association::cell),
-                                 look(with_field(cube(CellType::hexahedron, 5, bent), wavy, true), Association::cell)}) {
+  for (const VolumeItem& item : {look(make_dataset(parts)), look(with_field(parts, fine_waves, true), Association::cell),
+                                 look(with_field(cube(CellType::hexahedron, 5, bent), fine_waves, true), Association::cell)}) {
     const std::vector<float> walked = by_walker(item, p);
     CHECK(coverage(walked) > 0.05);
     CHECK(difference(walked, by_rays(item, p)) < 1.0 / 1024);
@@ -148,7 +148,7 @@ TEST_CASE("volume cells: fields of cells and meshes with holes look the same by 
 }
 
 TEST_CASE("volume cells: nothing is drawn behind an opaque surface or beyond a clipping plane") {
-  VolumeItem item = look(with_field(cube(CellType::tetra, 4), wavy));
+  VolumeItem item = look(with_field(cube(CellType::tetra, 4), fine_waves));
   const Projection p = make_projection(camera(false), 40, 40);
   std::vector<float> depth(40 * 40);
   for (size_t i = 0; i < depth.size(); ++i) depth[i] = i % 3 == 0 ? 0.5f : 3.4f;
@@ -174,15 +174,16 @@ TEST_CASE("volume cells: projection draws meshes of any kind as tetrahedra, and 
     item.opacity.points = {{-1, 0}, {2, 0.6}};
     return item;
   };
-  const std::vector<float> tets = by_projection(soft(with_field(cube(CellType::tetra, 12), wavy)), p);
+  const std::vector<float> tets = by_projection(soft(with_field(cube(CellType::tetra, 12), fine_waves)), p);
   for (CellType kind : linear_kinds()) {
     CAPTURE(cell_type_info(kind).name);
-    CHECK(difference(tets, by_projection(soft(with_field(cube(kind, 12), wavy)), p)) < 0.025);
+    CHECK(difference(tets, by_projection(soft(with_field(cube(kind, 12), fine_waves)), p)) < 0.025);
   }
   UniformGrid g;
   g.dims = {13, 13, 13}, g.spacing = Vec3(1, 1, 1) / 12.0;
   std::vector<float> f;
-  for (size_t i = 0; i < 13 * 13 * 13; ++i) f.push_back(float(wavy(Vec3(double(i % 13), double(i / 13 % 13), double(i / 169)) / 12.0)));
+  for (size_t i = 0; i < 13 * 13 * 13; ++i)
+    f.push_back(float(fine_waves(Vec3(double(i % 13), double(i / 13 % 13), double(i / 169)) / 12.0)));
   FieldSet fields;
   fields.add({"f", Association::point, Array::from_vector(f), "", Role::scalars});
   CHECK(difference(tets, by_projection(soft(make_dataset(g, fields)), p)) < 0.02);
@@ -190,7 +191,7 @@ TEST_CASE("volume cells: projection draws meshes of any kind as tetrahedra, and 
 
 TEST_CASE("volume cells: pictures are the same bytes for any number of threads") {
   const Projection p = make_projection(camera(false), 64, 64);
-  const DatasetPtr data = with_field(cube(CellType::tetra, 16, bent), wavy);
+  const DatasetPtr data = with_field(cube(CellType::tetra, 16, bent), fine_waves);
   std::vector<float> first[2];
   for (int threads : {1, 8}) {
     set_thread_count(threads);
@@ -205,7 +206,7 @@ TEST_CASE("volume cells: pictures are the same bytes for any number of threads")
 }
 
 TEST_CASE("volume cells: a shaded projection is lit, and unknown wishes are refused") {
-  VolumeItem item = look(with_field(cube(CellType::tetra, 6), wavy));
+  VolumeItem item = look(with_field(cube(CellType::tetra, 6), fine_waves));
   const Projection p = make_projection(camera(false), 32, 32);
   const std::vector<float> plain = by_projection(item, p);
   item.shaded = true;
@@ -219,7 +220,7 @@ TEST_CASE("volume cells: a shaded projection is lit, and unknown wishes are refu
 }
 
 TEST_CASE("volume cells: lit packets shade as the general integral does") {
-  const VolumeItem item = look(with_field(cube(CellType::tetra, 8, bent), wavy));
+  const VolumeItem item = look(with_field(cube(CellType::tetra, 8, bent), fine_waves));
   const Projection p = make_projection(camera(false), 48, 48);
   Context context;
   const volume::CellVolume v = volume::make_cell_volume(item, context);

@@ -20,6 +20,8 @@ inline Vec3 bent(Vec3 p) {
   return p + Vec3(std::sin(5 * p.y + 3 * p.z), std::sin(5 * p.z + 3 * p.x), std::sin(5 * p.x + 3 * p.y)) * (6 * w);
 }
 
+inline double linear(Vec3 p) { return 1 + p.x + 2 * p.y + 3 * p.z; }
+
 inline DatasetPtr with_field(DatasetParts parts, const Function& f, bool by_cell = false) {
   const DatasetPtr bare = make_dataset(parts);
   std::vector<double> v;

@@ -10,7 +10,6 @@ using namespace sg::test;
 
 namespace {
 
-double linear(Vec3 p) { return 1 + p.x + 2 * p.y + 3 * p.z; }
 double curved(Vec3 p) { return std::sin(3 * p.x) * std::cos(2 * p.y) + p.z * p.z; }
 
 /// A name for messages.

@@ -2,8 +2,8 @@
 // The readers behind read_colormaps(); each takes the whole text and throws Error(data) naming `path`. Names are filled in by the
 // caller where the file has none.
 #pragma once
-#include "color/colormap_file.h"
-#include "color/colormap_nodes.h"
+#include "color/map_files/colormap_file.h"
+#include "color/map_files/colormap_nodes.h"
 
 namespace sg {
 

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/text/text.h"
-#include "color/colormap_formats.h"
+#include "color/map_files/colormap_formats.h"
 #include "color/parse_color.h"
 
 namespace sg {
@@ -16,17 +16,13 @@ namespace {
 
 enum class Model { rgb, hsv, cmyk };
 
-// Names that mean something else than in CSS, or are not among ours, as X11 has them.
+// Names that mean something else in X11, and so here, than in CSS.
 struct X11Color {
   std::string_view name;
   int r, g, b;
 };
-constexpr X11Color x11[] = {{"green", 0, 255, 0},          {"purple", 160, 32, 240},     {"brown", 165, 42, 42},
-                         {"gray", 190, 190, 190},       {"grey", 190, 190, 190},      {"darkorange", 255, 140, 0},
-                         {"lightgray", 211, 211, 211},  {"lightgrey", 211, 211, 211}, {"lightblue", 173, 216, 230},
-                         {"darkgreen", 0, 100, 0},      {"darkblue", 0, 0, 139},      {"darkred", 139, 0, 0},
-                         {"lightgreen", 144, 238, 144}, {"violet", 238, 130, 238},    {"turquoise", 64, 224, 208},
-                         {"khaki", 240, 230, 140},      {"salmon", 250, 128, 114},    {"maroon", 176, 48, 96}};
+constexpr X11Color x11[] = {
+    {"green", 0, 255, 0}, {"purple", 160, 32, 240}, {"gray", 190, 190, 190}, {"grey", 190, 190, 190}, {"maroon", 176, 48, 96}};
 
 Vec3f of_bytes(double r, double g, double b) { return {float(r / 255), float(g / 255), float(b / 255)}; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "color/colormap_file.h"
+#include "color/map_files/colormap_file.h"
 
 #include <fmt/core.h>
 
@@ -8,8 +8,8 @@
 #include "base/error.h"
 #include "base/file/file.h"
 #include "base/text/text.h"
-#include "color/colormap_formats.h"
-#include "color/colormap_nodes.h"
+#include "color/map_files/colormap_formats.h"
+#include "color/map_files/colormap_nodes.h"
 
 namespace sg {
 

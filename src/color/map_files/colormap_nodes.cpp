@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "color/colormap_nodes.h"
+#include "color/map_files/colormap_nodes.h"
 
 #include <algorithm>
 #include <numbers>

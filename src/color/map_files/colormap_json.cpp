@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/text/json.h"
 #include "base/text/text.h"
-#include "color/colormap_formats.h"
+#include "color/map_files/colormap_formats.h"
 
 namespace sg {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "color/colormap_file.h"
+#include "color/map_files/colormap_file.h"
 
 #include <fmt/core.h>
 
@@ -10,11 +10,12 @@
 #include "base/file/file.h"
 #include "base/text/text.h"
 #include "color/cie.h"
-#include "color/colormap_nodes.h"
+#include "color/map_files/colormap_nodes.h"
 #include "color/parse_color.h"
 #include "support/test.h"
 
 using namespace sg;
+using test::contains;
 using Json = nlohmann::json;
 
 namespace {
@@ -32,7 +33,6 @@ FileColormap one(const std::string& name, std::string_view text) {
 std::string refusal(const std::string& name, std::string_view text) {
   return test::error_of([&] { read_colormaps(temp(name, text)); });
 }
-bool has(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 const std::string slices =
     "# COLOR_MODEL = RGB\n# HARD_HINGE\n# RANGE = -8000/4000\n-1\t0/0/128\t0\t128/128/255\n0 0/128/0 1 white ; land\nB black\nF 255/0/0\nN "
@@ -113,15 +113,15 @@ TEST_CASE("colour map files: categories keep their keys and labels") {
 }
 
 TEST_CASE("colour map files: errors of a .cpt name the line") {
-  CHECK(has(refusal("e1.cpt", "# x\n0 1/2/3 0 4/5/6\n"), "line 2"));
-  CHECK(has(refusal("e2.cpt", "0 1/2/300 1 4/5/6\n"), "'1/2/300' is not a colour"));
-  CHECK(has(refusal("e3.cpt", "0 red 1 blue\n2 red 3 blue\n"), "line 2: a slice begins at 2"));
-  CHECK(has(refusal("e4.cpt", "0 red 1 blue\n4 blue\n"), "slices and categories"));
-  CHECK(has(refusal("e5.cpt", "0 notacolour 1 blue\n"), "'notacolour'"));
-  CHECK(has(refusal("e6.cpt", "zero red 1 blue\n"), "'zero' is not a number"));
-  CHECK(has(refusal("e7.cpt", "# only words\n"), "neither slices"));
-  CHECK(has(refusal("e8.cpt", "# COLOR_MODEL = LAB\n0 1 1 2\n"), "colour model"));
-  CHECK(has(refusal("e9.cpt", "0 red 1\n"), "3 words"));
+  CHECK(contains(refusal("e1.cpt", "# x\n0 1/2/3 0 4/5/6\n"), "line 2"));
+  CHECK(contains(refusal("e2.cpt", "0 1/2/300 1 4/5/6\n"), "'1/2/300' is not a colour"));
+  CHECK(contains(refusal("e3.cpt", "0 red 1 blue\n2 red 3 blue\n"), "line 2: a slice begins at 2"));
+  CHECK(contains(refusal("e4.cpt", "0 red 1 blue\n4 blue\n"), "slices and categories"));
+  CHECK(contains(refusal("e5.cpt", "0 notacolour 1 blue\n"), "'notacolour'"));
+  CHECK(contains(refusal("e6.cpt", "zero red 1 blue\n"), "'zero' is not a number"));
+  CHECK(contains(refusal("e7.cpt", "# only words\n"), "neither slices"));
+  CHECK(contains(refusal("e8.cpt", "# COLOR_MODEL = LAB\n0 1 1 2\n"), "colour model"));
+  CHECK(contains(refusal("e9.cpt", "0 red 1\n"), "3 words"));
 }
 
 TEST_CASE("colour map files: ParaView's spaces and indexed colours") {
@@ -139,11 +139,11 @@ TEST_CASE("colour map files: ParaView's spaces and indexed colours") {
   CHECK(maps[2].map.categorical());
   CHECK(maps[2].labels == std::vector<double>{3, 5, 8});
   CHECK(maps[2].label_names[2] == "eight");
-  CHECK(has(refusal("p1.json", R"([{"Name":"q","RGBPoints":[0,0,0]}])"), "map 'q'"));
-  CHECK(has(refusal("p2.json", R"([{"Name":"q","RGBPoints":[0,0,0,2]}])"), "is not a colour"));
-  CHECK(has(refusal("p3.json", R"([{"Name":"q","RGBPoints":[1,0,0,0,0,1,1,1]}])"), "do not increase"));
-  CHECK(has(refusal("p4.json", R"({"a":1})"), "not a colour map"));
-  CHECK(has(refusal("p5.json", std::string(100, '[') + std::string(100, ']')), "nested"));
+  CHECK(contains(refusal("p1.json", R"([{"Name":"q","RGBPoints":[0,0,0]}])"), "map 'q'"));
+  CHECK(contains(refusal("p2.json", R"([{"Name":"q","RGBPoints":[0,0,0,2]}])"), "is not a colour"));
+  CHECK(contains(refusal("p3.json", R"([{"Name":"q","RGBPoints":[1,0,0,0,0,1,1,1]}])"), "do not increase"));
+  CHECK(contains(refusal("p4.json", R"({"a":1})"), "not a colour map"));
+  CHECK(contains(refusal("p5.json", std::string(100, '[') + std::string(100, ']')), "nested"));
 }
 
 TEST_CASE("colour map files: niivue's lists") {
@@ -154,7 +154,7 @@ TEST_CASE("colour map files: niivue's lists") {
   CHECK(f.hi == 255);
   CHECK(color_text(f.map.at(1)) == "#fffaf5");
   CHECK(length(f.map.at(128.0 / 255) - Vec3f(113, 109, 101) / 255.f) < 0.005f);
-  CHECK(has(refusal("n1.json", R"({"R":[0,1],"G":[0],"B":[0,1]})"), "differ in length"));
+  CHECK(contains(refusal("n1.json", R"({"R":[0,1],"G":[0],"B":[0,1]})"), "differ in length"));
 }
 
 TEST_CASE("colour map files: ColorBrewer's rules, and names of maps") {
@@ -169,10 +169,10 @@ TEST_CASE("colour map files: ColorBrewer's rules, and names of maps") {
   CHECK(find_colormap(path + ":YlGn").at(1) == Vec3f(1, 1, 1));
   CHECK(find_colormap(path + ":ylgn-2_r").at(1) == Vec3f(0, 0, 0));
   CHECK(find_colormap(path + ":YlGn_r").name == path + ":YlGn_r");
-  CHECK(has(test::error_of([&] { find_colormap(path); }), "contains 5 maps"));
-  CHECK(has(test::error_of([&] { find_colormap(path + ":YlGm"); }), "did you mean 'YlGn'"));
+  CHECK(contains(test::error_of([&] { find_colormap(path); }), "contains 5 maps"));
+  CHECK(contains(test::error_of([&] { find_colormap(path + ":YlGm"); }), "did you mean 'YlGn'"));
   CHECK(find_colormap(temp("s.cpt", slices) + "_r").at(0) == Vec3f(1, 1, 1));
-  CHECK(has(test::error_of([] { find_colormap("nowhere.cpt"); }), "nowhere.cpt"));
+  CHECK(contains(test::error_of([] { find_colormap("nowhere.cpt"); }), "nowhere.cpt"));
   CHECK_FALSE(names_colormap_file("coolwarm"));
   CHECK_FALSE(names_colormap_file(".cpt"));
 }
