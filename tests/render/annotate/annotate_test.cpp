@@ -455,7 +455,8 @@ TEST_CASE("annotate: names of any length are laid out in no time, with their beg
   Image image(640, 400, 3);
   Annotation a;
   Legend l;
-  l.title = std::string(20000, 'x') + "end";
+  l.title.assign(20000, 'x');
+  l.title += "end";
   a.legends.push_back(l);
   TextStyle wrapped;
   wrapped.size = 12, wrapped.wrap = 300;
