@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # One static library per folder of src/, one test program per folder of tests/.
 
-# Layers and plug-ins without loops worth the time of the optimiser: they are over steps, options, headers of files.
-set(SG_QUICK scene pipeline api cli)
+# Layers without loops worth the time of the optimiser: theirs are over steps, options and items. Plug-ins are like them.
+set(SG_QUICK_LAYERS scene pipeline api cli)
 
 # base and image know no data; all others start from the headers of data, which nearly every file includes. GCC takes the level of
 # optimisation from the precompiled header, so each level has one of its own.
@@ -34,7 +34,7 @@ endfunction()
 
 # Holds their precompiled header; made before them.
 function(sg_quick_pch)
-  file(WRITE ${CMAKE_BINARY_DIR}/quick_pch.cpp "namespace sg {}\n")
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/quick_pch.cpp CONTENT "namespace sg {}\n")
   add_library(sg_quick_pch OBJECT ${CMAKE_BINARY_DIR}/quick_pch.cpp)
   target_link_libraries(sg_quick_pch PRIVATE sg_data)
   sg_quick_to_compile(sg_quick_pch)
@@ -93,7 +93,7 @@ function(sg_layer name)
   target_include_directories(sg_${name} PUBLIC ${CMAKE_SOURCE_DIR}/src)
   list(TRANSFORM A_LAYERS PREPEND sg_)
   target_link_libraries(sg_${name} PUBLIC ${A_LAYERS} ${A_LIBS} PRIVATE ${A_PRIVATE})
-  if(name IN_LIST SG_QUICK)
+  if(name IN_LIST SG_QUICK_LAYERS)
     sg_quick_to_compile(sg_${name})
   endif()
   sg_use_pch(sg_${name})

@@ -15,7 +15,7 @@ namespace sg {
 
 namespace {
 
-using Tree = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 int component_type(ElementType t) {
   switch (t) {
@@ -34,7 +34,7 @@ ElementType as_attribute_type(ElementType t) { return !is_float(t) && element_si
 Array as_attribute(const Array& a) { return a.converted(as_attribute_type(a.type())).made_packed(); }
 
 // Another field may have been given the name already: a component of 'T' that of 'T_0'.
-std::string free_key(const Tree& attributes, std::string key) {
+std::string free_key(const OrderedJson& attributes, std::string key) {
   while (attributes.contains(key)) key += '_';
   return key;
 }
@@ -43,7 +43,7 @@ struct Writer {
   const std::string& path;
   Context& context;
   WriteLosses& losses;
-  Tree root;
+  OrderedJson root;
   std::string bytes{};
 
   // Elements padded to multiples of four bytes; returns the accessor.
@@ -55,16 +55,16 @@ struct Writer {
       bytes.append(reinterpret_cast<const char*>(a.raw()) + i * size, size);
       bytes.append(stride - size, '\0');
     }
-    Tree view = {{"buffer", 0}, {"byteOffset", begin}, {"byteLength", bytes.size() - begin}};
+    OrderedJson view = {{"buffer", 0}, {"byteOffset", begin}, {"byteLength", bytes.size() - begin}};
     if (target == 34962) view["byteStride"] = stride;
     view["target"] = target;
     root["bufferViews"].push_back(view);
     const char* shape = a.components() == 1 ? "SCALAR" : a.components() == 2 ? "VEC2" : a.components() == 3 ? "VEC3" : "VEC4";
-    Tree accessor = {
+    OrderedJson accessor = {
         {"bufferView", root["bufferViews"].size() - 1}, {"componentType", component_type(a.type())}, {"count", a.count()}, {"type", shape}};
     if (normalized) accessor["normalized"] = true;
     if (with_range) {
-      Tree lo, hi;
+      OrderedJson lo, hi;
       const FieldStats s = field_stats(a);
       for (const Range& r : s.range) lo.push_back(r.empty() ? 0 : r.lo), hi.push_back(r.empty() ? 0 : r.hi);
       accessor["min"] = lo, accessor["max"] = hi;
@@ -78,8 +78,8 @@ struct Writer {
     return put(Array::from_vector(std::vector<uint32_t>(ids.begin(), ids.end())), 34963);
   }
 
-  Tree attributes(const Dataset& d, const Points& points) {
-    Tree r;
+  OrderedJson attributes(const Dataset& d, const Points& points) {
+    OrderedJson r;
     if (!survives(points.xyz, ElementType::f32)) losses.rounds("positions", points.xyz.type(), ElementType::f32);
     r["POSITION"] = put(points.xyz.converted(ElementType::f32), 34962, false, true);
     int tcoords = 0, colors = 0;
@@ -119,8 +119,8 @@ struct Writer {
     const Points& points = cloud ? cloud->points : surface_to_write(d, "glTF", path).points;
     const size_t n = points.count();
     if (n == 0) return context.warn(fmt::format("{}: '{}' has no points and is left out", path, name));
-    Tree primitives;
-    const Tree of_points = attributes(d, points);
+    OrderedJson primitives;
+    const OrderedJson of_points = attributes(d, points);
     auto primitive = [&](int mode, const std::vector<int64_t>& ids) {
       if (!ids.empty()) primitives.push_back({{"attributes", of_points}, {"indices", put_indices(ids, n)}, {"mode", mode}});
     };
@@ -139,7 +139,7 @@ struct Writer {
     }
     if (primitives.empty()) primitives.push_back({{"attributes", of_points}, {"mode", 0}});
     root["meshes"].push_back({{"primitives", primitives}});
-    Tree node = {{"mesh", root["meshes"].size() - 1}};
+    OrderedJson node = {{"mesh", root["meshes"].size() - 1}};
     if (!name.empty()) node["name"] = name;
     const Vec3 o = points.origin;
     if (!(o == Vec3())) node["translation"] = {o.x, o.y, o.z};
@@ -159,11 +159,11 @@ void write_gltf(const std::string& path, const Data& data, const WriteOptions&, 
   if (w.root["meshes"].empty()) fail_usage("there is no surface to write", path);
   losses.tell(context);
   while (w.bytes.size() % 4) w.bytes += '\0';
-  Tree buffer = {{"byteLength", w.bytes.size()}};
+  OrderedJson buffer = {{"byteLength", w.bytes.size()}};
   const bool binary = extension_of(path) == "glb";
   if (!binary) buffer["uri"] = "data:application/octet-stream;base64," + to_base64(w.bytes);
   w.root["buffers"].push_back(buffer);
-  std::string json = w.root.dump(-1, ' ', false, Tree::error_handler_t::replace);
+  std::string json = w.root.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
   if (!binary) return write_file(path, json);
   while (json.size() % 4) json += ' ';
   if (w.bytes.size() + json.size() > UINT32_MAX - 28)

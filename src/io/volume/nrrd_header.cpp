@@ -313,13 +313,17 @@ NrrdHeader parse_nrrd_header(const MappedFile& file) {
   return std::move(parser.h);
 }
 
+namespace {
+
 // Bytes with three or four of them first, and many along all other axes.
-static bool is_picture(const NrrdHeader& h) {
+bool is_picture(const NrrdHeader& h) {
   constexpr size_t least = 16;
   const auto& axes = h.axes;
   return h.type == ElementType::u8 && axes.size() >= 3 && (axes[0].size == 3 || axes[0].size == 4) && std::isnan(axes[0].spacing) &&
          std::all_of(axes.begin() + 1, axes.end(), [](const NrrdAxis& a) { return a.size >= least; });
 }
+
+}  // namespace
 
 void classify_axes(NrrdHeader& h) {
   enum class Is { unknown, space, time, components };

@@ -115,7 +115,8 @@ class PacketCells : public RayLanes<D, T, Axes> {
   }
 
   /// The integral over a cell. `lo`, `hi` bound the values; `same`: they lie on one line of the medium. Estimates the error of one piece
-  /// first, takes as many pieces as the tolerance asks for, and cuts them at the knots of the medium and at the kinks of the light.
+  /// first, takes as many pieces as the tolerance asks for, and cuts them at the knots of the medium and at the kinks of the light. Out of
+  /// line: it is long, and inlined it would slow the way to it.
   HWY_NOINLINE void integrate(const Cubic<D>& f, F lo, F hi, M same, [[maybe_unused]] const I inside[3], const F from[3], const F way[3],
                               F t, F length, M look) {
     const D d;
