@@ -369,9 +369,9 @@ class SIGHTGLASS_API Scene {
 
   /// A film: a picture per time, all with the looks and colours of one. What comes from a series, or a source with a time, and states none
   /// moves; what lies between runs again each time. Camera and picture take the time where a value holds "{t}": {"azimuth", "{t}"}.
-  /// `output`: "out_{n}.png" (numbered pictures, with their recipes), "film.webm", or "film.mp4" where ffmpeg is installed. Parameters:
-  /// `sightglass ops film`: times (a list, or text; default: all of the series), fps. Returns the times. Throws Error(usage) where nothing
-  /// has times.
+  /// `output`: "out_{n}.png" (numbered pictures, with their recipes), "film.webm", "film.gif", or "film.mp4" where ffmpeg is installed.
+  /// Parameters: `sightglass ops film`: times (a list, or text; default: all of the series), fps. Returns the times. Throws Error(usage)
+  /// where nothing has times.
   std::vector<double> film(const std::string& output, const Params& params = {}, int width = 1280, int height = 720,
                            const Context& context = {}) const;
   /// The same pictures for the program itself, one after the other, from the calling thread. Parameters: `times`. What `take` throws ends
@@ -390,9 +390,9 @@ class SIGHTGLASS_API Film {
  public:
   /// As Scene::film(); parameters: fps.
   explicit Film(const std::string& output, const Params& params = {});
-  /// Of a .webm or .mp4 all have one size. A numbered picture is there at once, with its recipe.
+  /// Of a film all have one size. A numbered picture is there at once, with its recipe.
   void add(const Image& image);
-  /// A .webm or .mp4 is there when this returns; without it there is none.
+  /// A film is there when this returns; without it there is none.
   void finish();
 
  private:

@@ -6,7 +6,7 @@
 namespace sg {
 
 Context::Context(const Context& parent, double from, double to)
-    : memory_limit(parent.memory_limit), communicator(parent.communicator), parent_(&parent) {
+    : memory_limit(parent.memory_limit), communicator(parent.communicator), parts(parent.parts), parent_(&parent) {
   if (parent.on_log) on_log = [&parent](LogLevel level, std::string_view text) { parent.on_log(level, text); };
   if (parent.on_progress)
     on_progress = [&parent, from, to](double fraction, std::string_view doing) {

@@ -4,12 +4,15 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace sg {
 
 class Communicator;
+class Dataset;
 
 enum class LogLevel { debug, info, warning };
 
@@ -21,6 +24,9 @@ class Context {
   size_t memory_limit = 0;  ///< bytes; 0 = no limit stated
   /// The processes that hold the other parts of the data; null: this one holds all. Not owned. Reductions ask it (base/communicator.h).
   const Communicator* communicator = nullptr;
+  /// All parts of the collection of which one is worked on; null: there are no others. Not owned. What is chosen from the data is chosen
+  /// from all of them (data/ranks/over_all.h).
+  const std::vector<std::shared_ptr<const Dataset>>* parts = nullptr;
 
   Context() = default;
   /// For one part of larger work: logs to `parent`, stops when it is cancelled, and reports progress between `from` and `to`

@@ -141,7 +141,8 @@ struct Box3 {
   SG_HD constexpr void add(const Box3& b) {
     if (!b.empty()) add(b.lo), add(b.hi);
   }
-  SG_HD constexpr Vec3 center() const { return (lo + hi) * 0.5; }
+  /// The origin for an empty box.
+  SG_HD constexpr Vec3 center() const { return empty() ? Vec3() : (lo + hi) * 0.5; }
   SG_HD constexpr Vec3 size() const { return hi - lo; }
   double diagonal() const { return empty() ? 0.0 : length(size()); }
   SG_HD friend constexpr bool operator==(const Box3&, const Box3&) = default;

@@ -59,7 +59,7 @@ void add_picture_words(const Options& o, PipelineFile& file) {
   auto add = [&](const char* key, const std::string& value) {
     if (!value.empty()) file.picture.push_back(fmt::format("{}={}", key, value));
   };
-  add("size", o.size), add("title", o.title), add("background", o.background);
+  add("size", o.size), add("title", o.title), add("background", o.background), add("layout", o.layout), add("views", o.views);
   for (const std::string& group : o.picture)
     for (const std::string& w : quoted_words(group)) file.picture.push_back(w);
   for (const std::string& w : quoted_words(o.camera)) {

@@ -7,6 +7,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <memory>
 #include <new>
 
 #include "base/error.h"
@@ -17,6 +18,7 @@
 #include "base/text/utf8.h"
 #include "base/vector_width.h"
 #include "cli/info.h"
+#include "cli/progress.h"
 #include "cli/say.h"
 #include "cli/spool.h"
 #include "data/memory/memory_budget.h"
@@ -83,15 +85,12 @@ void connect(Context& context, const Options& o) {
   context.memory_limit = o.memory;
   set_memory_limit(o.memory);
   set_plugin_memory(o.memory);
-  context.on_log = [quiet = o.quiet, verbose = o.verbose](LogLevel level, std::string_view text) {
+  const auto line = std::make_shared<ProgressLine>();
+  context.on_log = [line, quiet = o.quiet, verbose = o.verbose](LogLevel level, std::string_view text) {
     if (quiet || (level == LogLevel::debug && !verbose)) return;
-    say_error((level == LogLevel::warning ? "warning: " : "note: ") + std::string(text));
+    line->print((level == LogLevel::warning ? "warning: " : "note: ") + std::string(text));
   };
-  if (!o.quiet && ::isatty(2))
-    context.on_progress = [](double fraction, std::string_view doing) {
-      if (fraction >= 1) std::fprintf(stderr, "\r\x1b[K");
-      else std::fprintf(stderr, "\r%3.0f%% %s\x1b[K", fraction * 100, printable(doing.substr(0, 60)).c_str());
-    };
+  if (!o.quiet && ::isatty(2)) context.on_progress = [line](double fraction, std::string_view doing) { line->show(fraction, doing); };
 }
 
 int dispatch_command(const Options& o, Context& context) {

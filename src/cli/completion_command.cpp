@@ -12,6 +12,7 @@
 #include "pipeline/operation/operation.h"
 #include "pipeline/picture/picture.h"
 #include "scene/camera_params.h"
+#include "scene/choose/coloring.h"
 #include "scene/show/show.h"
 
 namespace sg {
@@ -99,6 +100,19 @@ Candidates group_candidates(const std::string& text, const std::vector<std::stri
   return all;
 }
 
+// The words of ColoringParams that begin with "legend_", without that.
+Candidates legend_candidates(const std::string& text) {
+  constexpr std::string_view prefix = "legend_";
+  ColoringParams params;
+  const size_t blank = text.find_last_of(' ');
+  const std::string before = blank == text.npos ? "" : text.substr(0, blank + 1);
+  Candidates all;
+  for (const ParamDecl& d : schema_of(params).decls())
+    if (d.name.starts_with(prefix)) all.push_back(before + d.name.substr(prefix.size()) + "=");
+  all.push_back("false");
+  return all;
+}
+
 template <class E>
 std::vector<std::string> words_of_enum() {
   std::vector<std::string> all;
@@ -115,6 +129,7 @@ Candidates flag_candidates(const FlagDoc& flag, const std::string& text) {
   if (is("--picture")) return group_candidates<PictureParams>(text, {});
   if (is("--map")) return colormap_candidates();
   if (is("--scale")) return words_of_enum<ScaleKind>();
+  if (is("--legend")) return legend_candidates(text);
   if (is("--camera")) {
     std::vector<std::string> views = words_of_enum<NamedView>();
     for (std::string& p : words_of_enum<ProjectionKind>()) views.push_back(std::move(p));

@@ -8,6 +8,7 @@
 #include "base/text/text.h"
 #include "base/text/utf8.h"
 #include "data/lattice.h"
+#include "data/patient/patient_frame.h"
 
 namespace sg {
 
@@ -52,7 +53,9 @@ std::string dataset_json(const Dataset& d, bool quick, const std::vector<double>
     r += fmt::format(",\"spacing\":[{},{},{}],\"direction\":[", number(g->spacing.x), number(g->spacing.y), number(g->spacing.z));
     for (int i = 0; i < 9; ++i) r += (i ? "," : "") + number(g->direction.m[i / 3][i % 3]);
     r += "]";
+    if (in_patient_frame(d)) r += fmt::format(",\"axes\":\"{}\"", axis_letters(g->direction));
   }
+  if (in_patient_frame(d)) r += ",\"frame\":\"LPS\"";
   r += ",\"fields\":[";
   first = true;
   for (const Field& f : d.fields()) {
@@ -144,6 +147,15 @@ std::string dataset_text(const Dataset& d, const std::string& name, bool quick) 
   if (auto* g = d.as<UniformGrid>()) {
     r += fmt::format("\n  spacing {} x {} x {}", short_number(g->spacing.x), short_number(g->spacing.y), short_number(g->spacing.z));
     if (!(g->direction == Mat3{})) r += ", turned";
+  }
+  if (in_patient_frame(d)) {
+    r += "\n  patient x to the left, y to the back, z to the head (LPS)";
+    if (auto* g = d.as<UniformGrid>()) {
+      const std::string l = axis_letters(g->direction);
+      r += fmt::format("; voxels run to {} {} {}", l[0], l[1], l[2]);
+    }
+    for (const auto& [key, value] : d.notes())
+      if (key == stored_space_note) r += "; in the file: " + printable(value);
   }
   if (d.time()) r += "\n  time    " + short_number(*d.time());
   r += "\n";

@@ -8,6 +8,7 @@
 #include "cli/cli.h"
 #include "cli/cpp_header.h"
 #include "pipeline/catalog/catalog.h"
+#include "scene/show/other_names.h"
 
 namespace sg {
 
@@ -62,7 +63,7 @@ int run_ops(const Options& o, Context&) {
     if (found) continue;
     std::vector<std::string> names;
     for (const CatalogEntry& e : all) names.push_back(e.name);
-    fail_usage(fmt::format("unknown operation '{}'", name), "sightglass ops", unknown_name_hint(name, names));
+    fail_usage(fmt::format("unknown operation '{}'", name), "sightglass ops", said_here(name, names));
   }
   return 0;
 }

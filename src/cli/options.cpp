@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "base/error.h"
+#include "base/file/file.h"
 #include "base/text/text.h"
 #include "io/file_series.h"
 #include "io/options.h"
@@ -148,7 +149,9 @@ void add_film(CLI::App& a, Options& o) {
 void add_size(CLI::App& a, Options& o) { a.add_option("--size", o.size, doc_of<PictureParams>("size")); }
 
 void add_output(CLI::App& a, Options& o) {
-  a.add_option("-o,--output", o.output, doc_of<FilmParams>("output") + " Still pictures: .png, .jpg, .webp.");
+  a.add_option("-o,--output", o.output,
+               doc_of<FilmParams>("output") +
+                   " Still pictures: .png, .jpg, .webp; '-': a PNG to standard output. {name} is the name of the first input.");
 }
 
 void add_picture(CLI::App& a, Options& o, RawText& raw) {
@@ -158,10 +161,14 @@ void add_picture(CLI::App& a, Options& o, RawText& raw) {
   a.add_option("--field", o.field, doc_of<ColoringParams>("field"));
   a.add_option("--map", o.map, doc_of<ColoringParams>("map"));
   a.add_option("--scale", o.scale, doc_of<ColoringParams>("scale"));
+  a.add_option("--legend", o.legend,
+               "'false' draws none; else words of the legend: \"title='Wall temperature' unit=K ticks=0,50,100 format=.1f\"");
   a.add_option("--camera", o.camera,
                "A named view ('top', 'front', 'iso', ...) or key=value words, e.g. 'azimuth=30 elevation=10 zoom=1.5'");
   add_size(a, o);
   a.add_option("--title", o.title, doc_of<PictureParams>("title"));
+  a.add_option("--layout", o.layout, doc_of<PictureParams>("layout"));
+  a.add_option("--views", o.views, doc_of<PictureParams>("views"));
   a.add_option("--background", o.background, doc_of<PictureParams>("background"));
   a.add_option("--picture", o.picture, "Further picture parameters as key=value (see: sightglass ops picture)")->allow_extra_args(false);
   add_film(a, o);
@@ -233,6 +240,7 @@ const char* const general_help =
     "Sightglass: trustworthy pictures from simulation and scanner data.\n\n"
     "  sightglass render IN... [-f 'OP key=value ...']... [--show 'surface|volume|lines|points|labels|glyphs|outline key=value ...']...\n"
     "             [--camera ...] [--size 1920x1080] [-o OUT.png]      render a picture; anything left open is chosen from the data\n"
+    "  sightglass IN                                                 the same\n"
     "  sightglass info IN [--json] [--quick] [--all-times]           describe what is in a file\n"
     "  sightglass convert IN [-f ...]... -o OUT.vtu                  filter data and write it to another file\n"
     "  sightglass run PIPELINE.yaml                                  run a pipeline file\n"
@@ -329,6 +337,20 @@ void declare(const Declaration& d, CLI::App& a, Options& o, RawText& raw) {
   d.declare(a, o, raw);
 }
 
+// `-f contour values=3` without quotes: the second word arrives as a file.
+void refuse_loose_word(const std::string& input, Command command) {
+  const size_t equals = input.find('=');
+  if (equals == input.npos || input.find('/') < equals || names_series(input) || file_exists(input)) return;
+  if (command != Command::render && command != Command::convert && command != Command::info) return;
+  fail_usage(fmt::format("there is no file '{}'", input), fmt::format("sightglass {}", word_of(command)),
+             fmt::format("words of an operation or a way to show stand in quotes with it, like -f 'contour {}'", input));
+}
+
+// `sightglass FILE ...` is a picture of it. A name with a dot or a slash is no command that was mistyped.
+bool names_input(const std::string& word) {
+  return word == "-" || (!word.starts_with('-') && (word.find_first_of("./") != word.npos || file_exists(word)));
+}
+
 }  // namespace
 
 WriteOptions writing(const Options& o, const Format& format) {
@@ -355,7 +377,9 @@ Options parse_options(int argc, char** argv) {
     std::printf("sightglass %s\n", SG_VERSION);
     return o;
   }
-  const auto command = value_of_word<Command>(first);
+  auto command = value_of_word<Command>(first);
+  int words_from = 2;
+  if (!command && names_input(first)) command = Command::render, words_from = 1;
   if (!command) {
     std::vector<std::string> names;
     for (const Declaration& d : declarations) names.emplace_back(word_of(d.command));
@@ -367,11 +391,11 @@ Options parse_options(int argc, char** argv) {
     return o;
   }
   RawText raw;
-  CLI::App a{"", first};
+  CLI::App a{"", std::string(word_of(*command))};
   for (const Declaration& d : declarations)
     if (d.command == *command) declare(d, a, o, raw);
   try {
-    std::vector<std::string> args(argv + 2, argv + argc);
+    std::vector<std::string> args(argv + words_from, argv + argc);
     std::reverse(args.begin(), args.end());  // CLI11 takes them from the back
     a.parse(std::move(args));
   } catch (const CLI::CallForHelp&) {
@@ -381,6 +405,9 @@ Options parse_options(int argc, char** argv) {
     fail_unknown(a, e);
   }
   finish_raw(raw, o);
+  for (std::string& input : o.inputs)
+    if (input == "-") input = "/dev/stdin";
+  for (const std::string& input : o.inputs) refuse_loose_word(input, *command);
   if (o.series && o.inputs.empty()) fail_usage("names no files", "--series", "write e.g. --series flow_*.vtk");
   if (o.series) o.inputs = {series_path(std::move(o.inputs), true)};
   o.command = *command;

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/file/file.h"
 #include "base/file/file_fence.h"
+#include "base/text/replace.h"
 #include "base/text/text.h"
 #include "base/text/utf8.h"
 #include "cli/chain.h"
@@ -30,8 +31,14 @@ namespace sg {
 
 namespace {
 
+constexpr std::string_view standard_output = "-";  // as the name of a picture
+
 // A picture that cannot be written is found out before any work is done.
 void check_output(const std::string& path) {
+  if (path == standard_output) {
+    if (::isatty(1)) fail_usage("standard output is a terminal, not a file", "-o -", "send it on: ... -o - > picture.png");
+    return;
+  }
   const std::string ext = extension_of(path);
   const auto& known = image_extensions();
   if (std::find(known.begin(), known.end(), ext) == known.end()) {
@@ -50,6 +57,12 @@ std::string stem_of(const std::string& path) {
   if (name.empty() || name[0] == '.') name = "series" + name;
   const size_t dot = name.rfind('.');
   return dot == std::string::npos || dot == 0 ? name : name.substr(0, dot);
+}
+
+// The name with the input's in the place of {name}.
+std::string output_name(std::string pattern, const std::string& stem) {
+  replace_all(pattern, "{name}", stem);
+  return pattern;
 }
 
 std::vector<Target> targets_of(const PipelineGraph& built) {
@@ -112,9 +125,17 @@ int render_to(PipelineFile& file, const std::string& output, PictureOptions opti
   }
   check_output(output);
   if (o.memory > 0) check_memory(build_graph(file), o);
+  const bool streamed = output == standard_output;
+  if (streamed && (o.progressive || o.within > 0))
+    fail_usage("drafts are replaced by better ones, but a stream cannot be", "-o -", "name a file");
   set_drafts(options, file, output, o);
   Picture picture = make_picture(file, options, context);
-  attach_recipe(picture.image, file, output);
+  attach_recipe(picture.image, file, streamed ? "picture.png" : output);
+  if (streamed) {
+    const std::vector<uint8_t> png = encode_png(picture.image);
+    if (std::fwrite(png.data(), 1, png.size(), stdout) != png.size()) fail_data("cannot write to standard output");
+    return 0;
+  }
   write_image(output, picture.image);
   if (!o.quiet) {
     std::string line = printable(output);
@@ -147,8 +168,8 @@ int render_into(PipelineFile file, const FilmParams& film, const PictureOptions&
                       short_number(written.times.front()), short_number(written.times.back())));
     return 0;
   }
-  if (word_value(o.film, "times") && !o.explain)
-    fail_usage("several times need several pictures, but the output name is a single one", "--times",
+  if ((word_value(o.film, "times") || film.turntable > 0) && !o.explain)
+    fail_usage("several pictures are asked for, but the output name is a single one", film.turntable > 0 ? "--turntable" : "--times",
                "number them with -o out_{n}.png, or make a film with -o film.webm");
   return render_to(file, film.output, options, o, context);
 }
@@ -161,9 +182,11 @@ int run_render(const Options& o, Context& context) {
   if (!o.field.empty()) options.coloring.push_back("field=" + o.field);
   if (!o.map.empty()) options.coloring.push_back("map=" + o.map);
   if (!o.scale.empty()) options.coloring.push_back("scale=" + o.scale);
+  for (const std::string& w : quoted_words(o.legend)) options.coloring.push_back(w.find('=') == w.npos ? "legend=" + w : "legend_" + w);
   FilmParams film;
   take_film_flags(o, film);
-  film.output = !o.output.empty() ? o.output : (o.inputs.empty() ? file.steps[0].operation : stem_of(o.inputs[0])) + ".png";
+  const char* unnamed = film.turntable > 0 ? "{name}.webm" : "{name}.png";
+  film.output = output_name(o.output.empty() ? unnamed : o.output, o.inputs.empty() ? file.steps[0].operation : stem_of(o.inputs[0]));
   if (is_film(film.output) && (o.progressive || o.within > 0))
     fail_usage("the pictures of a series are final from the start", o.progressive ? "--progressive" : "--within",
                "leave it out, or render a single picture");
@@ -179,7 +202,7 @@ int run_pipeline_file(const Options& o, Context& context) {
     std::erase_if(file.picture, [&](const std::string& w) { return is_film_word(w) && word_value(o.film, w.substr(0, w.find('='))); });
     take_film_words(file, film);
     take_film_flags(o, film);
-    film.output = o.output.empty() ? path_beside(path, film.output) : o.output;
+    film.output = o.output.empty() ? path_beside(path, film.output) : output_name(o.output, stem_of(path));
     render_into(std::move(file), film, {}, o, context);
   }
   return 0;

@@ -29,6 +29,8 @@ struct ColorScale {
   /// With labels that represent neighbouring bands of values: their borders, one more than labels; the legend shows these.
   std::vector<double> limits;
   std::string title, unit;
+  std::vector<double> ticks;  ///< numbers beside the legend's bar; none: round ones
+  std::string number_format;  ///< of these numbers, as formatted_number() takes it; "": the shortest that tells them apart
 
   /// Position on the map, may lie outside [0,1] (below, above), NaN for NaN and, on a log scale, for values <= 0.
   /// With labels: the middle of the label's band, NaN for any other value (up to rounding to float).

@@ -9,8 +9,10 @@
 #include <mutex>
 
 #include "base/error.h"
+#include "base/text/text.h"
 #include "color/map_construction.h"
 #include "color/map_files/colormap_file.h"
+#include "color/published_maps.h"
 
 namespace sg {
 namespace {
@@ -96,31 +98,46 @@ constexpr Entry entries[] = {
     {"rainbow", MapKind::unsafe, rainbow,
      "HSV hues from blue to red; its lightness rises and falls and shows edges that are not in the data."},
 };
-constexpr size_t count = std::size(entries);
+constexpr size_t own = std::size(entries);
+
+size_t count() { return own + published_maps().size(); }
+std::string_view name_of(size_t i) { return i < own ? entries[i].name : published_maps()[i - own].name; }
+
+// The map of that name, in any case; count() when there is none.
+size_t index_of(std::string_view name) {
+  size_t i = 0;
+  while (i < count() && to_lower(name_of(i)) != to_lower(name)) ++i;
+  return i;
+}
 
 /// What people know by other names, and the nearest of ours.
 constexpr std::pair<std::string_view, std::string_view> elsewhere[] = {
-    {"viridis", "sight"},    {"parula", "sight"},      {"cividis", "sight"}, {"inferno", "ember"},     {"magma", "ember"},
-    {"plasma", "ember"},     {"hot", "ember"},         {"fire", "ember"},    {"ocean", "ice"},         {"blues", "ice"},
-    {"grey", "gray"},        {"greys", "gray"},        {"binary", "gray"},   {"rdbu", "coolwarm"},     {"bwr", "coolwarm"},
-    {"seismic", "coolwarm"}, {"prgn", "purple_green"}, {"hsv", "phase"},     {"twilight", "phase"},    {"tab10", "labels"},
-    {"tab20", "labels"},     {"glasbey", "labels"},    {"turbo", "sight"},   {"spectral", "coolwarm"},
+    {"parula", "sight"},      {"hot", "ember"},  {"fire", "ember"},   {"ocean", "ice"},    {"blues", "ice"},
+    {"grey", "gray"},         {"greys", "gray"}, {"binary", "gray"},  {"bwr", "coolwarm"}, {"seismic", "coolwarm"},
+    {"prgn", "purple_green"}, {"hsv", "phase"},  {"tab10", "labels"}, {"tab20", "labels"}, {"glasbey", "labels"},
 };
 
 /// Each built on first use: a picture needs one map.
 const Colormap& built(size_t i) {
-  static std::array<std::once_flag, count> once;
-  static std::array<Colormap, count> maps;
-  std::call_once(once[i], [i] { maps[i] = {entries[i].name, entries[i].kind, entries[i].about, entries[i].make()}; });
+  static std::vector<std::once_flag> once(count());
+  static std::vector<Colormap> maps(count());
+  std::call_once(once[i], [i] {
+    if (i < own) {
+      maps[i] = {entries[i].name, entries[i].kind, entries[i].about, entries[i].make(), {}};
+    } else {
+      const PublishedMap& m = published_maps()[i - own];
+      maps[i] = {std::string(m.name), m.kind, std::string(m.about), colors_of(m), {}};
+    }
+  });
   return maps[i];
 }
 
 [[noreturn]] void fail_unknown(std::string_view name) {
   for (const auto& [theirs, ours] : elsewhere)
-    if (name == theirs || (name.size() > 2 && name.ends_with("_r") && name.substr(0, name.size() - 2) == theirs))
+    if (to_lower(name) == theirs || to_lower(name) == std::string(theirs) + "_r")
       fail_usage(fmt::format("colour map '{}' is not built in", name), "colour map", fmt::format("the nearest built-in one is '{}'", ours));
   std::vector<std::string> names;
-  for (const Entry& e : entries) names.push_back(e.name);
+  for (size_t i = 0; i < count(); ++i) names.emplace_back(name_of(i));
   const bool reversed = name.size() > 2 && name.ends_with("_r");
   fail_usage(fmt::format("colour map '{}' not found", name), "colour map",
              unknown_name_hint(reversed ? name.substr(0, name.size() - 2) : name, names) + "; or name a file: .cpt, .json:NAME, .css:NAME");
@@ -156,20 +173,18 @@ void reverse(Colormap& map) {
 const std::vector<Colormap>& colormaps() {
   static const std::vector<Colormap> all = [] {
     std::vector<Colormap> maps;
-    for (size_t i = 0; i < count; ++i) maps.push_back(built(i));
+    for (size_t i = 0; i < count(); ++i) maps.push_back(built(i));
     return maps;
   }();
   return all;
 }
 
 Colormap find_colormap(std::string_view name) {
-  for (size_t i = 0; i < count; ++i)
-    if (name == entries[i].name) return built(i);
-  const std::string_view base = name.size() > 2 && name.ends_with("_r") ? name.substr(0, name.size() - 2) : "";
-  for (size_t i = 0; i < count; ++i)
-    if (base == entries[i].name) {
+  if (const size_t i = index_of(name); i < count()) return built(i);
+  if (name.size() > 2 && (name.ends_with("_r") || name.ends_with("_R")))
+    if (const size_t i = index_of(name.substr(0, name.size() - 2)); i < count()) {
       Colormap map = built(i);
-      map.name = name;
+      map.name += "_r";
       map.about += " Reversed.";
       reverse(map);
       return map;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colour maps: t in [0,1] to sRGB. All are computed by our own code from a few control values; none is a copied table.
+// Colour maps: t in [0,1] to sRGB. Ours are computed from a few control values; others' come from published numbers (published_maps.h).
 #pragma once
 #include <string>
 #include <string_view>

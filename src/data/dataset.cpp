@@ -131,8 +131,10 @@ DatasetPtr single_dataset(const Data& data, std::string_view who) {
   DatasetPtr found;
   size_t n = 0;
   for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { found = d, ++n; });
-  if (n != 1)
-    fail_usage(n ? fmt::format("needs a single mesh but got {} parts", n) : std::string("needs a mesh but got none"), std::string(who));
+  if (n == 0) fail_usage("needs a mesh but got none", std::string(who));
+  if (n > 1)
+    fail_usage(fmt::format("needs a single mesh but got {} parts", n), std::string(who),
+               "join them: -f append; take one: -f 'extract part=NAME'; or write all: .vtm");
   return found;
 }
 

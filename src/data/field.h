@@ -20,8 +20,8 @@ enum class Role : uint8_t { none, scalars, vectors, normals, tcoords, tensors, c
 
 /// How a field should be shown, set by the operation that made it: a hint for choosing colours by default.
 struct FieldLook {
-  /// Which values are to be seen in a volume; fibres: the few that are not zero, as solid strands.
-  enum class Shows : uint8_t { any, high, low, fibres } shows = Shows::any;
+  /// Which values are to be seen in a volume; fibres: the few that are not zero, as solid strands; zero: the surface where it is 0.
+  enum class Shows : uint8_t { any, high, low, fibres, zero } shows = Shows::any;
   bool one_sided = false;  ///< its negative values are not a separate kind: use a sequential map
   bool two_sided = false;  ///< its signs are two kinds, however unequal their ranges
   bool tailed = false;     ///< derivatives: isolated extremes mean little

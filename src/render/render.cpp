@@ -97,13 +97,13 @@ Frame render(const Scene& scene, const Camera& camera, const RenderOptions& opti
   const auto prepared = prepare_scene(scene, context);
   const auto textures = n > 1 ? texture_scene(*prepared, make_projection(camera, options.width, options.height), context) : nullptr;
   Frame frame(options.width, options.height);
-  auto draw = [&](const Projection& projection, int samples, const std::vector<uint8_t>* wanted, Frame& into) {
-    const FragmentLists fragments = rasterize_prepared(*prepared, projection, samples, into, context, textures.get());
-    context.check();
-    composite_volumes(scene, projection, fragments, into, context, wanted, options.coarser);
+  auto draw = [&](const Projection& projection, int samples, const std::vector<uint8_t>* wanted, Frame& into, Context& part) {
+    const FragmentLists fragments = rasterize_prepared(*prepared, projection, samples, into, part, textures.get());
+    part.check();
+    composite_volumes(scene, projection, fragments, into, part, wanted, options.coarser);
   };
   if (n == 1) {
-    draw(whole, 1, nullptr, frame);
+    draw(whole, 1, nullptr, frame, context);
   } else {
     // One sample first, where that may do.
     constexpr int tile = 16;
@@ -111,7 +111,8 @@ Frame render(const Scene& scene, const Camera& camera, const RenderOptions& opti
     std::vector<uint8_t> uneven;
     Frame single(adaptive ? options.width : 1, adaptive ? options.height : 1);
     if (adaptive) {
-      draw(make_projection(camera, options.width, options.height), 1, nullptr, single);
+      Context part(context, 0, 0.2);
+      draw(make_projection(camera, options.width, options.height), 1, nullptr, single, part);
       uneven = uneven_squares(single, side, options.adaptive);
     }
     const size_t across = size_t(options.width + side - 1) / size_t(side);
@@ -122,7 +123,10 @@ Frame render(const Scene& scene, const Camera& camera, const RenderOptions& opti
       Frame band(whole.width, count * n);
       std::vector<uint8_t> wanted;
       if (adaptive) wanted.assign(uneven.begin() + ptrdiff_t(across * size_t(first / side)), uneven.end());
-      draw(band_of(whole, first * n, count * n), n, adaptive && side * n == tile ? &wanted : nullptr, band);
+      const auto drawn = [&](int row) { return (adaptive ? 0.2 : 0) + (adaptive ? 0.8 : 1) * row / options.height; };
+      Context part(context, drawn(first), drawn(first + count));
+      draw(band_of(whole, first * n, count * n), n, adaptive && side * n == tile ? &wanted : nullptr, band, part);
+      if (first + count < options.height) part.progress(1, "drawing");
       reduce(band, n, first, frame);
       for (int y = first; adaptive && y < first + count; ++y)
         for (int x = 0; x < options.width; ++x) {

@@ -9,20 +9,20 @@ namespace sg {
 
 namespace {
 
-struct ViewAxes {
+struct View {
   Vec3 direction, up;
 };
-ViewAxes axes_of(NamedView view) {
+View view_of(NamedView view, const ViewAxes& a) {
   switch (view) {
-    case NamedView::front: return {{0, -1, 0}, {0, 0, 1}};
-    case NamedView::back: return {{0, 1, 0}, {0, 0, 1}};
-    case NamedView::left: return {{-1, 0, 0}, {0, 0, 1}};
-    case NamedView::right: return {{1, 0, 0}, {0, 0, 1}};
-    case NamedView::top: return {{0, 0, 1}, {0, 1, 0}};
-    case NamedView::bottom: return {{0, 0, -1}, {0, 1, 0}};
+    case NamedView::front: return {a.front, a.up};
+    case NamedView::back: return {-a.front, a.up};
+    case NamedView::left: return {a.left, a.up};
+    case NamedView::right: return {-a.left, a.up};
+    case NamedView::top: return {a.up, a.above};
+    case NamedView::bottom: return {-a.up, a.above};
     case NamedView::iso: break;
   }
-  return {{1, -1, 0.8}, {0, 0, 1}};
+  return {a.front + cross(a.up, a.front) + a.up * 0.8, a.up};
 }
 
 // v turned about a unit axis (Rodrigues).
@@ -34,7 +34,9 @@ Vec3 turned(Vec3 v, Vec3 axis, double degrees) {
 }  // namespace
 
 void describe(Schema& s, CameraParams& p) {
-  s("view", p.view, "Named view; default: chosen from the data.");
+  s("view", p.view,
+    "Named view; default: chosen from the data. Front is towards -y and z is up; of graphics (.obj, .gltf...) front is towards +z and y is "
+    "up; of scans front is the patient's front, left the patient's left, and bottom the axial view from the feet.");
   s("position", p.position, "Position of the camera; default: far enough away to see everything.");
   s("target", p.target, "Point to look at; default: the centre of the data.");
   s("direction", p.direction, "Direction from the data towards the camera.");
@@ -57,8 +59,10 @@ std::vector<std::string> camera_words(const std::vector<std::string>& words) {
   return r;
 }
 
-Camera make_camera(const CameraParams& p, const Box3& box, double aspect, Vec3 direction, Vec3 up, bool parallel, double margin) {
-  if (p.view) direction = axes_of(*p.view).direction, up = axes_of(*p.view).up;
+Camera make_camera(const CameraParams& p, const Box3& box, double aspect, const CameraDefaults& defaults, double margin) {
+  Vec3 direction = defaults.direction, up = defaults.up;
+  bool parallel = defaults.parallel;
+  if (p.view) direction = view_of(*p.view, defaults.axes).direction, up = view_of(*p.view, defaults.axes).up;
   if (p.direction) direction = *p.direction;
   if (p.up) up = *p.up;
   if (p.position && p.target) direction = *p.position - *p.target;
@@ -68,7 +72,7 @@ Camera make_camera(const CameraParams& p, const Box3& box, double aspect, Vec3 d
   if (!(length(up) > 0)) fail_usage("up must not be 0,0,0", "camera up");
   if (length(cross(normalize(direction), normalize(up))) < 1e-9) {
     if (p.up) fail_usage("up is parallel to the line of sight", "camera up", "choose another up");
-    up = std::abs(normalize(direction).z) < 0.9 ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
+    up = defaults.axes.above;
   }
   up = normalize(up);
   if (p.azimuth != 0) direction = turned(direction, up, p.azimuth);

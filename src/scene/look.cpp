@@ -6,9 +6,11 @@
 #include "base/text/text.h"
 #include "data/cells/mesh_dimension.h"
 #include "data/lattice.h"
+#include "data/patient/patient_frame.h"
 #include "io/y_up.h"
 #include "scene/choose/scale.h"
 #include "scene/choose/shown_range.h"
+#include "scene/choose/telling_field.h"
 #include "scene/choose/volume_look.h"
 #include "scene/show/labels.h"
 #include "scene/show/outline.h"
@@ -33,8 +35,15 @@ std::string field_reason(const Dataset& d, const std::string& field) {
   return fmt::format("coloured by '{}'{}", f->name, f->components() > 1 ? " (magnitude)" : "");
 }
 
-// The normal of a surface whose points all lie in one plane, towards the usual viewer; nothing for others.
+// The normal of a surface whose points all lie in one plane, or of a grid of one layer, towards the usual viewer; nothing for others.
 std::optional<Vec3> plane_normal(const Dataset& d, Vec3 towards) {
+  if (const auto* g = d.as<UniformGrid>()) {
+    for (int a = 0; a < 3; ++a) {
+      const Vec3 normal = normalize(cross(g->direction.column((a + 1) % 3), g->direction.column((a + 2) % 3)));
+      if (g->dims[size_t(a)] == 1) return dot(normal, towards) < 0 ? -normal : normal;
+    }
+    return {};
+  }
   const auto* m = d.as<SurfaceMesh>();
   if (!m || m->polygons.size() == 0) return {};
   const CellsView c = cells_view(m->polygons);
@@ -52,6 +61,44 @@ std::optional<Vec3> plane_normal(const Dataset& d, Vec3 towards) {
   for (size_t i = 0; i < m->points.count(); ++i)
     if (std::abs(dot(m->points.at(i) - origin, normal)) > 1e-4 * size) return {};
   return dot(normal, towards) < 0 ? -normal : normal;
+}
+
+// A slice of a scan that lies across the frame, as the nearest of the three usual ones is seen.
+void face_slice(Vec3 normal, CameraDefaults& c) {
+  const Vec3 a{std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)};
+  const bool axial = a.z >= a.x && a.z >= a.y, coronal = !axial && a.y >= a.x;
+  const Vec3 usual = axial ? Vec3{0, 0, -1} : coronal ? Vec3{0, -1, 0} : Vec3{1, 0, 0};
+  c.direction = dot(normal, usual) < 0 ? -normal : normal;
+  c.up = axial ? Vec3{0, -1, 0} : Vec3{0, 0, 1};
+  c.parallel = true;
+}
+
+// Straight along an axis; a scan's slice is seen from the feet.
+void face_axis(int axis, bool patient, CameraDefaults& c) {
+  c.parallel = true;
+  if (axis == 2) c.direction = {0, 0, patient ? -1.0 : 1.0}, c.up = {0, patient ? -1.0 : 1.0, 0};
+  else c.direction = axis == 1 ? Vec3{0, -1, 0} : Vec3{1, 0, 0}, c.up = {0, 0, 1};
+}
+
+// Solid cells in a single thin layer, as programs that know no plane cells keep a case of two dimensions: all points lie in two planes
+// across one axis. -1: it is none.
+int axis_of_layer(const Dataset& d) {
+  constexpr size_t few = 16;  // cells of a block, which has two planes by chance
+  const Box3 b = d.bounds();
+  if (b.empty() || d.cell_count() < few || mesh_dimension(d) != 3) return -1;
+  const Vec3 s = b.size();
+  const int a = s.z <= s.x && s.z <= s.y ? 2 : s.y <= s.x ? 1 : 0;
+  if (s[a] > 0.5 * std::min(s[(a + 1) % 3], s[(a + 2) % 3])) return -1;
+  const Points* points = nullptr;
+  if (const auto* u = d.as<UnstructuredMesh>()) points = &u->points;
+  else if (const auto* c = d.as<CurvilinearGrid>()) points = &c->points;
+  if (!points) return is_lattice(d.mesh()) && lattice_dims(d.mesh())[size_t(a)] == 2 ? a : -1;
+  const double slack = 1e-5 * s[a];
+  for (size_t i = 0; i < points->count(); ++i) {
+    const double x = points->at(i)[a];
+    if (x > b.lo[a] + slack && x < b.hi[a] - slack) return -1;
+  }
+  return a;
 }
 
 bool has_polygons(const Dataset& d) {
@@ -96,31 +143,47 @@ void look_at_grid(const Dataset& d, const Field& f, Look& look) {
   look.reason = fmt::format("scalar field '{}' on a 3D grid: shown as a volume; {}", f.name, why);
 }
 
+// A signed distance, or another function whose zeros alone mean something: their surface.
+bool look_at_level_set(const Dataset& d, const Field& f, Look& look) {
+  if (f.look.shows != FieldLook::Shows::zero || f.components() != 1 || mesh_dimension(d) != 3) return false;
+  const Range r = d.range(f, 0);
+  if (!(r.lo < 0 && r.hi > 0)) return false;
+  look.filter = {"contour", "field=" + f.name, "values=0"};
+  add_show(look, SurfaceShow(), false);
+  look.reason = fmt::format("'{}' is a level set: shown as the surface where it is 0", f.name);
+  return true;
+}
+
 }  // namespace
 
-void choose_view(const Box3& b, const std::string& extension, Look& look) {
-  if (b.empty()) return;
-  const Vec3 s = b.size();
-  const double most = std::max({s.x, s.y, s.z});
+CameraDefaults choose_view(const Box3& b, const std::string& extension, bool patient) {
+  CameraDefaults c;
   const bool graphics = y_points_up(extension);
-  const double flat = 1e-6 * most;
-  if (s.z <= flat) {
-    look.direction = {0, 0, 1}, look.up = {0, 1, 0}, look.parallel = true;
-  } else if (s.y <= flat) {
-    look.direction = {0, -1, 0}, look.up = {0, 0, 1}, look.parallel = true;
-  } else if (s.x <= flat) {
-    look.direction = {1, 0, 0}, look.up = {0, 0, 1}, look.parallel = true;
-  } else if (graphics) {
-    look.direction = {0.55, 0.42, 1.0}, look.up = {0, 1, 0};
-  }
+  if (patient) c.axes = patient_view_axes, c.direction = {0.4, -1.0, 0.25};
+  else if (graphics) c.axes = graphics_axes, c.direction = {0.55, 0.42, 1.0}, c.up = {0, 1, 0};
+  if (b.empty()) return c;
+  const Vec3 s = b.size();
+  const double flat = 1e-6 * std::max({s.x, s.y, s.z});
+  for (int a = 2; a >= 0; --a)
+    if (s[a] <= flat) {
+      face_axis(a, patient, c);
+      break;
+    }
+  return c;
 }
 
 Look choose_look(const Dataset& d, const std::string& field, const std::string& extension) {
   Look look;
-  choose_view(d.bounds(), extension, look);
-  bool flat = look.parallel;
+  const bool patient = in_patient_frame(d);
+  look.camera = choose_view(d.bounds(), extension, patient);
+  bool flat = look.camera.parallel;
   if (!flat)
-    if (const auto normal = plane_normal(d, look.direction)) look.direction = *normal, flat = true;
+    if (const auto normal = plane_normal(d, look.camera.direction)) {
+      look.camera.direction = *normal, flat = true;
+      if (patient) face_slice(*normal, look.camera);
+    }
+  if (!flat && !patient)
+    if (const int axis = axis_of_layer(d); axis >= 0) face_axis(axis, patient, look.camera);
   if (d.point_count() == 0) {
     look.reason = "no points: the picture is empty";
     return look;
@@ -131,11 +194,14 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
   const Field* scalar = field.empty() ? d.fields().with_role(Role::scalars) : d.fields().find(field);
   if (!scalar || (field.empty() && scalar->components() != 1)) scalar = d.fields().active(1);
   if (!scalar) scalar = d.fields().active(0);
+  if (field.empty() && scalar && telling(d, *scalar) != Telling::values)
+    if (const Field* f = automatic_field(d); f && f->components() == 1) scalar = f;
   if (grid3 && field.empty())
     for (const Field& f : d.fields())
       if (f.look.shows == FieldLook::Shows::fibres && f.association == Association::point && f.components() == 1) scalar = &f;
   const bool colors = scalar && scalar->role == Role::colors && scalar->components() >= 3;
 
+  if (scalar && look_at_level_set(d, *scalar, look)) return look;
   if (grid3 && box_grid && scalar && !colors) {
     look_at_grid(d, *scalar, look);
     return look;
@@ -170,12 +236,11 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
     }
   SurfaceShow surface;
   const bool simulation = !d.as<SurfaceMesh>() && !is_lattice(d.mesh());
-  const bool bare_map = look.parallel && d.fields().empty() && d.as<SurfaceMesh>();  // only edges distinguish its parts
-  const bool show_edges = (simulation && d.cell_count() <= 12000) || (bare_map && d.cell_count() <= 2000);
+  const bool bare_map = look.camera.parallel && d.fields().empty() && d.as<SurfaceMesh>();  // only edges distinguish its parts
+  const bool show_edges = (simulation && d.cell_count() <= 100000) || (bare_map && d.cell_count() <= 2000);
   surface.edges = show_edges;
   const Field* colored = field.empty() ? automatic_field(d) : d.fields().find(field);
-  const bool filled_contours = flat && colored && colored->look.bands;
-  surface.lit = !((look.parallel && box_grid) || filled_contours);  // an image: its colours as they are
+  surface.lit = !((look.camera.parallel && box_grid) || (flat && colored));  // an image: its colours as they are
   add_show(look, surface, true);
   if (is_lattice(d.mesh()) && !box_grid) add_show(look, OutlineShow(), true);
   look.reason = fmt::format("{} mesh: its outer surface{}, {}", d.kind(), show_edges ? " with cell edges" : "", field_reason(d, field));

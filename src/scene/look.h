@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/context.h"
+#include "scene/camera_params.h"
 #include "scene/show/show.h"
 
 namespace sg {
@@ -17,9 +18,7 @@ struct Look {
     bool of_input = false;  ///< show the input, not the filter's result
   };
   std::vector<Show> shows;
-  Vec3 direction{0.75, -1.0, 0.55};  ///< from the data towards the viewer
-  Vec3 up{0, 0, 1};
-  bool parallel = false;
+  CameraDefaults camera;
   std::string reason;  ///< one line for the user: what was chosen and why
 };
 
@@ -27,7 +26,8 @@ struct Look {
 /// made for graphics have y up.
 Look choose_look(const Dataset& data, const std::string& field, const std::string& extension);
 
-/// Direction and up of a picture that looks along the thin axis of flat data, else the usual view.
-void choose_view(const Box3& bounds, const std::string& extension, Look& look);
+/// The view of flat data along its thin axis, of other data the usual one. `patient`: the data is in the patient frame; then slices are
+/// seen as radiologists see them (axial from the feet, coronal from the front, sagittal from the left) and bodies from the front.
+CameraDefaults choose_view(const Box3& bounds, const std::string& extension, bool patient);
 
 }  // namespace sg

@@ -77,6 +77,17 @@ TEST_CASE("text: exact numbers read back to the same bits") {
   CHECK(human_bytes(64ull << 20) == "64.0 MiB");
 }
 
+TEST_CASE("text: numbers in a stated format") {
+  CHECK(formatted_number(12.345, ".2f") == "12.35");
+  CHECK(formatted_number(12.345, "%.0f") == "12");
+  CHECK(formatted_number(12.345, ".3g") == "12.3");
+  CHECK(formatted_number(0.00012345, ".1e") == "1.2e-04");
+  CHECK(formatted_number(0.5, "g") == "0.5");
+  CHECK(formatted_number(-2, "f") == "-2.000000");
+  for (const char* wrong : {"", "%", ".", ".f", "..2f", ".2", ".2d", "2f", ".99f", ".-1f", "%s", "%n", ".2ff", "%%.2f"})
+    CHECK(test::error_of([&] { formatted_number(1, wrong); }).find("is not a format of numbers") != std::string::npos);
+}
+
 TEST_CASE("text: bytes, booleans, words and JSON") {
   CHECK(*parse_bytes("1.5K") == 1536);
   CHECK(*parse_bytes("7") == 7);

@@ -61,6 +61,7 @@ TEST_CASE("completion: ways to show, views and colour maps") {
   }
   CHECK(has(completed({"render", "--camera", ""}), "front"));
   CHECK(has(completed({"render", "--camera", "front azi"}), "front azimuth="));
+  CHECK(has(completed({"render", "--legend", "title=T un"}), "title=T unit="));
   CHECK(has(completed({"ops", ""}), "picture"));
 }
 

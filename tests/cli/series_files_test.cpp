@@ -98,6 +98,21 @@ TEST_CASE("chain: a further input is a file or a step by its name") {
   CHECK(nobody.err.find("there is no step 'imput' before it") != std::string::npos);
 }
 
+TEST_CASE("film: a series becomes a .gif, with the step in its title unless one is stated") {
+  const auto made = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> args = {"render", "flow_{n}.vti", "--times", "2:4", "--size", "160x120", "-o", "film.gif"};
+    args.insert(args.end(), more.begin(), more.end());
+    const Ran r = sightglass(args, files());
+    INFO(r.err);
+    REQUIRE(r.status == 0);
+    return std::string(MappedFile(files() + "film.gif").text());
+  };
+  const std::string told = made({}), same = made({"--title", "step {n} of {count}, t = {t}"}), plain = made({"--picture", "title="});
+  CHECK(told.substr(0, 6) == "GIF89a");
+  CHECK(told == same);
+  CHECK(told != plain);
+}
+
 TEST_CASE("film: a series becomes a .webm") {
   const Ran r = sightglass({"render", "flow_{n}.vti", "--times", "2:5", "--fps", "5", "--size", "161x121", "-o", "film.webm"}, files());
   INFO(r.err);
@@ -163,7 +178,8 @@ TEST_CASE("run: a pipeline file makes numbered pictures and films, of a file's s
   CHECK(sightglass({"run", "film.yaml", "-o", "still.png"}, f).status == 0);  // one picture of the same file
   CHECK(sightglass({"run", "film.yaml", "-o", "s_{n}.png", "--times", "0,1"}, f).out.find("2 pictures") != std::string::npos);
   // What cannot be.
-  CHECK(sightglass({"run", "film.yaml", "-o", "still.png", "--times", "0,1"}, f).err.find("several times need") != std::string::npos);
+  CHECK(sightglass({"run", "film.yaml", "-o", "still.png", "--times", "0,1"}, f).err.find("several pictures are asked for") !=
+        std::string::npos);
   write_file(f + "no.yaml", "sightglass: 1\nsteps:\n  b: {double_gyre: {time: 3}}\npicture: {times: \"0:2:3\", output: no.webm, fps: x}\n");
   CHECK(sightglass({"run", "no.yaml"}, f).err.find("'x' is not a number") != std::string::npos);
   CHECK(sightglass({"run", "no.yaml", "--fps", "3"}, f).err.find("already set") != std::string::npos);

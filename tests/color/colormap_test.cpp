@@ -5,6 +5,8 @@
 #include <set>
 
 #include "color/cie.h"
+#include "color/map_files/colormap_nodes.h"
+#include "color/published_maps.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -81,9 +83,9 @@ TEST_CASE("colour maps: cool-warm has Moreland's ends and middle") {
   is(map.at(0.5), 221, 221, 221, 1);
 }
 
-TEST_CASE("colour maps: diverging maps rise to the middle and fall after it, equally far") {
-  for (const Colormap& map : colormaps()) {
-    if (map.kind != MapKind::diverging) continue;
+TEST_CASE("colour maps: our diverging maps rise to the middle and fall after it, equally far") {
+  for (const char* name : {"coolwarm", "purple_green"}) {
+    const Colormap map = find_colormap(name);
     INFO(map.name);
     const LightnessReport r = lightness_report(map, 257);
     for (size_t i = 1; i <= 128; ++i) {
@@ -102,6 +104,34 @@ TEST_CASE("colour maps: the cyclic map closes, with even steps and little lightn
   CHECK(map.at(0) == map.at(1));
   CHECK(r.highest - r.lowest < 12);
   CHECK(r.steepest / r.flattest < 1.02);
+}
+
+TEST_CASE("colour maps: published maps have the colours and the lightness that their authors gave them") {
+  // Matplotlib's colours at 0, 128/255 and 1; Brewer's ends and middle.
+  struct {
+    const char* name;
+    Vec3 first, middle, last;
+  } known[] = {{"viridis", {68, 1, 84}, {33, 145, 140}, {253, 231, 37}},  {"magma", {0, 0, 4}, {183, 55, 121}, {252, 253, 191}},
+               {"inferno", {0, 0, 4}, {188, 55, 84}, {252, 255, 164}},    {"plasma", {13, 8, 135}, {204, 71, 120}, {240, 249, 33}},
+               {"cividis", {0, 34, 78}, {125, 124, 120}, {254, 232, 56}}, {"turbo", {48, 18, 59}, {164, 252, 60}, {122, 4, 3}},
+               {"RdBu", {103, 0, 31}, {247, 247, 247}, {5, 48, 97}}};
+  for (const auto& k : known) {
+    INFO(k.name);
+    const Colormap map = find_colormap(k.name);
+    CHECK(length(Vec3(map.at(0)) * 255 - k.first) < 1e-3);
+    CHECK(length(Vec3(map.at(1)) * 255 - k.last) < 1e-3);
+    CHECK(length(Vec3(map.at(128 / 255.0)) * 255 - k.middle) < 3);
+  }
+  for (const PublishedMap& m : published_maps()) {
+    INFO(m.name);
+    const Colormap map = find_colormap(m.name);
+    CHECK(map.kind == m.kind);
+    // Turbo's lightness alone is that of a diverging map; its hues have no two sides.
+    CHECK(kind_of_colors(map) == (m.name == "turbo" ? MapKind::diverging : m.kind));
+    CHECK(map.colors.size() * 6 == m.colors.size());
+  }
+  CHECK(find_colormap("rdbu_R").name == "RdBu_r");
+  CHECK(find_colormap("Viridis").name == "viridis");
 }
 
 TEST_CASE("colour maps: labels are far apart, the first eight most") {
@@ -146,7 +176,9 @@ TEST_CASE("colour maps: samples are hit exactly and t is clamped") {
 TEST_CASE("colour maps: unknown names get a suggestion") {
   CHECK(test::error_of([] { find_colormap("sihgt"); }).find("did you mean 'sight'") != std::string::npos);
   CHECK(test::error_of([] { find_colormap("cubehelx_r"); }).find("did you mean 'cubehelix'") != std::string::npos);
-  CHECK(test::error_of([] { find_colormap("viridis"); }).find("nearest built-in one is 'sight'") != std::string::npos);
+  CHECK(test::error_of([] { find_colormap("parula"); }).find("nearest built-in one is 'sight'") != std::string::npos);
+  CHECK(test::error_of([] { find_colormap("PRGn_r"); }).find("nearest built-in one is 'purple_green'") != std::string::npos);
+  CHECK(test::error_of([] { find_colormap("virdis"); }).find("did you mean 'viridis'") != std::string::npos);
   CHECK(test::error_of([] { find_colormap("zzz"); }).find("coolwarm") != std::string::npos);
   CHECK(test::error_of([] { find_colormap("_r"); }).find("not found") != std::string::npos);
 }

@@ -187,6 +187,23 @@ TEST_CASE("gltf: several primitives make a collection with names") {
   CHECK(steel.fields().require("BaseColorMultiplier").array.get(0, 1) == 0.25);
 }
 
+TEST_CASE("gltf: the base colour of a material is that of its cells, as sRGB, where points have none") {
+  OrderedJson j = square();
+  j["materials"] = {{{"pbrMetallicRoughness", {{"baseColorFactor", {1, 0.2158605, 0, 1}}}}}};
+  j["meshes"][0]["primitives"][0]["material"] = 0;
+  CHECK(!read(j)->fields().find("BaseColor"));
+  j["meshes"][0]["primitives"][0]["attributes"].erase("COLOR_0");
+  const DatasetPtr colored = read(j);
+  const Field& c = colored->fields().require("BaseColor", Association::cell);
+  CHECK(c.role == Role::colors);
+  CHECK(c.array.count() == 2);
+  CHECK(c.array.get(1, 0) == 255);
+  CHECK(c.array.get(1, 1) == 128);  // half of full scale, encoded
+  CHECK(c.array.get(1, 2) == 0);
+  j["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1, 0.5};
+  CHECK(!read(j)->fields().find("BaseColor"));
+}
+
 TEST_CASE("gltf: what is wrong is named") {
   auto with = [](auto change) {
     OrderedJson j = square();

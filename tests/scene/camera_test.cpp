@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/camera.h"
+#include "scene/camera_params.h"
 
 #include <algorithm>
 #include <cmath>
@@ -137,4 +137,41 @@ TEST_CASE("camera: mistakes are told") {
   CHECK(test::error_of([&] { fit_camera({}, {0, 0, 0}, {0, 1, 0}, 1); }).find("direction") != std::string::npos);
   CHECK(test::error_of([&] { fit_camera({}, {0, 0, 1}, {0, 1, 0}, 1, 0.5); }).find("margin") != std::string::npos);
   CHECK(test::error_of([&] { fit_camera({}, {0, 0, 1}, {0, 1, 0}, 1, 0.1, 0); }).find("view angle") != std::string::npos);
+}
+
+TEST_CASE("make_camera: named views of z up, of graphics and of a patient") {
+  const Box3 box = box_of({0, 0, 0}, {1, 1, 1});
+  const auto seen = [&](NamedView view, const ViewAxes& axes) {
+    CameraParams p;
+    p.view = view;
+    CameraDefaults defaults;
+    defaults.axes = axes;
+    const Camera c = make_camera(p, box, 1, defaults, 0.05);
+    const Projection q = make_projection(c, 100, 100);
+    return std::pair(-q.forward, q.up);
+  };
+  struct Want {
+    NamedView view;
+    ViewAxes axes;
+    Vec3 from, up;
+  };
+  const ViewAxes z_up;
+  const Want wants[] = {{NamedView::front, z_up, {0, -1, 0}, {0, 0, 1}},
+                        {NamedView::left, z_up, {-1, 0, 0}, {0, 0, 1}},
+                        {NamedView::top, z_up, {0, 0, 1}, {0, 1, 0}},
+                        {NamedView::bottom, z_up, {0, 0, -1}, {0, 1, 0}},
+                        {NamedView::front, graphics_axes, {0, 0, 1}, {0, 1, 0}},
+                        {NamedView::back, graphics_axes, {0, 0, -1}, {0, 1, 0}},
+                        {NamedView::right, graphics_axes, {1, 0, 0}, {0, 1, 0}},
+                        {NamedView::top, graphics_axes, {0, 1, 0}, {0, 0, -1}},
+                        {NamedView::front, patient_view_axes, {0, -1, 0}, {0, 0, 1}},  // from in front of the face
+                        {NamedView::left, patient_view_axes, {1, 0, 0}, {0, 0, 1}},    // the patient's left
+                        {NamedView::right, patient_view_axes, {-1, 0, 0}, {0, 0, 1}},
+                        {NamedView::bottom, patient_view_axes, {0, 0, -1}, {0, -1, 0}}};  // axial, from the feet, face above
+  for (const Want& w : wants) {
+    const auto [from, up] = seen(w.view, w.axes);
+    CAPTURE(int(w.view));
+    CHECK(length(from - w.from) < 1e-12);
+    CHECK(length(up - w.up) < 1e-12);
+  }
 }

@@ -162,6 +162,22 @@ std::string short_number(double v, int digits) {
   return std::string(b, r.ptr);
 }
 
+std::string formatted_number(double v, std::string_view format) {
+  std::string_view rest = format;
+  if (rest.starts_with('%')) rest.remove_prefix(1);
+  int precision = 6;
+  if (rest.starts_with('.')) {
+    const auto number = parse_int(rest.substr(1, rest.empty() ? 0 : rest.size() - 2));
+    precision = number ? int(std::clamp<int64_t>(*number, -1, 31)) : -1;
+    rest = rest.substr(rest.size() - 1);
+  }
+  if (precision < 0 || precision > 30 || (rest != "f" && rest != "g" && rest != "e"))
+    fail_usage(fmt::format("'{}' is not a format of numbers", format), "format", "write e.g. .2f, .3g or .1e");
+  return rest == "f"   ? fmt::format("{:.{}f}", v, precision)
+         : rest == "g" ? fmt::format("{:.{}g}", v, precision)
+                       : fmt::format("{:.{}e}", v, precision);
+}
+
 std::string human_bytes(uint64_t bytes) {
   const char* unit[] = {"B", "KiB", "MiB", "GiB", "TiB"};
   double v = double(bytes);

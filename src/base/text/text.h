@@ -31,6 +31,8 @@ std::optional<uint64_t> parse_bytes(std::string_view s);
 std::string exact_number(double v);
 /// At most `digits` significant digits, no trailing zeros ("0.333").
 std::string short_number(double v, int digits = 6);
+/// As printf writes "%.2f", "%.3g" or "%.1e"; the percent sign may be left out. Throws Error(usage) for another format.
+std::string formatted_number(double v, std::string_view format);
 /// "64.0 MiB".
 std::string human_bytes(uint64_t bytes);
 /// s as a JSON string with its quotes.

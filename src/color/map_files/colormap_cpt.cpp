@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "base/error.h"
 #include "base/text/text.h"
@@ -70,6 +71,29 @@ struct CptParser {
     }
   }
 
+  // Three numbers of "h-s-v" or "h/s/v".
+  std::optional<Vec3f> hsv(std::string_view text) const {
+    if (model != Model::hsv) return {};
+    double v[3];
+    size_t n = 0;
+    for (std::string_view part : split(text, text.find('/') == std::string_view::npos ? '-' : '/')) {
+      const auto x = parse_double(part);
+      if (!x || n == 3) return {};
+      v[n++] = *x;
+    }
+    if (n != 3) return {};
+    of_numbers(v, 3, text);
+    return Vec3f(float(v[0]), float(v[1]), float(v[2]));
+  }
+
+  // A colour as nodes hold it: a table in HSV keeps its hues, of which 0 and 360 are two.
+  Vec3f node_color(std::string_view text) const {
+    text = text.substr(0, text.find('@'));
+    if (model != Model::hsv) return color(text);
+    const auto numbers = hsv(text);
+    return numbers ? *numbers : rgb_to_hsv(color(text));
+  }
+
   // "r/g/b", "h-s-v", "c/m/y/k", a grey, "#rrggbb" or a name; "@" and a transparency behind it are left out.
   Vec3f color(std::string_view text) const {
     text = text.substr(0, text.find('@'));
@@ -128,7 +152,7 @@ struct CptParser {
 
   void slice(const std::vector<std::string_view>& w, std::vector<ColorNode>& nodes) const {
     const bool separate = w.size() >= 8;
-    auto color_at = [&](size_t i) { return separate ? color(fmt::format("{}/{}/{}", w[i], w[i + 1], w[i + 2])) : color(w[i]); };
+    auto color_at = [&](size_t i) { return separate ? node_color(fmt::format("{}/{}/{}", w[i], w[i + 1], w[i + 2])) : node_color(w[i]); };
     const size_t second = separate ? 4 : 2;
     const double z0 = number(w[0]), z1 = number(w[second]);
     if (!(z1 > z0)) fail(fmt::format("a slice runs from {} to {}", w[0], w[second]));
@@ -207,8 +231,9 @@ FileColormap parse_cpt(std::string_view text, const std::string& path) {
     for (ColorNode& n : flat) n.position = f.lo + (n.position - f.lo) * scale;
     nodes = std::move(flat);
   }
-  set_nodes(f.map, nodes, p.model == Model::hsv ? NodeSpace::hsv : NodeSpace::rgb);
-  if (f.map.kind != MapKind::cyclic) f.map.kind = f.hinge ? MapKind::diverging : kind_of_colors(f.map);
+  set_nodes(f.map, nodes, p.model == Model::hsv ? NodeSpace::hue : NodeSpace::rgb);
+  const MapKind kind = kind_of_colors(f.map);
+  if (f.map.kind != MapKind::cyclic || kind == MapKind::unsafe) f.map.kind = f.hinge ? MapKind::diverging : kind;
   return f;
 }
 

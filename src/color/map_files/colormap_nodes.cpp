@@ -13,18 +13,6 @@ namespace {
 
 constexpr double fine = 1024;  ///< samples of a path that is not a straight line in RGB
 
-struct Hsv {
-  double h, s, v;  ///< hue in turns
-};
-
-Hsv rgb_to_hsv(Vec3f c) {
-  const double hi = std::max({c.x, c.y, c.z}), lo = std::min({c.x, c.y, c.z}), d = hi - lo;
-  if (d <= 0) return {0, 0, hi};
-  double h = hi == c.x ? (c.y - c.z) / d : hi == c.y ? 2 + (c.z - c.x) / d : 4 + (c.x - c.y) / d;
-  if (h < 0) h += 6;
-  return {h / 6, d / hi, hi};
-}
-
 Vec3 msh_between(Vec3 lab1, Vec3 lab2, double t) {
   Msh a = lab_to_msh(lab1), b = lab_to_msh(lab2);
   double turn = std::abs(a.h - b.h);
@@ -52,14 +40,24 @@ Vec3f hsv_to_rgb(double hue, double s, double v) {
   return clamped({channel(5), channel(3), channel(1)});
 }
 
+Vec3f rgb_to_hsv(Vec3f color) {
+  const Vec3 c(color);
+  const double hi = std::max({c.x, c.y, c.z}), lo = std::min({c.x, c.y, c.z}), d = hi - lo;
+  if (d <= 0) return {0, 0, float(hi)};
+  double h = hi == c.x ? (c.y - c.z) / d : hi == c.y ? 2 + (c.z - c.x) / d : 4 + (c.x - c.y) / d;
+  if (h < 0) h += 6;
+  return {float(60 * h), float(d / hi), float(hi)};
+}
+
 Vec3f between(Vec3f a, Vec3f b, double t, NodeSpace space) {
   if (t <= 0) return a;
   if (t >= 1) return b;
   switch (space) {
-    case NodeSpace::rgb: break;
+    case NodeSpace::rgb:
+    case NodeSpace::hue: break;
     case NodeSpace::hsv: {
-      const Hsv p = rgb_to_hsv(a), q = rgb_to_hsv(b);
-      return hsv_to_rgb(360 * std::lerp(p.h, q.h, t), std::lerp(p.s, q.s, t), std::lerp(p.v, q.v, t));
+      const Vec3 c = lerp(Vec3(rgb_to_hsv(a)), Vec3(rgb_to_hsv(b)), t);
+      return hsv_to_rgb(c.x, c.y, c.z);
     }
     case NodeSpace::lab: return clamped(lab_to_srgb(lerp(srgb_to_lab(Vec3(a)), srgb_to_lab(Vec3(b)), t)));
     case NodeSpace::diverging: return clamped(lab_to_srgb(msh_between(srgb_to_lab(Vec3(a)), srgb_to_lab(Vec3(b)), t)));
@@ -84,7 +82,10 @@ void set_nodes(Colormap& map, std::span<const ColorNode> given, NodeSpace space)
     if (map.colors.size() == 1) map.colors.push_back(map.colors[0]);
     return;
   }
-  const auto add = [&](double position, Vec3f color) { map.positions.push_back((position - lo) / width), map.colors.push_back(color); };
+  const auto add = [&](double position, Vec3f c) {
+    map.positions.push_back((position - lo) / width);
+    map.colors.push_back(space == NodeSpace::hue ? hsv_to_rgb(c.x, c.y, c.z) : c);
+  };
   for (size_t k = 0; k < nodes.size(); ++k) {
     add(nodes[k].position, nodes[k].color);
     if (space == NodeSpace::rgb || k + 1 == nodes.size()) continue;
@@ -120,7 +121,13 @@ MapKind kind_of_colors(const Colormap& map) {
     return true;
   };
   if (runs(0, n - 1, 1) || runs(0, n - 1, -1)) return MapKind::sequential;
-  if (ciede2000(srgb_to_lab(Vec3(map.colors.front())), srgb_to_lab(Vec3(map.colors.back()))) < 3) return MapKind::cyclic;
+  if (ciede2000(srgb_to_lab(Vec3(map.colors.front())), srgb_to_lab(Vec3(map.colors.back()))) < 3) {
+    // Once up and once down, begun at the darkest colour; the last sample is the first.
+    std::rotate(l, std::min_element(l, l + n - 1), l + n - 1);
+    l[n - 1] = l[0];
+    const int top = int(std::max_element(l, l + n) - l);
+    return runs(0, top, 1) && runs(top, n - 1, -1) ? MapKind::cyclic : MapKind::unsafe;
+  }
   for (const double sign : {1.0, -1.0}) {
     int top = 0;
     for (int i = 1; i < n; ++i)

@@ -29,6 +29,15 @@ constexpr Known known[] = {
     {"lic", {.shows = Shows::fibres, .texture = true}},
     {"spot noise", {.texture = true}},
     {"band", {.bands = true}},
+    {"signed distance", {.shows = Shows::zero}},
+    {"signed_distance", {.shows = Shows::zero}},
+    {"SignedDistance", {.shows = Shows::zero}},
+    {"sdf", {.shows = Shows::zero}},
+    {"SDF", {.shows = Shows::zero}},
+    {"level set", {.shows = Shows::zero}},
+    {"level_set", {.shows = Shows::zero}},
+    {"levelset", {.shows = Shows::zero}},
+    {"LevelSet", {.shows = Shows::zero}},
 };
 
 bool has_limits_of_bands(const FieldSet& fields, const Field& band) {

@@ -22,9 +22,21 @@ Box3 over_all(const Box3& mine, const Context& context) {
 }
 
 Range range_over_all(const Dataset& data, const Field& field, int component, const Context& context) {
-  return over_all(data.range(field, component), context);
+  Range r = data.range(field, component);
+  if (context.parts)
+    for (const DatasetPtr& part : *context.parts) {
+      const Field* f = part->fields().find(field.name, field.association);
+      if (!f) f = part->fields().find(field.name);  // of cells, where ours was carried to the points
+      if (f && f->components() == field.components()) r.add(part->range(*f, component));
+    }
+  return over_all(r, context);
 }
 
-Box3 bounds_over_all(const Dataset& data, const Context& context) { return over_all(data.bounds(), context); }
+Box3 bounds_over_all(const Dataset& data, const Context& context) {
+  Box3 b = data.bounds();
+  if (context.parts)
+    for (const DatasetPtr& part : *context.parts) b.add(part->bounds());
+  return over_all(b, context);
+}
 
 }  // namespace sg

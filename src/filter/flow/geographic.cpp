@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "base/text/text.h"
 #include "data/cells/point_positions.h"
+#include "data/fields/axis_notes.h"
 #include "data/trusted.h"
 #include "filter/flow/line_mesh.h"
 
@@ -40,12 +41,6 @@ double metres_per_second(std::string_view unit) {
   return 0;
 }
 
-bool axis_in_degrees(const Dataset& d, char letter) {
-  for (const auto& [key, text] : d.notes())
-    if (key.size() > 5 && key[0] == letter && key.ends_with(" axis")) return text.find("degree") != text.npos;
-  return false;
-}
-
 bool on_a_globe(const Box3& b) { return b.lo.y >= -90.01 && b.hi.y <= 90.01 && b.hi.x - b.lo.x <= 360.01 * 2; }
 
 // f(latitude in degrees, velocity) for each point.
@@ -74,7 +69,8 @@ double cosine(double latitude) {
 }  // namespace
 
 bool needs_geographic(const Dataset& d, const Field& velocity) {
-  return axis_in_degrees(d, 'x') && axis_in_degrees(d, 'y') && metres_per_second(velocity.unit) > 0 && on_a_globe(d.bounds());
+  const auto x = axis_note(d, 0), y = axis_note(d, 1);
+  return x && x->in_degrees() && y && y->in_degrees() && metres_per_second(velocity.unit) > 0 && on_a_globe(d.bounds());
 }
 
 void warn_of_degrees(const Dataset& d, const Field& velocity, std::string_view who, Context& context) {

@@ -77,7 +77,7 @@ GlyphInstances make_instances(const DatasetPtr& data, const GlyphRule& rule, siz
   const size_t n = d.point_count();
   GlyphInstances out;
   const Box3& box = d.bounds();
-  if (!box.empty()) out.origin = box.center();
+  if (const Vec3 middle = box.center(); std::isfinite(middle.x + middle.y + middle.z)) out.origin = middle;
   float* matrices = nullptr;
   uint8_t* shapes = nullptr;
   out.matrices = Array::make<float>(n, 12, &matrices);

@@ -102,18 +102,23 @@ DatasetPtr inside(const DatasetPtr& data, const std::vector<Vec3>& places, size_
   return make_dataset(std::move(parts));
 }
 
-std::vector<Vec3> grid_places(const Dataset& data, const Box3& box, double h, size_t limit) {
+std::vector<Vec3> grid_places(const Dataset& data, const Box3& box, double h, size_t limit, const Context& context) {
   size_t n[3];
-  for (int a = 0; a < 3; ++a) n[a] = size_t(std::clamp(std::round(box.size()[a] / h), 1.0, 1e6));
+  for (int a = 0; a < 3; ++a) {
+    const double boxes = std::round(box.size()[a] / h);  // no number where sizes are beyond the largest one
+    n[a] = boxes >= 1 ? size_t(std::min(boxes, 1e6)) : 1;
+  }
   if (n[0] * n[1] > limit || n[0] * n[1] * n[2] > limit)
     fail_usage(fmt::format("a grid of {} x {} x {} positions is too fine", n[0], n[1], n[2]), "glyph_points", "use a larger spacing");
   check_places(data, double(n[0] * n[1] * n[2]));
   std::vector<Vec3> places;
   for (size_t k = 0; k < n[2]; ++k)
-    for (size_t j = 0; j < n[1]; ++j)
+    for (size_t j = 0; j < n[1]; ++j) {
+      context.check();
       for (size_t i = 0; i < n[0]; ++i)
         places.push_back(box.lo + box.size() * Vec3((double(i) + 0.5) / double(n[0]), (double(j) + 0.5) / double(n[1]),
                                                     (double(k) + 0.5) / double(n[2])));
+    }
   return places;
 }
 
@@ -123,15 +128,15 @@ DatasetPtr even_inside(const DatasetPtr& data, const GlyphPointsParams& p, const
   for (int a = 0; a < 3; ++a)
     if (box.size()[a] > 1e-6 * box.diagonal()) measure *= box.size()[a];
   double h = p.spacing > 0 ? p.spacing : std::pow(measure / double(p.count), 1.0 / axes);
-  const size_t limit = std::max<size_t>(size_t(p.count) * 64, 20'000'000);
-  DatasetPtr out = inside(data, grid_places(*data, box, h, limit), SIZE_MAX, context);
+  const size_t limit = std::max<size_t>(size_t(p.count) * 64, p.spacing > 0 ? 20'000'000 : 1'000'000);
+  DatasetPtr out = inside(data, grid_places(*data, box, h, limit, context), SIZE_MAX, context);
   // The mesh may fill a part of its box only.
   for (int round = 0; round < 2 && p.spacing == 0 && double(out->point_count()) < 0.75 * double(p.count) && out->point_count() > 0;
        ++round) {
     h *= std::pow(double(out->point_count()) / double(p.count), 1.0 / axes);
     const double boxes = measure / std::pow(h, axes);
     if (boxes > double(limit)) break;
-    out = inside(data, grid_places(*data, box, h, limit), SIZE_MAX, context);
+    out = inside(data, grid_places(*data, box, h, limit, context), SIZE_MAX, context);
   }
   return out;
 }

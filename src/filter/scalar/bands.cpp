@@ -12,6 +12,7 @@
 #include "data/field_ops.h"
 #include "data/fields/known_looks.h"
 #include "data/ranks/over_all.h"
+#include "filter/field/automatic_values.h"
 #include "filter/scalar/contour/cells/cell_cases.h"
 #include "filter/surface/polygons.h"
 
@@ -158,8 +159,7 @@ std::vector<double> borders(const Range& r, const BandsParams& p) {
   std::vector<double> v = p.values;
   for (double x : v)
     if (!std::isfinite(x)) fail_usage(fmt::format("{} is not a valid band limit", x), "bands values", "give finite numbers");
-  if (v.empty())
-    for (int k = 1; k < p.count && !r.empty(); ++k) v.push_back(r.lo + (r.hi - r.lo) * k / p.count);
+  if (v.empty()) v = even_values(r, p.count - 1);
   std::sort(v.begin(), v.end());
   v.erase(std::unique(v.begin(), v.end()), v.end());
   return v;

@@ -8,6 +8,7 @@
 #include "data/field_ops.h"
 #include "data/lattice.h"
 #include "data/ranks/over_all.h"
+#include "filter/field/automatic_values.h"
 #include "filter/scalar/contour/contour.h"
 #include "filter/surface/polygons.h"
 
@@ -169,8 +170,7 @@ DatasetPtr isolines(const DatasetPtr& in, const IsolinesParams& p, Context& ctx)
     if (p.component.size() == 1 && p.component[0] >= 'x' && p.component[0] <= 'z') component = p.component[0] - 'x';
     else if (p.component.size() == 1 && p.component[0] >= '0' && p.component[0] <= '9') component = p.component[0] - '0';
     if (f && f->association == Association::point && component < f->components())
-      if (const Range r = range_over_all(*s, *f, component, ctx); !r.empty())
-        for (int k = 1; k <= p.count; ++k) c.values.push_back(r.lo + (r.hi - r.lo) * k / (p.count + 1));
+      c.values = even_values(range_over_all(*s, *f, component, ctx), p.count);
   }
   DatasetParts lines = contour(s, c, ctx)->parts();
   const auto& mesh = std::get<SurfaceMesh>(lines.mesh);

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/text/text.h"
 #include "data/field_ops.h"
+#include "data/fields/label_names.h"
 
 namespace sg {
 
@@ -66,15 +67,21 @@ DatasetPtr table_to_points(const Data& in, const TableToPointsParams& p, Context
   if (rows.size() < n) ctx.info(fmt::format("table_to_points: {} rows have no coordinates", n - rows.size()));
   PointCloud cloud;
   cloud.points.xyz = Array::from_vector(std::move(xyz), 3);
-  FieldSet fields;
+  DatasetParts parts;
   for (size_t i = 0; i < t.columns.size(); ++i) {
     Field f = t.columns[i];
+    if (const std::vector<std::string>* words = t.words(i)) {
+      LabelNames names(f.name);
+      for (size_t k = 0; k < words->size(); ++k) names.add(int64_t(k), (*words)[k]);
+      if (!names.empty()) parts.notes.push_back(names.note());
+    }
     f.association = Association::point;
     f.array = gather(f.array, rows);
     f.role = t.words(i) ? Role::labels : int(i) == at[0] || int(i) == at[1] || int(i) == at[2] ? Role::none : Role::scalars;
-    fields.add(std::move(f));
+    parts.fields.add(std::move(f));
   }
-  return make_dataset(Mesh(cloud), std::move(fields));
+  parts.mesh = std::move(cloud);
+  return make_dataset(std::move(parts));
 }
 
 }  // namespace sg

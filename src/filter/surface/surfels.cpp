@@ -11,7 +11,7 @@
 #include "base/text/text.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
-#include "data/ranks/over_all.h"
+#include "filter/field/automatic_values.h"
 #include "filter/scalar/contour/lattice/contour_surfels.h"
 
 namespace sg {
@@ -206,8 +206,7 @@ DatasetPtr surfels(const DatasetPtr& in, const SurfelsParams& p, Context& ctx) {
   if (std::min({n[0], n[1], n[2]}) < 2)
     fail_usage(fmt::format("a grid of {}x{}x{} points has no solid cells", n[0], n[1], n[2]), "surfels", "use isolines for flat grids");
   const Field& field = surfel_field(*in, p.field);
-  const Range range = p.value ? Range() : range_over_all(*in, field, -1, ctx);
-  const double value = p.value ? *p.value : range.empty() ? 0 : 0.5 * (range.lo + range.hi);
+  const double value = p.value ? *p.value : middle_value(*in, field, -1, "surfels", ctx);
   if (!std::isfinite(value)) fail_usage(fmt::format("{} is not a valid isovalue", value), "surfels value", "give a finite number");
   const Lattice lattice(in->mesh());
   const Array cell_ghost = in->cell_ghost().empty() ? Array() : in->cell_ghost().made_packed();

@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/text/text.h"
+#include "io/plausible.h"
 
 namespace sg {
 
@@ -142,6 +143,20 @@ void unpack(Codec codec, std::span<const std::byte> in, Window window, std::byte
     if (begin > got || got - begin < need) too_short(got);
     std::memcpy(out, memory.get() + begin, need);
     return;
+  }
+}
+
+std::vector<std::byte> inflate_raw(std::span<const std::byte> in, const std::string& where) {
+  Decompressor d;
+  for (size_t room = 4 * in.size() + (1 << 16);; room *= 4) {
+    check_plausible(room, in.size(), where);
+    std::vector<std::byte> out(room);
+    size_t used = 0, made = 0;
+    const auto r = libdeflate_deflate_decompress_ex(d.d, in.data(), in.size(), out.data(), room, &used, &made);
+    if (r == LIBDEFLATE_INSUFFICIENT_SPACE) continue;
+    if (r != LIBDEFLATE_SUCCESS) fail_data("the deflated data is damaged or truncated", where);
+    out.resize(made);
+    return out;
   }
 }
 

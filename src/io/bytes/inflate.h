@@ -25,6 +25,10 @@ void unpack(Codec codec, std::span<const std::byte> in, Window window, std::byte
 /// Throws Error(data) when `packed` bytes can by no means unpack to `need` bytes: a check before memory is allocated.
 void check_ratio(Codec codec, size_t packed, size_t need, const std::string& where);
 
+/// All of a raw deflate stream (RFC 1951); bytes behind it are ignored. Throws Error(data) naming `where` where it is damaged or holds more
+/// than check_plausible() lets pass.
+std::vector<std::byte> inflate_raw(std::span<const std::byte> in, const std::string& where);
+
 /// One gzip member.
 std::vector<std::byte> pack_gzip(std::span<const std::byte> in);
 

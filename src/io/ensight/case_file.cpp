@@ -34,7 +34,7 @@ class Parser {
   CaseFile run() {
     std::string_view rest = file_.text();
     std::string section;
-    bool gold = false;
+    bool typed = false;
     for (number_ = 1; !rest.empty(); ++number_) {
       const size_t end = std::min(rest.find('\n'), rest.size());
       std::string_view line = trim(rest.substr(0, end));
@@ -50,7 +50,7 @@ class Parser {
       const std::string key = keyed ? to_lower(trim(line.substr(0, colon))) : std::string();
       const std::string_view value = trim(keyed ? line.substr(colon + 1) : line);
       if (section == "FORMAT") {
-        if (key == "type") gold = check_type(value);
+        if (key == "type") case_.gold = is_gold(value), typed = true;
       } else if (section == "GEOMETRY") {
         geometry(key, value);
       } else if (section == "VARIABLE") {
@@ -66,7 +66,7 @@ class Parser {
       }
     }
     number_ = 0;
-    if (!gold) fail("does not state its type", "expected a section FORMAT with 'type: ensight gold'");
+    if (!typed) fail("does not state its type", "expected a section FORMAT with 'type: ensight gold' or 'type: ensight'");
     finish();
     return std::move(case_);
   }
@@ -76,12 +76,12 @@ class Parser {
     fail_data(number_ ? fmt::format("line {}: {}", number_, problem) : problem, case_.path, hint);
   }
 
-  bool check_type(std::string_view value) const {
+  bool is_gold(std::string_view value) const {
     std::string type;
     for (std::string_view w : words(value)) type += (type.empty() ? "" : " ") + to_lower(w);
-    if (type != "ensight gold")
-      fail(fmt::format("type '{}' is not supported", value), "only EnSight Gold is supported: 'type: ensight gold'");
-    return true;
+    if (type != "ensight gold" && type != "ensight")
+      fail(fmt::format("type '{}' is not supported", value), "EnSight Gold ('type: ensight gold') and EnSight 6 ('type: ensight') are");
+    return type == "ensight gold";
   }
 
   // Leading whole numbers, as many as leave `needed` words: time set, file set.

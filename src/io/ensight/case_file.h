@@ -43,6 +43,7 @@ struct Variable {
 
 struct CaseFile {
   std::string path;
+  bool gold = true;  ///< false: EnSight 6, whose geometry and variables are laid out otherwise
   FileRef model;
   std::optional<FileRef> measured;
   std::vector<Variable> variables;

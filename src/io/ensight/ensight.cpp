@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// EnSight Gold: a case file, a geometry and one file per variable. Source: EnSight User Manual, "EnSight Gold Casefile Format".
+// EnSight Gold and EnSight 6: a case file, a geometry and one file per variable. Source: EnSight User Manual, "EnSight Gold Casefile
+// Format".
 #include <fmt/core.h>
 
 #include <algorithm>
 
 #include "base/text/text.h"
+#include "io/ensight/ensight6.h"
 #include "io/ensight/variables.h"
 #include "io/formats.h"
 #include "io/mesh/unread.h"
@@ -76,10 +78,11 @@ void add_variable(const CaseFile& c, const Variable& v, std::optional<double> ti
     if (!g.parts.empty() && g.parts.back().number == -1) add_measured_variable(s, v, g.parts.back());
     return;
   }
-  read_variable(s, v, v.complex ? v.name + "_r" : v.name, g, look_only);
+  const auto read = c.gold ? read_variable : read_variable6;
+  read(s, v, v.complex ? v.name + "_r" : v.name, g, look_only);
   if (!v.complex) return;
   Stream im = open_at(c, v.imaginary, time, model.form());
-  read_variable(im, v, v.name + "_i", g, look_only);
+  read(im, v, v.name + "_i", g, look_only);
   if (v.kind == VariableKind::scalar) join_complex(v.name, v.association, g);
 }
 
@@ -115,7 +118,7 @@ Data read_ensight(const std::string& path, const ReadOptions& options, Context& 
   else if (options.step > 0) fail_usage(fmt::format("there is no time step {}", options.step), path, "it has one");
 
   Stream s = open_at(c, c.model, time, {});
-  Geometry g = read_geometry(s, context);
+  Geometry g = c.gold ? read_geometry(s, context) : read_geometry6(s, context);
   if (c.measured) add_measured(c, time, g);
   size_t done = 0;
   for (const Variable& v : c.variables) {

@@ -15,12 +15,6 @@ namespace sg::ensight {
 
 namespace {
 
-/// EnSight's elements. Node order is that of our cells but for bar3, whose middle node is the second.
-struct Element {
-  std::string_view name;
-  CellType type;
-  int nodes;  // -1 nsided, -2 nfaced
-};
 constexpr Element elements[] = {
     {"point", CellType::vertex, 1},
     {"bar2", CellType::line, 2},
@@ -40,15 +34,6 @@ constexpr Element elements[] = {
     {"nsided", CellType::polygon, -1},
     {"nfaced", CellType::polyhedron, -2},
 };
-
-const Element* find_element(std::string_view line) {
-  const auto w = words(line);
-  if (w.empty()) return nullptr;
-  const std::string name = to_lower(w[0]);
-  for (const Element& e : elements)
-    if (name == e.name || (name.starts_with("g_") && name.substr(2) == e.name)) return &e;
-  return nullptr;
-}
 
 /// Collects the cells of an unstructured part, section by section.
 class CellCollector {
@@ -196,13 +181,7 @@ class Reader {
 
  private:
   bool listed(const std::string& what) {
-    const std::string k = to_lower(s_.keyword(what));
-    if (!k.starts_with(what))
-      s_.fail(fmt::format("found '{}' where '{} ...' was expected", k.substr(0, 40), what), "is this an EnSight Gold geometry?");
-    const auto w = words(k);
-    const std::string_view how = w.back();
-    if (how != "off" && how != "given" && how != "assign" && how != "ignore")
-      s_.fail(fmt::format("'{}' does not state the {}s", k, what), "use off, given, assign or ignore");
+    const std::string how = stated_ids(s_, what);
     return how == "given" || how == "ignore";
   }
 
@@ -324,9 +303,27 @@ class Reader {
 
 }  // namespace
 
+std::string stated_ids(Stream& s, const std::string& what) {
+  const std::string k = to_lower(s.keyword(what));
+  if (!k.starts_with(what))
+    s.fail(fmt::format("found '{}' where '{} ...' was expected", k.substr(0, 40), what),
+           "is this a geometry of the type that the case states?");
+  const std::string how(words(k).back());
+  if (how != "off" && how != "given" && how != "assign" && how != "ignore")
+    s.fail(fmt::format("'{}' does not state the {}s", k, what), "use off, given, assign or ignore");
+  return how;
+}
+
 Geometry read_geometry(Stream& s, Context& context) { return Reader(s, context).run(); }
 
-bool is_element_type(std::string_view line) { return find_element(line) != nullptr; }
+const Element* find_element(std::string_view line) {
+  const auto w = words(line);
+  if (w.empty()) return nullptr;
+  const std::string name = to_lower(w[0]);
+  for (const Element& e : elements)
+    if (name == e.name || (name.starts_with("g_") && name.substr(2) == e.name)) return &e;
+  return nullptr;
+}
 
 Array interleaved(const Array& x, const Array& y, const Array& z) {
   float* out = nullptr;

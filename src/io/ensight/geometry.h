@@ -16,6 +16,18 @@ struct Section {
   size_t first = 0, count = 0;
 };
 
+/// An element type. Node order is that of our cells but for bar3, whose middle node is the second.
+struct Element {
+  std::string_view name;
+  CellType type;
+  int nodes;  ///< -1 nsided, -2 nfaced
+};
+/// The type that a line names ("tria3", "g_tria3 partial"); null for other lines.
+const Element* find_element(std::string_view line);
+
+/// How a file states the numbers of its nodes or elements in the line "node id given": off, given, assign or ignore.
+std::string stated_ids(Stream& s, const std::string& what);
+
 struct Part {
   int number = 0;
   std::string name;
@@ -23,18 +35,17 @@ struct Part {
   bool structured = false;
   size_t points = 0, cells = 0;
   std::vector<Section> sections;  ///< none for structured parts
+  std::vector<int64_t> nodes;     ///< EnSight 6, unstructured: the file's node of each point
 };
 
 struct Geometry {
   std::vector<Part> parts;
   std::string description;
+  size_t nodes = 0;  ///< EnSight 6: of all unstructured parts together
 };
 
 /// From the begin of a geometry file or of a step in it. Throws Error(data).
 Geometry read_geometry(Stream& s, Context& context);
-
-/// Whether a line names an element type ("tria3", "g_tria3 partial").
-bool is_element_type(std::string_view line);
 
 /// Three arrays as one of three components.
 Array interleaved(const Array& x, const Array& y, const Array& z);

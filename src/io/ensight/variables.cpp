@@ -15,12 +15,6 @@ namespace {
 
 constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
 
-// EnSight lists a symmetric tensor as 11 22 33 12 13 23, we as xx yy zz xy yz xz.
-int component_of(VariableKind kind, int listed) {
-  constexpr int symm[] = {0, 1, 2, 3, 5, 4};
-  return kind == VariableKind::tensor_symm ? symm[listed] : listed;
-}
-
 /// The values of one part as they come in.
 class Values {
  public:
@@ -96,7 +90,7 @@ void read_elements(Stream& s, const Variable& v, const Part& part, Values& value
   std::vector<bool> done(part.sections.size());
   for (;;) {
     const std::string line = to_lower(s.peek());
-    if (line.empty() || !is_element_type(line)) return;
+    if (line.empty() || !find_element(line)) return;
     s.keyword("an element type");
     const std::string_view type = words(line)[0];
     size_t k = 0;
@@ -108,6 +102,11 @@ void read_elements(Stream& s, const Variable& v, const Part& part, Values& value
 }
 
 }  // namespace
+
+int component_of(VariableKind kind, int listed) {
+  constexpr int symm[] = {0, 1, 2, 3, 5, 4};
+  return kind == VariableKind::tensor_symm ? symm[listed] : listed;
+}
 
 void read_variable(Stream& s, const Variable& v, const std::string& name, Geometry& geometry, bool look_only) {
   if (s.peek() == "BEGIN TIME STEP") s.keyword("BEGIN TIME STEP");

@@ -6,6 +6,9 @@
 
 namespace sg::ensight {
 
+/// Our component of a listed one: EnSight lists a symmetric tensor as 11 22 33 12 13 23, we as xx yy zz xy yz xz.
+int component_of(VariableKind kind, int listed);
+
 /// Reads one file (one step of it) and adds a field of that name, real or imaginary part, to each part that the file has values
 /// for. What the file leaves out (undef, partial, missing elements) is NaN. With `look_only` values are skipped and placeholders are added.
 /// Throws Error(data).

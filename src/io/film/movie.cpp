@@ -12,11 +12,12 @@ namespace sg {
 
 namespace {
 
+enum class Encoder { plugin, gif, ffmpeg };
 struct MovieFormat {
   std::string_view extension;
-  bool in_plugin;  // encoded here; else by ffmpeg
+  Encoder encoder;
 };
-constexpr MovieFormat movie_formats[] = {{"webm", true}, {"mp4", false}};
+constexpr MovieFormat movie_formats[] = {{"webm", Encoder::plugin}, {"gif", Encoder::gif}, {"mp4", Encoder::ffmpeg}};
 
 const MovieFormat* movie_format(const std::string& path) {
   const std::string extension = extension_of(path);
@@ -43,9 +44,9 @@ Image in_rgb(const Image& image) {
 bool is_movie(const std::string& path) { return movie_format(path) != nullptr; }
 
 MovieWriter::MovieWriter(std::string path, MovieSettings settings) : path_(std::move(path)), settings_(settings) {
-  if (!is_movie(path_)) fail_usage(fmt::format("'{}' is not a film format", extension_of(path_)), path_, "supported: .webm .mp4");
+  if (!is_movie(path_)) fail_usage(fmt::format("'{}' is not a film format", extension_of(path_)), path_, "supported: .webm .gif .mp4");
   AtomicFile probe(path_);  // detects a film that cannot be written before it is drawn
-  if (movie_format(path_)->in_plugin) plugin_format("vpx", "webm");
+  if (movie_format(path_)->encoder == Encoder::plugin) plugin_format("vpx", "webm");
 }
 
 MovieWriter::~MovieWriter() = default;
@@ -54,18 +55,22 @@ void MovieWriter::add(const Image& picture) {
   if (width_ == 0) {
     width_ = picture.width, height_ = picture.height;
     settings_.width = (width_ + 1) / 2 * 2, settings_.height = (height_ + 1) / 2 * 2;
-    if (movie_format(path_)->in_plugin) encoder_ = plugin_format("vpx", "webm").movie(settings_);
+    const Encoder encoder = movie_format(path_)->encoder;
+    if (encoder == Encoder::plugin) encoder_ = plugin_format("vpx", "webm").movie(settings_);
+    else if (encoder == Encoder::gif) gif_ = std::make_unique<GifWriter>(width_, height_, settings_.fps);
     else other_ = std::make_unique<FfmpegPipe>(path_, settings_.width, settings_.height, settings_.fps);
   }
   if (picture.width != width_ || picture.height != height_)
     fail_usage(fmt::format("a picture of {} x {} pixels follows one of {} x {}", picture.width, picture.height, width_, height_), path_,
                "all pictures of a film must have the same size");
+  if (gif_) return gif_->add(in_rgb(picture));
   if (other_) return other_->add(in_rgb(picture));
   for (VideoFrame& f : encoder_(&picture)) frames_.push_back(std::move(f));
 }
 
 void MovieWriter::finish() {
   if (width_ == 0) fail_usage("has no pictures", path_);
+  if (gif_) return write_file(path_, gif_->finish());
   if (other_) return other_->finish();
   for (VideoFrame& f : encoder_(nullptr)) frames_.push_back(std::move(f));
   WebmTrack track;

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/parallel.h"
+#include "image/image.h"
 #include "io/formats.h"
 #include "io/gltf/gltf_document.h"
 
@@ -183,8 +184,20 @@ struct Reader {
       if (wanted("BaseColorMultiplier"))
         r.fields.add({"BaseColorMultiplier", Association::whole, Array::from_vector(std::vector<float>(c, c + 4), 4), "", Role::none});
     }
+    const size_t cells = mesh.vertices.size() + mesh.lines.size() + mesh.polygons.size();
+    if (p.material >= 0 && !r.fields.with_role(Role::colors)) add_base_color(doc.materials[size_t(p.material)], cells, r.fields);
     r.mesh = std::move(mesh);
     return make_dataset(std::move(r));
+  }
+
+  // The colour of the material on all cells, unless it is the white that a picture is multiplied with.
+  void add_base_color(const GltfMaterial& material, size_t cells, FieldSet& fields) const {
+    const float* c = material.base_color;
+    if (!wanted("BaseColor") || (c[0] == 1 && c[1] == 1 && c[2] == 1)) return;
+    uint8_t* out = nullptr;
+    Array colors = Array::make<uint8_t>(cells, 3, &out);
+    for (size_t i = 0; i < 3 * cells; ++i) out[i] = uint8_t(std::clamp(srgb_encode(c[i % 3]), 0.0f, 1.0f) * 255 + 0.5f);
+    fields.add({"BaseColor", Association::cell, std::move(colors), "", Role::colors});
   }
 
   void add_mesh(int number, const Mat4& m, const std::string& node_name) {

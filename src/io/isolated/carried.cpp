@@ -42,7 +42,7 @@ void CarryWriter::array(const Array& a) {
 
 void CarryWriter::field(const Field& f) {
   string(f.name), string(f.unit);
-  number(uint8_t(f.association)), number(uint8_t(f.role));
+  number(uint8_t(f.association)), number(uint8_t(f.role)), number(uint8_t(f.look.shows));  // all that readers state of looks
   array(f.array);
 }
 
@@ -157,6 +157,7 @@ Field CarryReader::field() {
   Field f;
   f.name = string(), f.unit = string();
   f.association = one_of(Association::whole), f.role = one_of(Role::labels);
+  f.look.shows = one_of(FieldLook::Shows::zero);
   f.array = array();
   return f;
 }

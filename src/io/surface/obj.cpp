@@ -6,12 +6,15 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 
 #include "base/file/file.h"
 #include "base/parallel.h"
 #include "base/text/text.h"
+#include "data/fields/label_names.h"
 #include "io/formats.h"
+#include "io/surface/obj_materials.h"
 #include "io/surface/obj_parse.h"
 #include "io/surface/surface_parts.h"
 #include "io/text/text_scan.h"
@@ -266,7 +269,27 @@ int32_t material_number(const Labels& l, int32_t material, bool cells_without) {
   return material + 1;
 }
 
-void add_labels(const ObjFile& o, DatasetParts& parts) {
+// The diffuse colour of each material's cells; light grey where it has none. Empty when no material has one.
+Array material_colors(const Labels& l, const int32_t* numbers, size_t cells, bool without, const std::string& path, Context& context) {
+  const auto known = read_material_colors(path, l.libraries, context);
+  std::map<int32_t, Vec3f> of_number;
+  for (size_t m = 0; m < l.materials.size(); ++m)
+    if (const auto found = known.find(std::string(l.materials[m])); found != known.end())
+      of_number[material_number(l, int32_t(m), without)] = found->second;
+  if (of_number.empty()) return {};
+  uint8_t* out = nullptr;
+  Array colors = Array::make<uint8_t>(cells, 3, &out);
+  parallel_for(cells, 1 << 14, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const auto found = of_number.find(numbers[i]);
+      const Vec3f c = found != of_number.end() ? found->second : Vec3f(0.8f, 0.8f, 0.8f);
+      for (int k = 0; k < 3; ++k) out[3 * i + size_t(k)] = uint8_t(c[k] * 255 + 0.5f);
+    }
+  });
+  return colors;
+}
+
+void add_labels(const ObjFile& o, const std::string& path, bool with_colors, DatasetParts& parts, Context& context) {
   const Labels l = find_labels(o);
   const size_t total = o.cells[0] + o.cells[1] + o.cells[2];
   for (std::string_view name : l.libraries) parts.notes.emplace_back("MaterialLibrary", std::string(name));
@@ -289,11 +312,19 @@ void add_labels(const ObjFile& o, DatasetParts& parts) {
     }
   });
   if (material) {
+    if (with_colors && !l.libraries.empty())
+      if (Array colors = material_colors(l, material, total, without, path, context); !colors.empty())
+        parts.fields.add({"MaterialColors", Association::cell, std::move(colors), "", Role::colors});
     parts.fields.add({"MaterialIds", Association::cell, std::move(materials), "", Role::labels});
     std::string names;
-    for (size_t m = 0; m < l.materials.size(); ++m)
-      names += fmt::format("{}{} {}", m ? "\n" : "", material_number(l, int32_t(m), without), l.materials[m]);
+    LabelNames labels("MaterialIds");  // for legends
+    for (size_t m = 0; m < l.materials.size(); ++m) {
+      const int32_t number = material_number(l, int32_t(m), without);
+      names += fmt::format("{}{} {}", m ? "\n" : "", number, l.materials[m]);
+      labels.add(number, std::string(l.materials[m]));
+    }
     parts.notes.emplace_back("MaterialNames", names);
+    parts.notes.push_back(labels.note());
   }
   // An id, not a value: no picture is coloured by it unless asked.
   parts.fields.add({"GroupIds", Association::cell, std::move(groups), "", Role::global_ids});
@@ -379,7 +410,10 @@ Data read_obj(const std::string& path, const ReadOptions& options, Context& cont
   CellArray* lists[kinds] = {&mesh.vertices, &mesh.lines, &mesh.polygons};
   size_t before = 0;
   for (size_t k = 0; k < kinds; before += o.corners[k++]) *lists[k] = make_cells(o, k, expanded, before);
-  add_labels(o, parts);
+  const bool vertex_colors = parts.fields.with_role(Role::colors);
+  const bool asked =
+      options.fields.empty() || std::find(options.fields.begin(), options.fields.end(), "MaterialColors") != options.fields.end();
+  add_labels(o, path, asked && !vertex_colors, parts, context);
   parts.mesh = std::move(mesh);
   return make_dataset(std::move(parts));
 }

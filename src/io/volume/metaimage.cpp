@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // MetaImage (.mhd with separate data files, .mha in one file): "Key = value" lines, the last of which is ElementDataFile.
-// The consecutive numbers of TransformMatrix are the directions of the axes, one axis after the other.
+// The consecutive numbers of TransformMatrix are the directions of the axes, one axis after the other. Positions are in the patient frame,
+// as ITK has them, where the file is of a patient: where AnatomicalOrientation or a Modality is stated.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include "base/file/file_fence.h"
 #include "base/text/text.h"
 #include "data/lattice_crop.h"
+#include "data/patient/patient_frame.h"
 #include "io/formats.h"
 #include "io/text/text_scan.h"
 #include "io/volume/brick.h"
@@ -131,6 +133,12 @@ std::vector<BrickPart> find_parts(const Header& h, const MappedFile& file, size_
   return parts;
 }
 
+bool of_a_patient(const Header& h) {
+  const std::string_view orientation = h.get({"AnatomicalOrientation"}), modality = h.get({"Modality"});
+  return (!orientation.empty() && orientation.find('?') == std::string_view::npos) ||
+         (modality.starts_with("MET_MOD_") && modality != "MET_MOD_OTHER" && modality != "MET_MOD_UNKNOWN");
+}
+
 UniformGrid make_grid(const Header& h, const std::vector<size_t>& sizes) {
   const size_t n = sizes.size();
   UniformGrid g;
@@ -225,6 +233,7 @@ Data read_metaimage(const std::string& path, const ReadOptions& options, Context
     if (std::none_of(std::begin(known), std::end(known), [&](std::string_view k) { return equal_ignoring_case(k, key); }))
       out.notes.emplace_back(key, value);
   }
+  if (of_a_patient(h)) note_patient_frame(out);
   if (steps > 1) part.dims = part.count = {total, 1, 1};
   if (options.header_only && (h.flag({"CompressedData"}) || !binary)) return make_dataset(std::move(out));
   std::vector<BrickPart> parts = find_parts(h, file, sizes.back());

@@ -5,6 +5,7 @@
 
 #include "base/file/file.h"
 #include "base/text/text.h"
+#include "data/patient/patient_frame.h"
 #include "io/atomic_files.h"
 #include "io/formats.h"
 #include "io/write_losses.h"
@@ -22,6 +23,14 @@ std::vector<std::byte> pack_zlib(std::span<const std::byte> in) {
   return out;
 }
 
+// MetaIO's letters name where an axis comes from: RAI for one that leads to the left, the back and the head.
+std::string from_letters(const Mat3& direction) {
+  Mat3 back;
+  for (int r = 0; r < 3; ++r)
+    for (int a = 0; a < 3; ++a) back.m[r][a] = -direction.m[r][a];
+  return axis_letters(back);
+}
+
 std::string three(Vec3 v) { return fmt::format("{} {} {}", exact_number(v.x), exact_number(v.y), exact_number(v.z)); }
 
 std::string header_text(const UniformGrid& g, const Field& f, size_t packed, const std::string& data_file, const Dataset& d) {
@@ -33,8 +42,9 @@ std::string header_text(const UniformGrid& g, const Field& f, size_t packed, con
       fmt::format("TransformMatrix = {} {} {}\n", three(g.direction.column(0)), three(g.direction.column(1)), three(g.direction.column(2)));
   t += fmt::format("Offset = {}\nElementSpacing = {}\n", three(g.origin), three(g.spacing));
   t += fmt::format("DimSize = {} {} {}\n", g.dims[0], g.dims[1], g.dims[2]);
+  if (in_patient_frame(d)) t += fmt::format("AnatomicalOrientation = {}\n", from_letters(g.direction));
   for (const auto& [key, value] : d.notes())
-    for (const std::string_view known : {"Modality", "AnatomicalOrientation", "Comment", "Name"})
+    for (const std::string_view known : {"Modality", "Comment", "Name"})
       if (key == known && value.find('\n') == std::string::npos) t += fmt::format("{} = {}\n", key, value);
   if (!f.name.empty() && f.name != "MetaImage" && f.name.find('\n') == std::string::npos) t += fmt::format("FieldName = {}\n", f.name);
   if (f.components() > 1) t += fmt::format("ElementNumberOfChannels = {}\n", f.components());

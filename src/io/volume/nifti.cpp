@@ -226,6 +226,20 @@ Field make_field(const Source& s, Array a) {
   return {"NIFTI", Association::point, std::move(a), "", role};
 }
 
+// The axes that components are measured along, seen from the patient frame. Tensors and displacements (DISPVECT) have those of NIfTI;
+// vectors of any other kind have no frame by the standard, and ITK and ANTs write ours. FSL's directions are along the voxels' axes, with x
+// to the left.
+Mat3 vector_frame(const Source& s, const UniformGrid& grid, const std::string& path, Context& context) {
+  if (s.h.intent >= 1004 && s.h.intent <= 1006) return nifti_axes.matrix();
+  const std::string stem = stem_of(path).first;
+  if (s.h.intent != 0 || s.blocks != 3 || !(stem.ends_with("_V1") || stem.ends_with("_V2") || stem.ends_with("_V3"))) return Mat3();
+  context.info(fmt::format("{}: directions as FSL names them, along the voxels' axes; turned into the patient's", path));
+  Mat3 m = grid.direction;
+  if (determinant(m) > 0)
+    for (int r = 0; r < 3; ++r) m.m[r][0] = 0 - m.m[r][0];
+  return m;
+}
+
 }  // namespace
 
 bool sniff_nifti(std::span<const std::byte> head) {
@@ -239,7 +253,7 @@ Data read_nifti(const std::string& path, const ReadOptions& options, Context& co
   const std::vector<double> times = times_of(s);
   const size_t step = times.empty() ? 0 : chosen_step(times, options, path);
   DatasetParts out;
-  UniformGrid grid = nifti_grid(s.h, path, out.notes);
+  UniformGrid grid = nifti_grid(s.h, path, out);
   const LatticePart part = cut_grid(grid, options.region);
   out.mesh = grid;
   if (!times.empty()) {
@@ -256,7 +270,9 @@ Data read_nifti(const std::string& path, const ReadOptions& options, Context& co
       a = scale(a, s.h.slope, s.h.intercept);
       context.info(fmt::format("{}: values are {} * stored + {}", path, s.h.slope, s.h.intercept));
     }
-    out.fields.add(make_field(s, std::move(a)));
+    Field field = make_field(s, std::move(a));
+    if (s.h.version > 0) turn(field, vector_frame(s, grid, path, context));
+    out.fields.add(std::move(field));
   }
   if (!s.bval.empty() && wanted("bval")) out.fields.add({"bval", Association::whole, Array::from_vector(s.bval), "s/mm^2", Role::none});
   if (!s.bvec.empty() && wanted("bvec")) out.fields.add({"bvec", Association::whole, Array::from_vector(s.bvec, 3), "", Role::none});

@@ -8,6 +8,7 @@
 #include "base/bytes.h"
 #include "base/error.h"
 #include "base/text/text.h"
+#include "data/patient/patient_frame.h"
 #include "io/volume/direction.h"
 
 namespace sg {
@@ -61,6 +62,7 @@ void parse_1(NiftiHeader& h, std::span<const std::byte> b, const std::string& wh
   if (!(begin >= 0) || begin > 1e15) fail_data(fmt::format("byte 108: the data begins at byte {}", begin), where);
   h.data_begin = size_t(begin);
   h.description = text_at(b, 148, 80);
+  h.orient = int(b[252]);
   if (h.version == 0) return;  // what follows has other meanings in Analyze, or none that are agreed on
   h.slope = at<float>(b, 112, big), h.intercept = at<float>(b, 116, big);
   h.units = int(b[123]);
@@ -181,7 +183,28 @@ NiftiHeader parse_nifti_header(std::span<const std::byte> b, const std::string& 
   return h;
 }
 
-UniformGrid nifti_grid(const NiftiHeader& h, const std::string& where, std::vector<std::pair<std::string, std::string>>& notes) {
+namespace {
+
+// Analyze's byte 252 tells in which plane slices were stored and whether they are flipped; the axes in the patient frame as ITK reads them
+// (RPI, RIP, PIR, RAI, RSP, PIL in its words, which name where an axis comes from). Other numbers count as 0, the usual radiological order:
+// rows from the patient's right to the left.
+Mat3 analyze_axes(int orient) {
+  struct Axes {
+    Vec3 i, j, k;
+  };
+  constexpr Vec3 left{1, 0, 0}, posterior{0, 1, 0}, anterior{0, -1, 0}, superior{0, 0, 1}, inferior{0, 0, -1}, right{-1, 0, 0};
+  constexpr Axes table[6] = {{left, anterior, superior},  {left, superior, anterior}, {anterior, superior, left},
+                             {left, posterior, superior}, {left, inferior, anterior}, {anterior, superior, right}};
+  const Axes& a = table[orient >= 0 && orient < 6 ? orient : 0];
+  Mat3 m;
+  for (int r = 0; r < 3; ++r) m.m[r][0] = a.i[r], m.m[r][1] = a.j[r], m.m[r][2] = a.k[r];
+  return m;
+}
+
+}  // namespace
+
+UniformGrid nifti_grid(const NiftiHeader& h, const std::string& where, DatasetParts& out) {
+  auto& notes = out.notes;
   UniformGrid g;
   for (size_t a = 0; a < 3; ++a) g.dims[a] = h.dims[a];
   Form f;
@@ -200,7 +223,8 @@ UniformGrid nifti_grid(const NiftiHeader& h, const std::string& where, std::vect
     g.direction = direction_of(f.axis, 3, where);
     for (int a = 0; a < 3; ++a) g.spacing[a] = length(f.axis[a]);
     g.origin = f.origin;
-    notes.emplace_back("space", "right-anterior-superior");
+    turn(g, nifti_axes);
+    note_patient_frame(out, nifti_space);
     notes.emplace_back("orientation", form);
     double shear = 0;
     for (int a = 0; a < 3; ++a) shear = std::max(shear, std::abs(dot(g.direction.column(a), g.direction.column((a + 1) % 3))));
@@ -210,7 +234,14 @@ UniformGrid nifti_grid(const NiftiHeader& h, const std::string& where, std::vect
       const double s = std::abs(h.pixdim[size_t(a) + 1]);
       g.spacing[a] = s > 0 && std::isfinite(s) ? s : 1;
     }
-    notes.emplace_back("orientation", "not given");
+    if (h.version == 0) {
+      g.direction = analyze_axes(h.orient);
+      note_patient_frame(out);
+      notes.emplace_back("orientation",
+                         h.orient >= 0 && h.orient < 6 ? fmt::format("Analyze, {}", h.orient) : "not given, taken as radiological");
+    } else {
+      notes.emplace_back("orientation", "not given");
+    }
   }
   const int length_unit = h.units & 7, time_unit = h.units & 0x38;
   if (length_unit >= 1 && length_unit <= 3) notes.emplace_back("length unit", length_unit == 1 ? "m" : length_unit == 2 ? "mm" : "um");

@@ -4,10 +4,9 @@
 #include <array>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "data/mesh.h"
+#include "data/patient/patient_frame.h"
 
 namespace sg {
 
@@ -18,6 +17,7 @@ struct NiftiHeader {
   std::array<size_t, 7> dims{1, 1, 1, 1, 1, 1, 1};  ///< x y z t and more, 1 where not given
   int stored_dims = 0;                              ///< dim[0]
   int datatype = 0;
+  int orient = 0;  ///< Analyze: in which plane slices were stored
   std::array<double, 8> pixdim{};
   size_t data_begin = 0;
   double slope = 0, intercept = 0;
@@ -32,9 +32,14 @@ struct NiftiHeader {
 bool is_nifti_header(std::span<const std::byte> head);
 /// Throws Error(data) naming `where` and the byte.
 NiftiHeader parse_nifti_header(std::span<const std::byte> bytes, const std::string& where);
-/// Grid of the first three axes in the header's world: sform where its code is > 0, else qform, else spacing alone. A sheared sform
-/// keeps its columns, so that voxel (i,j,k) lies where the matrix puts it. Adds notes: space, which form, units, description.
-UniformGrid nifti_grid(const NiftiHeader& h, const std::string& where, std::vector<std::pair<std::string, std::string>>& notes);
+/// NIfTI's world: +x right, +y anterior, +z superior.
+inline constexpr std::string_view nifti_space = "right-anterior-superior";
+inline constexpr PatientAxes nifti_axes{{-1, -1, 1}};
+
+/// Grid of the first three axes in the patient frame: from the sform where its code is > 0, else the qform; Analyze's by its plane of
+/// slices; else spacing alone, in no known frame. A sheared sform keeps its columns, so that voxel (i,j,k) lies where the matrix puts it.
+/// Adds notes to `out`: space, which form, units, description.
+UniformGrid nifti_grid(const NiftiHeader& h, const std::string& where, DatasetParts& out);
 
 /// How numbers are stored: element type and numbers per voxel (complex 2, RGB 3, RGBA 4).
 struct NiftiType {

@@ -10,6 +10,7 @@
 #include "base/text/text.h"
 #include "io/bytes/inflate.h"
 #include "io/formats.h"
+#include "io/volume/nifti_header.h"
 #include "io/write_losses.h"
 
 namespace sg {
@@ -53,14 +54,9 @@ void fill_header(std::byte* h, const Dataset& d, const UniformGrid& g, const Fie
   const std::string about = note(d, "description");
   std::memcpy(h + 148, about.data(), std::min<size_t>(about.size(), 79));
   put(h, 254, int16_t(1));
-  // NIfTI's world is right-anterior-superior; others that we know are turned.
-  const std::string space = to_lower(note(d, "space"));
-  const bool left = space.starts_with("left") || space == "lps" || space == "las";
-  const bool posterior = space.find("posterior") != std::string::npos || space == "lps";
-  const Vec3 sign(left ? -1 : 1, posterior ? -1 : 1, 1);
   for (int r = 0; r < 3; ++r) {
-    for (int a = 0; a < 3; ++a) put(h, size_t(280 + 16 * r + 4 * a), float(sign[r] * g.direction.m[r][a] * g.spacing[a]));
-    put(h, size_t(280 + 16 * r + 12), float(sign[r] * g.origin[r]));
+    for (int a = 0; a < 3; ++a) put(h, size_t(280 + 16 * r + 4 * a), float(g.direction.m[r][a] * g.spacing[a]));
+    put(h, size_t(280 + 16 * r + 12), float(g.origin[r]));
     put(h, size_t(80 + 4 * r), float(std::abs(g.spacing[r]) * length(g.direction.column(r))));
   }
   put(h, 92, 1.0f);
@@ -78,7 +74,15 @@ void write_nifti(const std::string& path, const Data& data, const WriteOptions&,
   if (lower.ends_with(".hdr") || lower.ends_with(".img") || lower.ends_with(".hdr.gz") || lower.ends_with(".img.gz"))
     fail_usage("pairs of .hdr and .img can be read but not written", path, "name it .nii or .nii.gz");
   WriteLosses losses(path, "NIfTI");
-  const Field& f = losses.one_point_field(*d, false);
+  Field f = losses.one_point_field(*d, false);
+  // Positions of no stated frame are taken as the patient's: read again they are the same numbers.
+  const PatientAxes stated = patient_axes(stated_space(*d)).value_or(PatientAxes());
+  PatientAxes axes = stated;
+  for (int a = 0; a < 3; ++a) axes.sign[a] *= nifti_axes.sign[a];
+  UniformGrid turned = *grid;
+  turn(turned, axes);
+  if (f.components() == 3 && !is_colors(f)) f.role = Role::vectors;  // as it will be read
+  turn(f, f.role == Role::tensors ? axes.matrix() : stated.matrix());
   for (const size_t n : {grid->dims[0], grid->dims[1], grid->dims[2], size_t(f.components())})
     if (n > 32767)
       fail_usage(fmt::format("NIfTI-1 cannot hold {} entries along an axis; the limit is 32767", n), path, "write NRRD instead");
@@ -92,7 +96,7 @@ void write_nifti(const std::string& path, const Data& data, const WriteOptions&,
   if (!exact) losses.rounds("positions", ElementType::f64, ElementType::f32);
 
   std::byte header[header_bytes]{};
-  fill_header(header, *d, *grid, f);
+  fill_header(header, *d, turned, f);
   // Components other than colours are stored separately: one volume after the other.
   std::vector<Array> blocks;
   if (f.components() == 1 || is_colors(f)) blocks.push_back(f.array.made_packed());

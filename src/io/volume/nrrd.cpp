@@ -12,6 +12,7 @@
 #include "base/text/text.h"
 #include "data/lattice.h"
 #include "data/lattice_crop.h"
+#include "data/patient/patient_frame.h"
 #include "io/bytes/inflate.h"
 #include "io/formats.h"
 #include "io/text/text_scan.h"
@@ -140,13 +141,20 @@ void add_field(DatasetParts& out, const NrrdHeader& h, const Array& stored, size
   else if (components == 3 && kind.find("normal") != std::string::npos) role = Role::normals;
   else if (components == 9 && kind == "3d-matrix") role = Role::tensors;
   const std::string name = !h.field_name.empty() ? h.field_name : h.encoding == BrickEncoding::raw ? "ImageFile" : "ImageScalars";
+  // Vectors and tensors, from the axes along which they were measured to those of the file to the patient's.
+  const Mat3 to_ours = patient_axes(h.space).value_or(PatientAxes()).matrix() * h.measurement_frame;
+  const auto add = [&](Array values, Role of_values) {
+    Field f{name, Association::point, std::move(values), h.sample_units, of_values};
+    turn(f, to_ours);
+    out.fields.add(std::move(f));
+  };
   if (components == 7 && kind == "3d-masked-symmetric-matrix") {
-    out.fields.add({name, Association::point, full_tensor(a, 1), h.sample_units, Role::tensors});
+    add(full_tensor(a, 1), Role::tensors);
     out.fields.add({"Mask", Association::point, a.component(0), "", Role::none});
   } else if (components == 6 && kind == "3d-symmetric-matrix") {
-    out.fields.add({name, Association::point, full_tensor(a, 0), h.sample_units, Role::tensors});
+    add(full_tensor(a, 0), Role::tensors);
   } else {
-    out.fields.add({name, Association::point, std::move(a), h.sample_units, role});
+    add(std::move(a), role);
   }
 }
 
@@ -175,6 +183,8 @@ Data read_nrrd(const std::string& path, const ReadOptions& options, Context& con
   const LatticePart part = cut_grid(grid, options.region);
   out.mesh = grid;
   out.notes = h.notes;
+  if (patient_axes(h.space)) note_patient_frame(out, h.space);
+  else if (!h.space.empty()) out.notes.emplace_back("space", h.space);
   // What costs reading is left out when only the header is wanted; mapped data cost nothing.
   if (options.header_only && h.encoding != BrickEncoding::raw) return make_dataset(std::move(out));
   // Where a point's numbers lie together, only the wanted rows are read; else the part is cut from the whole.
@@ -217,8 +227,8 @@ std::string header_text(const UniformGrid& g, const Field& f, bool gzip, const s
   std::string t = "NRRD0005\n# Complete NRRD file format specification at:\n# http://teem.sourceforge.net/nrrd/format.html\n";
   t += fmt::format("type: {}\ndimension: {}\n", nrrd_type(f.array.type()), n > 1 ? 4 : 3);
   std::string keys, space = "space dimension: 3\n";
-  static constexpr std::string_view fields[] = {"content", "space units", "measurement frame", "number", "min", "max", "labels",
-                                                "units",   "comment"};
+  static constexpr std::string_view fields[] = {
+      "content", "space units", "measurement frame in the file", stored_space_note, "number", "min", "max", "labels", "units", "comment"};
   for (const auto& [key, value] : notes) {
     if (key == "space" && value.find("time") == std::string::npos) space = fmt::format("space: {}\n", value);
     else if (key == "content") t += fmt::format("content: {}\n", escaped(value));

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/text/text.h"
+#include "data/patient/patient_frame.h"
 #include "io/text/text_scan.h"
 #include "io/volume/direction.h"
 
@@ -142,7 +143,7 @@ bool Parser::geometry_field(const std::string& name, std::string_view value) {
     const std::string s = to_lower(value);
     // The spaces with time have four coordinates, all others three.
     space_dimension = s.find("time") != std::string::npos || s == "rast" || s == "last" || s == "lpst" ? 4 : 3;
-    h.notes.emplace_back("space", std::string(value));
+    h.space = std::string(trim(value));
   } else {
     return false;
   }
@@ -205,8 +206,17 @@ void Parser::field(const std::string& name, std::string_view value) {
   } else if (name == "old min" || name == "oldmin" || name == "old max" || name == "oldmax" || name == "block size" ||
              name == "blocksize" || name == "thicknesses") {
     // old min and max describe a quantisation that has been done; values are given as stored.
-  } else if (name == "content" || name == "measurement frame" || name == "space units" || name == "number" || name == "min" ||
-             name == "max") {
+  } else if (name == "measurement frame") {
+    h.notes.emplace_back("measurement frame in the file", std::string(value));
+    if (space_dimension != 3) return;
+    std::string_view s = trim(value);
+    Mat3 frame;
+    for (int a = 0; a < 3; ++a) {
+      const Vec3 v = vector(name, s);
+      for (int r = 0; r < 3; ++r) frame.m[r][a] = v[r];
+    }
+    if (std::isfinite(determinant(frame))) h.measurement_frame = frame;
+  } else if (name == "content" || name == "space units" || name == "number" || name == "min" || name == "max") {
     h.notes.emplace_back(name, std::string(value));
   } else {
     fail(fmt::format("unknown field '{}'", name), "user keys are written with := instead of :");
@@ -374,6 +384,7 @@ UniformGrid nrrd_grid(const NrrdHeader& h) {
   }
   if (all_directions && n > 0) g.direction = direction_of(direction, int(n), h.path);
   if (h.has_origin) g.origin = h.origin;
+  turn(g, patient_axes(h.space).value_or(PatientAxes()));
   return g;
 }
 

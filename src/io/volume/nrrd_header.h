@@ -35,12 +35,14 @@ struct NrrdHeader {
   size_t line_skip = 0;
   bool has_origin = false;
   Vec3 origin;
+  std::string space;       ///< "right-anterior-superior"; empty: not given
+  Mat3 measurement_frame;  ///< its columns: where the axes lead along which vectors and tensors were measured, in that space
   std::string sample_units;
   std::string field_name;                                  ///< what our writer puts under nrrd_name_key
   std::vector<std::string> data_files;                     ///< empty: attached
   size_t subdim = 0;                                       ///< of the data files; 0: all axes but the last
   size_t data_begin = 0;                                   ///< attached: byte behind the header
-  std::vector<std::pair<std::string, std::string>> notes;  ///< space, content, key:=value, comments, ...
+  std::vector<std::pair<std::string, std::string>> notes;  ///< content, key:=value, comments, ...
 };
 
 /// Throws Error(data) that names the line.
@@ -53,7 +55,7 @@ NrrdHeader parse_nrrd_header(const MappedFile& file);
 /// else the last ones do.
 void classify_axes(NrrdHeader& h);
 
-/// Dims, spacing, direction and origin of the space axes.
+/// Dims, spacing, direction and origin of the space axes; of a patient's in the patient frame.
 UniformGrid nrrd_grid(const NrrdHeader& h);
 
 }  // namespace sg

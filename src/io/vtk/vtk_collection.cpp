@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cstdlib>
 #include <map>
+#include <optional>
 
 #include "base/file/file_fence.h"
 #include "base/text/text.h"
 #include "io/formats.h"
+#include "io/vtk/vtk_missing.h"
 #include "io/vtk/xml/vtk_xml.h"
 
 namespace sg {
@@ -111,6 +113,7 @@ class TreeReader {
     take_share(file.dataset());
     auto collection = std::make_shared<Collection>();
     read_blocks(file, file.dataset(), *collection, 1);
+    if (stack_.size() == 1) missing_.tell(path, context_);
     return CollectionPtr(std::move(collection));
   }
 
@@ -158,11 +161,22 @@ class TreeReader {
         const std::string_view source = n.attribute("file").value();
         if (source.empty()) continue;  // a block without a mesh
         if (!is_mine()) continue;
-        part.data =
-            with_context(fmt::format("reading the parts of '{}'", file.path()), [&] { return read(named_file(file.path(), source)); });
+        const std::optional<Data> data = read_named(file, source);
+        if (!data) continue;
+        part.data = *data;
       }
       out.parts.push_back(std::move(part));
     }
+  }
+
+  // Nothing for a file that is not there.
+  std::optional<Data> read_named(const XmlFile& file, std::string_view source) {
+    return with_context(fmt::format("reading the parts of '{}'", file.path()), [&]() -> std::optional<Data> {
+      const std::string name = named_file(file.path(), source);
+      if (missing_.lacks(name)) return std::nullopt;
+      missing_.found();
+      return read(name);
+    });
   }
 
   static std::string name_of(pugi::xml_node n, size_t place) {
@@ -186,12 +200,13 @@ class TreeReader {
       if (source.empty()) file.fail("has no file", n, "expected the file name of that step");
       const size_t place = i++;
       if (!is_mine()) continue;
-      Data data =
-          with_context(fmt::format("reading the parts of '{}'", file.path()), [&] { return read(named_file(file.path(), source)); });
-      if (!steps.times.empty()) data = at_time(data, steps.times[step]);
-      collection->parts.push_back({part_name(n, sets, place), std::move(data)});
+      std::optional<Data> data = read_named(file, source);
+      if (!data) continue;
+      if (!steps.times.empty()) data = at_time(*data, steps.times[step]);
+      collection->parts.push_back({part_name(n, sets, place), std::move(*data)});
     }
-    if (sets.size() == 1) return collection->parts[0].data;
+    if (stack_.size() == 1) missing_.tell(file.path(), context_);
+    if (sets.size() == 1 && !collection->parts.empty()) return collection->parts[0].data;
     return CollectionPtr(std::move(collection));
   }
 
@@ -222,6 +237,7 @@ class TreeReader {
 
   ReadOptions options_, part_options_;
   Context& context_;
+  MissingFiles missing_;
   pugi::xml_document counting_;
   std::vector<std::string> stack_;
   std::map<std::string, Done> done_;

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/text/text.h"
 #include "data/memory/memory_budget.h"
+#include "io/film/movie.h"
 #include "pipeline/film/film_times.h"
 #include "pipeline/picture/picture_parts.h"
 #include "scene/choose/shared_scale.h"
@@ -109,8 +110,13 @@ std::vector<double> make_film(PipelineFile plain, const FilmParams& params, cons
   // Progress is that of the drawing: what goes on beside it tells none.
   Context silent(context, 0, 1);
   silent.on_progress = nullptr;
-  const FilmTimes film = film_times(plain, params.times, silent);
+  if (params.turntable > 0 && !params.times.empty())
+    fail_usage("a turntable has no times", "film turntable", "leave times out, or let the camera orbit with them: azimuth={t}");
+  const FilmTimes film = params.turntable > 0 ? turn_camera(plain, params.turntable) : film_times(plain, params.times, silent);
   const size_t count = film.times.size();
+  // What runs by is told where it is; title= (empty) tells nothing.
+  if (!film.steps.empty() && is_movie(params.output) && !word_value(plain.picture, "title"))
+    plain.picture.push_back("title=step {n} of {count}, t = {t}");
   if (callbacks.begin) callbacks.begin(film.times);
 
   // The first picture chooses the looks of all.

@@ -8,13 +8,16 @@
 namespace sg {
 
 void describe(Schema& s, FilmParams& p) {
-  s("output", p.output, "Picture to write; {n} in the name numbers the pictures of a time series; .webm or .mp4 makes a film of them.")
+  s("output", p.output,
+    "Picture to write; {n} in the name numbers the pictures of a time series; .webm, .gif or .mp4 makes a film of them.")
       .unit("new file");
   s("times", p.times,
     "With {n} in the output, or for a film: the times to draw, e.g. 0:10:101 (first:last:count), 0,0.5,1 or 0:114 (the steps of the file "
     "in between); default: all in the file. {t} as the value of a parameter stands for the time, also in the camera: azimuth={t} orbits.")
       .unit("time");
   s("fps", p.fps, "Films: pictures per second.").range(0.1, 1000);
+  s("turntable", p.turntable, "Films: pictures of one turn of the camera about the shape, in place of times; e.g. 100. 0: none.")
+      .range(0, 100000);
 }
 
 bool is_film_word(std::string_view word) {

@@ -14,6 +14,7 @@ struct FilmParams {
   std::string
       times;  ///< FIRST:LAST:COUNT, a list, or FIRST:LAST (of files: their steps in between; of sources: 0, 1, 2, ...); "" = all steps
   double fps = 25;
+  int turntable = 0;  ///< pictures of one turn of the camera in place of times; 0 = none
 };
 void describe(Schema& s, FilmParams& p);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/text/replace.h"
 #include "base/text/text.h"
 #include "io/file_series.h"
 #include "io/options.h"
@@ -25,6 +26,19 @@ bool write_time(std::vector<std::string>& words, double time) {
       word.replace(at, here.size(), exact_number(time));
       written = true;
     }
+  return written;
+}
+// Titles are for people: a short number, and which picture it is of how many.
+bool write_title(std::vector<std::string>& words, double time, size_t n, size_t count) {
+  bool written = false;
+  for (std::string& word : words) {
+    if (!word.starts_with("title=")) continue;
+    const std::string before = word;
+    replace_all(word, here, short_number(time));
+    written = written || word != before;
+    replace_all(word, "{n}", std::to_string(n + 1));
+    replace_all(word, "{count}", std::to_string(count));
+  }
   return written;
 }
 // In a step: 'lic kernel=ripple phase={t}'.
@@ -124,10 +138,36 @@ FilmTimes film_times(const PipelineFile& file, const std::string& asked, Context
   return film;
 }
 
+FilmTimes turn_camera(PipelineFile& file, int count) {
+  FilmTimes film;
+  film.turns = true;
+  double first = 0;
+  const std::string own = "azimuth=", below = "camera.azimuth=";
+  bool stated = false;
+  for (std::string& word : file.picture) {
+    if (word.starts_with(below)) {
+      first = parse_double(word.substr(below.size())).value_or(0);
+      word = below + std::string(here), stated = true;
+    } else if (word.starts_with("camera=")) {
+      std::string text;
+      for (const std::string& w : quoted_words(word.substr(7))) {
+        if (w.starts_with(own)) first = parse_double(w.substr(own.size())).value_or(0);
+        else text += w + " ";
+      }
+      word = "camera=" + text + own + std::string(here), stated = true;
+    }
+  }
+  if (!stated) file.picture.push_back(below + std::string(here));
+  for (int k = 0; k < count; ++k) film.times.push_back(first + 360.0 * k / count);
+  return film;
+}
+
 PipelineFile at_time(PipelineFile file, const FilmTimes& film, size_t n) {
   const double time = film.times[n];
   const bool of_files = !film.steps.empty();
-  const bool in_picture = write_time(file.picture, time);
+  const bool in_title = write_title(file.picture, time, n, film.times.size());
+  const bool in_picture = write_time(file.picture, time) || in_title;
+  if (film.turns) return file;
   if (write_time_in_steps(file, time)) return file;
   bool moment = false;
   for (PipelineFile::Step& s : file.steps)

@@ -16,12 +16,17 @@ struct FilmTimes {
   std::vector<double> times;
   std::vector<size_t> steps;    ///< of the files, where they have them; else empty
   std::set<std::string> still;  ///< steps of the pipeline that read the same at all times
+  bool turns = false;           ///< the times are the camera's angles in degrees; nothing else moves
 };
 
 /// `asked` as FilmParams::times. Throws Error(usage) where nothing has times.
 FilmTimes film_times(const PipelineFile& file, const std::string& asked, Context& context);
 
-/// The pipeline at times[n]: parameters of the camera and the picture given as {t} receive the time. So do those of the
+/// One turn of the camera in `count` pictures, from the azimuth that the pipeline states on, which it then states as {t}.
+FilmTimes turn_camera(PipelineFile& file, int count);
+
+/// The pipeline at times[n]: parameters of the camera and the picture given as {t} receive the time; in the title {n} is the number of the
+/// picture and {count} that of all. So do those of the
 /// steps; else operations that show a moment of what they are given (Operation::shows_moment), whose input stays as it is;
 /// else readers and sources with a time, and operations on series in place of what lies above them.
 PipelineFile at_time(PipelineFile file, const FilmTimes& film, size_t n);

@@ -42,7 +42,9 @@ struct Note {
 
 class Parts {
  public:
-  Parts(Context& context, const PartFunction& f) : context_(context), f_(f) {}
+  Parts(const Data& data, Context& context, const PartFunction& f) : context_(context), f_(f) {
+    for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { all_.push_back(d); });
+  }
 
   Data map(const Data& data, const std::string& path) {
     if (auto* dataset = std::get_if<DatasetPtr>(&data)) return *dataset ? one(*dataset, path) : data;
@@ -65,11 +67,12 @@ class Parts {
       if (left_out_.size() > 3) names += fmt::format(" and {} more", left_out_.size() - 3);
       context_.info(fmt::format("{}: parts of points and lines alone are left out: {}", who, names));
     }
-    for (size_t i = 0; i < notes_.size(); ++i) {
-      const Note& n = notes_[i];
+    std::vector<Note> told;
+    for (const Note& n : notes_) {
       if (n.of_empty && n.level != LogLevel::warning && filled_ > 0) continue;
-      if (std::none_of(notes_.begin(), notes_.begin() + ptrdiff_t(i), [&](const Note& m) { return m.same(n); }))
-        context_.log(n.level, n.text);
+      if (std::any_of(told.begin(), told.end(), [&](const Note& m) { return m.same(n); })) continue;
+      context_.log(n.level, n.text);
+      told.push_back(n);
     }
   }
 
@@ -77,6 +80,7 @@ class Parts {
   Data one(const DatasetPtr& dataset, const std::string& path) {
     const size_t first = notes_.size();
     Context part(context_, 0, 1);
+    part.parts = &all_;
     part.on_log = [&](LogLevel level, std::string_view text) { notes_.push_back({level, std::string(text), false}); };
     try {
       Data result = with_context(fmt::format("in part '{}'", path), [&] { return f_(dataset, part); });
@@ -96,6 +100,7 @@ class Parts {
 
   Context& context_;
   const PartFunction& f_;
+  std::vector<DatasetPtr> all_;
   std::vector<Note> notes_;
   std::vector<std::string> left_out_;
   std::optional<Error> refused_;
@@ -109,7 +114,7 @@ Data map_parts(const Data& data, std::string_view who, Context& context, const P
   if (std::holds_alternative<TablePtr>(data))
     fail_usage("needs a mesh but got a table", std::string(who), "make points of its rows first: -f 'table_to_points x=... y=...'");
   if (auto* dataset = std::get_if<DatasetPtr>(&data)) return f(*dataset, context);
-  Parts parts(context, f);
+  Parts parts(data, context, f);
   Data result = parts.map(data, "");
   parts.finish(who);
   return result;

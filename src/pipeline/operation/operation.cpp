@@ -9,6 +9,7 @@
 #include "base/text/text.h"
 #include "pipeline/operation/check_inputs.h"
 #include "pipeline/operation/operation_table.h"
+#include "scene/show/other_names.h"
 
 namespace sg {
 
@@ -24,7 +25,7 @@ const Operation& find_operation(std::string_view name, std::span<const Operation
     if (o.name == name) return o;
     names.emplace_back(o.name);
   }
-  fail_usage(fmt::format("unknown operation '{}'", name), {}, unknown_name_hint(name, names));
+  fail_usage(fmt::format("unknown operation '{}'", name), {}, said_here(name, names));
 }
 
 ParamSet make_params(const Operation& operation, const std::vector<std::string>& words) {

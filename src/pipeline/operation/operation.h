@@ -65,6 +65,11 @@ struct Operation {
   int version = 1;                     ///< raised when the same parameters give other numbers than before: part of the key
   int min_inputs = 1, max_inputs = 1;  ///< max_inputs -1 = any number
   ParamSet (*make_params)() = nullptr;
+  /// Whether its parameters are of this struct.
+  template <class P>
+  bool is() const {
+    return make_params().fresh == make_param_set<P>;
+  }
   Data (*run)(const std::vector<Data>& inputs, const ParamSet& params, Context& context) = nullptr;
   /// Takes the whole time series of its first input, see graph/series_input.h; null: it takes one moment. A parameter `time` that is
   /// left open follows the request, a parameter `times` (a word) says which times to take where the input has none of its own.

@@ -53,6 +53,11 @@ void ask_of_select(const ParamSet& params, const Request&, size_t, Request& up) 
     for (const std::string& name : *names) add_field(up, name);
 }
 
+// A scalar is displaced along the normals of its surface, which are a field.
+void ask_of_warp(const ParamSet& params, const Request&, size_t, Request& up) {
+  if (!params.as<WarpParams>().direction) up.all_fields = true, up.fields.clear();
+}
+
 // Roles in the result depend on all fields of the first.
 void ask_of_join_fields(const ParamSet& params, const Request&, size_t input, Request& up) {
   if (const auto& p = params.as<JoinFieldsParams>(); input == 0 || p.fields.empty()) up.all_fields = true, up.fields.clear();

@@ -6,25 +6,36 @@
 #include "base/all_ranks.h"
 #include "base/error.h"
 #include "base/file/file.h"
+#include "base/text/replace.h"
 #include "base/text/text.h"
 #include "color/parse_color.h"
 #include "data/ranks/over_all.h"
 #include "pipeline/file/transfer_file.h"
 #include "pipeline/film/film_params.h"
 #include "pipeline/picture/picture_parts.h"
-#include "scene/show/outline.h"
-#include "scene/show/parts.h"
-#include "scene/show/volume.h"
+#include "scene/show/show.h"
 
 namespace sg {
 
 void describe(Schema& s, PictureParams& p) {
   s("size", p.size, "Width and height in pixels, e.g. 1920x1080.");
   s("background", p.background, "Background colour, two colours bottom/top for a gradient, or 'transparent'.");
-  s("title", p.title, "Title above the picture.");
+  s("title", p.title,
+    "Title above the picture; {t} is the time of the data, in a series {n} the number of the picture and {count} that of all.");
   s("legend", p.legend, "Draw the colour legends.");
   s("axes", p.axes, "Draw the bounding box with numbers.");
+  s("stretch", p.stretch,
+    "Factors by which x, y and z are drawn longer than they are, negative ones the other way round; numbers at the axes stay those of the "
+    "data. Default: 1,1,1, but for maps in degrees (longitudes as long as at the middle latitude, heights 0.3 times the map's "
+    "width), depths and pressures, which grow downwards. The camera's position and target are where things are drawn.");
+  s("layout", p.layout,
+    "Several panels in one picture, with one legend: columns x rows as 2x1, or 'auto'. Each input has its own, or each of 'views'.");
+  s("views", p.views, "Named views of the same data side by side, e.g. front,left,top,iso; layout 'auto' where none is stated.");
+  s("scale_bar", p.scale_bar, "Draw a bar of a round length, as long as it is at the middle of the data.");
+  s("caption", p.caption, "Text at the lower edge of the picture; {t} as in the title.");
   s("triad", p.triad, "Draw the orientation axes.");
+  s("letters", p.letters,
+    "Draw at the edges of a scan's picture where they lie in the patient: right, left, anterior, posterior, inferior, superior.");
   s("samples", p.samples, "Samples per pixel and axis; 0 chooses 2 for surfaces, 1 for volumes.").range(0, 4);
   s("adaptive", p.adaptive,
     "Above 0: take all samples only where neighbouring pixels differ by more than this share of full scale; 0: take all of them "
@@ -82,12 +93,6 @@ StatedPicture stated_in(const PipelineFile& file) {
 
 namespace {
 
-// One entry under `show`, with its parameters.
-struct StatedShow {
-  const ShowKind* kind;
-  ParamSet params;
-};
-
 // All mistakes at once, each with its line.
 std::vector<StatedShow> stated_shows(const PipelineFile& file) {
   std::vector<StatedShow> shows;
@@ -103,6 +108,22 @@ std::vector<StatedShow> stated_shows(const PipelineFile& file) {
   }
   if (!problems.empty()) fail_usage(problems);
   return shows;
+}
+
+// {t} in a title is the time of what is shown.
+std::string title_of(std::string title, const std::vector<Data>& results, const Context& context) {
+  if (title.find("{t}") == title.npos) return title;
+  std::optional<double> time;
+  for (const Data& data : results)
+    for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
+      if (!time) time = d->time();
+    });
+  if (!time) {
+    context.warn("the title asks for the time {t}, but the data has none");
+    return title;
+  }
+  replace_all(title, "{t}", short_number(*time));
+  return title;
 }
 
 bool has_nan(const Scene& scene) {
@@ -123,65 +144,52 @@ bool has_nan(const Scene& scene) {
   return false;
 }
 
-// The combined results of all shows.
-struct Shown {
-  Scene scene;
-  std::vector<Legend> legends;  // each once
-  Box3 box;
-  bool outlined = false, any_points = false;
-};
-
-Shown collect(const PipelineFile& file, const std::vector<StatedShow>& shows, const std::vector<Data>& results, bool legends,
-              Context& context) {
-  Shown s;
-  for (size_t i = 0; i < results.size(); ++i) {
-    const auto& [kind, params] = shows[i];
-    s.outlined = s.outlined || kind->is<OutlineShow>();
-    if (std::holds_alternative<TablePtr>(results[i]))
-      fail_no_mesh(results[i], file_name_of(origin_of(file, file.show[i].of.empty() ? file.steps.back().name : file.show[i].of)));
-    std::vector<DatasetPtr> parts;
-    for_each_dataset(results[i], [&](const std::string&, const DatasetPtr& d) {
-      parts.push_back(d);
-      s.any_points = s.any_points || d->point_count() > 0;
-      s.box.add(d->bounds());
-    });
-    const size_t first = s.scene.items.size();
-    for (const Legend& legend : show_parts(s.scene, parts, *kind, params, uint32_t(i + 1), context)) {
-      if (!legends) continue;
-      const auto have = std::find_if(s.legends.begin(), s.legends.end(), [&](const Legend& l) { return same_legend(l, legend); });
-      if (have == s.legends.end()) s.legends.push_back(legend);
-      else if (legend.glyph && (!have->glyph || have->glyph->most < legend.glyph->most)) have->glyph = legend.glyph;
-    }
-    if (!kind->is<VolumeShow>() || s.scene.items.size() == first) continue;
-    if (const std::string& path = params.as<VolumeShow>().save; !path.empty())
-      save_transfer_file(path_beside(file.origin, path), std::get<VolumeItem>(s.scene.items.back()));
-  }
-  return s;
-}
-
 Annotation annotation_of(const StatedPicture& stated, const Shown& shown, const Look& look) {
   Annotation a;
   a.legends = shown.legends;
-  a.title = stated.picture.title;
-  a.triad = stated.picture.triad && shown.any_points && !look.parallel;  // a map needs none: its axes are named
+  a.title = stated.picture.title, a.caption = stated.picture.caption;
+  a.scale_bar = stated.picture.scale_bar;
+  a.triad = stated.picture.triad && shown.any_points && !look.camera.parallel;  // a map needs none: its axes are named
   a.scale = stated.picture.text;
   const double brightness = 0.2126 * stated.bottom.x + 0.7152 * stated.bottom.y + 0.0722 * stated.bottom.z;
   a.dark_background = !stated.transparent && brightness < 0.45;
   a.show_nan_in_legend = has_nan(shown.scene);
-  if (stated.picture.axes && !shown.box.empty()) a.box = shown.box;
+  if ((stated.picture.axes || a.scale_bar) && !shown.box.empty()) a.box = shown.box;
+  a.axes = stated.picture.axes;
+  std::copy_n(shown.axis_titles, 3, a.axis_titles);
+  a.length_unit = shown.length_unit;
+  a.stretch = shown.stretch;
+  a.patient_letters = stated.picture.letters && shown.patient;
   return a;
+}
+
+// Ready to be drawn at the size that is stated.
+Panel panel_of(const Shown& shown, const Look& look, const StatedPicture& stated, const CameraParams& camera) {
+  Panel p;
+  p.scene = shown.scene;
+  p.scene.background = stated.bottom, p.scene.background_top = stated.top, p.scene.transparent = stated.transparent;
+  p.annotation = annotation_of(stated, shown, look);
+  if (in_panels(stated.picture)) p.annotation.legends.clear();  // they stand beside the panels
+  const double aspect = double(std::max(1, width_beside_legends(p.annotation, stated))) / stated.height;
+  p.camera = make_camera(camera, shown.box, aspect, look.camera, stated.picture.axes ? 0.11 : 0.05);
+  Box3 all = scene_bounds(p.scene);  // glyphs reach beyond the data
+  all.add(shown.box);
+  fit_planes(p.camera, all);
+  if (stated.picture.axes && !shown.outlined && !shown.box.empty()) p.scene.items.emplace_back(back_edges(shown.box, p.camera));
+  return p;
 }
 
 }  // namespace
 
 Picture make_picture(PipelineFile& file, const PictureOptions& options, Context& context) {
-  const StatedPicture stated = stated_in(file);
+  StatedPicture stated = stated_in(file);
   load_transfer_files(file);
   stated_shows(file);  // mistakes are reported before anything runs
   const auto cache = options.cache ? options.cache : std::make_shared<Cache>(0);
   std::vector<Data> held;
   Picture picture;
-  Look look = choose_looks(file, options, cache, held, picture.notes, context);
+  Context computing(context, 0, 0.5), drawing(context, 0.5, 1);
+  Look look = choose_looks(file, options, cache, held, picture.notes, computing);
   const std::vector<StatedShow> shows = stated_shows(file);
 
   GraphOptions graph_options;
@@ -189,8 +197,9 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   const PipelineGraph built = build_graph(file, graph_options, options.results);
   std::vector<Target> targets;
   for (NodeId node : built.show) targets.push_back({node, {}});
-  const std::vector<Data> results = built.graph.evaluate(targets, context);
+  const std::vector<Data> results = built.graph.evaluate(targets, computing);
   held.clear();
+  for (std::string* text : {&stated.picture.title, &stated.picture.caption}) *text = title_of(*text, results, context);
 
   // What the notes already say, or several parts say alike, is given once.
   Context once(context, 0, 1);
@@ -200,22 +209,37 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
     said.emplace_back(text);
     context.log(level, text);
   };
-  Shown shown = collect(file, shows, results, stated.picture.legend, once);
-  const Box3 box = over_all(shown.box, context);
-  shown.any_points = all_most(int(shown.any_points), context.communicator) > 0;
-  if (!shown.any_points) context.warn("the picture is empty: there are no points to show");
-  if (!file.show.empty() && look.shows.empty())
-    choose_view(box, extension_of(origin_of(file, file.show[0].of.empty() ? file.steps.back().name : file.show[0].of)), look);
-  Scene& scene = shown.scene;
-  scene.background = stated.bottom, scene.background_top = stated.top, scene.transparent = stated.transparent;
-  const Annotation annotation = annotation_of(stated, shown, look);
-  const double aspect = double(std::max(1, width_beside_legends(annotation, stated))) / stated.height;
-  Camera camera = make_camera(stated.camera, box, aspect, look.direction, look.up, look.parallel, stated.picture.axes ? 0.11 : 0.05);
-  Box3 all = scene_bounds(scene);  // glyphs reach beyond the data
-  all.add(box);
-  fit_planes(camera, all);
-  if (stated.picture.axes && !shown.outlined && !box.empty()) scene.items.emplace_back(back_edges(box, camera));
-  draw_drafts(scene, camera, stated, annotation, options, picture, context);
+  std::vector<Shown> shown = collect(file, shows, results, panels_of(file, stated.picture), stated.picture, once);
+  for (Shown& s : shown) {
+    s.box = over_all(s.box, context);
+    s.any_points = all_most(int(s.any_points), context.communicator) > 0;
+    s.patient = all_most(int(s.patient), context.communicator) > 0;
+  }
+  if (std::none_of(shown.begin(), shown.end(), [](const Shown& s) { return s.any_points; }))
+    context.warn("the picture is empty: there are no points to show");
+  if (!file.show.empty()) {
+    const std::string& first = shown_step(file, 0);
+    if (look.shows.empty()) look.camera = choose_view(shown[0].box, extension_of(origin_of(file, first)), shown[0].patient);
+    face_cut(file, first, look.camera);
+  }
+  if (!in_panels(stated.picture)) {
+    const Panel panel = panel_of(shown[0], look, stated, stated.camera);
+    draw_drafts(panel.scene, panel.camera, stated, panel.annotation, options, picture, drawing);
+    context.progress(1, "done");
+    return picture;
+  }
+  const std::vector<std::string>& views = stated.picture.views;
+  const size_t count = views.empty() ? shown.size() : views.size();
+  const Annotation around = annotation_of(stated, shown[0], look);
+  const StatedPicture inside = inside_layout(stated, around, count);
+  std::vector<NamedPanel> panels;
+  for (size_t i = 0; i < count; ++i) {
+    CameraParams camera = stated.camera;
+    if (!views.empty()) camera.view = view_named(views[i]);
+    panels.push_back({views.empty() ? panel_title(file, i) : views[i], panel_of(shown[views.empty() ? i : 0], look, inside, camera)});
+  }
+  picture.image = draw_layout(panels, stated, inside, around, drawing);
+  context.progress(1, "done");
   return picture;
 }
 

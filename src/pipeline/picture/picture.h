@@ -20,7 +20,12 @@ struct PictureParams {
   std::string size = "1280x720";
   std::string background = "white";
   std::string title;
-  bool legend = true, axes = true, triad = true;
+  bool legend = true, axes = true, triad = true, letters = true;
+  std::optional<Vec3> stretch;
+  bool scale_bar = false;
+  std::string caption;
+  std::string layout;
+  std::vector<std::string> views;
   int samples = 0;
   double adaptive = 0;
   double text = 1;

@@ -1,27 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is shown when nothing is said.
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/file/file.h"
+#include "filter/mesh/select/extract_ids.h"
 #include "pipeline/picture/picture_parts.h"
+#include "scene/choose/scale.h"
+#include "scene/show/surface.h"
 
 namespace sg {
-
-std::string origin_of(const PipelineFile& file, std::string step) {
-  for (int hops = 0; hops < 1000; ++hops) {
-    size_t at = file.steps.size();
-    for (size_t i = 0; i < file.steps.size(); ++i)
-      if (file.steps[i].name == step) at = i;
-    if (at == file.steps.size()) return "";
-    const auto& s = file.steps[at];
-    if (s.reads()) return word_value(s.words, "path").value_or("");
-    if (!s.from.empty()) step = s.from[0];
-    else if (at > 0) step = file.steps[at - 1].name;
-    else return "";
-  }
-  return "";
-}
 
 namespace {
 
@@ -71,9 +59,58 @@ void fail_no_mesh(const Data& data, const std::string& where) {
 
 namespace {
 
-// What suits the result of a step, as entries under `show`; the filter that it needs is added to the steps.
-Look choose_for(const PipelineFile::Show& wanted, const Data& data, PipelineFile& file, std::vector<PipelineFile::Show>& shows) {
-  const std::string& end = wanted.of;
+// The top parts of a collection that hold the blocks of a mesh, where others hold sets of their sides and nodes, named as Exodus files and
+// what is made of them name them. Such sets lie upon the blocks: drawn together both would flicker. Empty where there are no sets.
+std::vector<std::string> blocks_beside_sets(const Data& data) {
+  std::vector<std::string> blocks;
+  bool sets = false;
+  if (const auto* c = std::get_if<CollectionPtr>(&data))
+    for (const Collection::Part& part : (*c)->parts) {
+      if (part.name.ends_with(" Blocks")) blocks.push_back(part.name);
+      sets = sets || part.name.ends_with(" Sets");
+    }
+  return sets ? blocks : std::vector<std::string>();
+}
+
+bool has_field(const Data& data, const std::string& name) {
+  bool found = false;
+  for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { found = found || d->fields().find(name); });
+  return found;
+}
+
+// A number that tells parts apart in which nothing else varies; "" for none.
+std::string field_telling_parts(const Data& data, const Context& context) {
+  std::vector<DatasetPtr> parts;
+  for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { parts.push_back(d); });
+  if (parts.size() < 2) return "";
+  for (const Field& of_first : parts[0]->fields()) {
+    std::vector<FieldOf> fields;
+    for (const DatasetPtr& d : parts)
+      if (const Field* f = d->fields().find(of_first.name); f && f->association != Association::whole) fields.push_back({d.get(), f});
+    if (fields.size() == parts.size() && !labels_of(fields, false, context).values.empty()) return of_first.name;
+  }
+  return "";
+}
+
+// What suits the result of a step, as entries under `show`; the filters that it needs are added to the steps.
+Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file, std::vector<PipelineFile::Show>& shows,
+                std::vector<std::string>& notes, Context& context) {
+  std::string end = wanted.of;
+  const std::string origin = origin_of(file, end), stated = word_value(wanted.words, "field").value_or("");
+  const auto add_step = [&](const std::string& operation, std::vector<std::string> words) {
+    const std::string name = free_name(file, operation);
+    file.steps.push_back({name, operation, std::move(words), {end}, 0});
+    return name;
+  };
+  if (const std::vector<std::string> blocks = blocks_beside_sets(data); !blocks.empty()) {
+    ExtractParams p;
+    p.blocks = blocks;
+    if (const Data kept = extract_blocks(data, p, context); stated.empty() || has_field(kept, stated)) {
+      data = kept;
+      end = add_step("extract", {fmt::format("blocks={}", fmt::join(blocks, ","))});
+      notes.push_back("sets of sides and nodes lie upon the blocks and are left out: -f 'extract blocks=\"Side Sets\"' shows them");
+    }
+  }
   // The largest part speaks for all; one with values before one with a mask or a numbering alone.
   DatasetPtr largest;
   bool has_values = false;
@@ -83,19 +120,14 @@ Look choose_for(const PipelineFile::Show& wanted, const Data& data, PipelineFile
     if (!largest || (values && !has_values) || (values == has_values && d->point_count() > largest->point_count()))
       largest = d, has_values = values;
   });
-  if (!largest) fail_no_mesh(data, file_name_of(origin_of(file, end)));
-  const std::string stated = word_value(wanted.words, "field").value_or("");
+  if (!largest) fail_no_mesh(data, file_name_of(origin));
   if (!stated.empty()) largest->fields().require(stated);
   const Field* made = automatic_field(*largest);
-  const std::string field = !stated.empty() ? stated : made && made->look.result ? made->name : "";
+  const std::string field = !stated.empty() ? stated : !made ? field_telling_parts(data, context) : made->look.result ? made->name : "";
   std::vector<std::string> coloring = wanted.words;
   if (field != stated) coloring.push_back("field=" + field);
-  const Look look = choose_look(*largest, field, extension_of(origin_of(file, end)));
-  std::string result = end;
-  if (!look.filter.empty()) {
-    result = free_name(file, look.filter[0]);
-    file.steps.push_back({result, look.filter[0], {look.filter.begin() + 1, look.filter.end()}, {end}, 0});
-  }
+  const Look look = choose_look(*largest, field, extension_of(origin));
+  const std::string result = look.filter.empty() ? end : add_step(look.filter[0], {look.filter.begin() + 1, look.filter.end()});
   for (const Look::Show& s : look.shows) {
     const ShowKind& kind = *s.kind;
     std::vector<std::string> words = changed_words(s.params);
@@ -103,6 +135,35 @@ Look choose_for(const PipelineFile::Show& wanted, const Data& data, PipelineFile
     shows.push_back({std::string(kind.name), words, s.of_input ? end : result, 0});
   }
   return look;
+}
+
+// What one open end shows: its place in the list of shows, and the box of its data.
+struct Chosen {
+  std::string name;
+  Box3 box;
+  size_t begin, end;
+};
+
+bool surrounds(const Box3& outer, const Box3& inner) {
+  const double hair = 1e-6 * outer.diagonal();
+  for (int a = 0; a < 3; ++a)
+    if (inner.lo[a] < outer.lo[a] - hair || inner.hi[a] > outer.hi[a] + hair) return false;
+  return true;
+}
+
+// No input hides another: the surface of one that surrounds an earlier or a smaller one is drawn see-through.
+void see_through(const std::vector<Chosen>& inputs, std::vector<PipelineFile::Show>& shows, std::vector<std::string>& notes) {
+  constexpr const char* faint = "opacity=0.35";
+  for (size_t outer = 0; outer < inputs.size(); ++outer)
+    for (size_t inner = 0; inner < inputs.size(); ++inner) {
+      const Chosen &o = inputs[outer], &i = inputs[inner];
+      if (outer == inner || i.box.empty() || !surrounds(o.box, i.box) || (surrounds(i.box, o.box) && outer < inner)) continue;
+      bool changed = false;
+      for (size_t s = o.begin; s < o.end; ++s)
+        if (find_show(shows[s].kind).is<SurfaceShow>() && !word_value(shows[s].words, "opacity"))
+          shows[s].words.push_back(faint), changed = true;
+      if (changed) notes.push_back(fmt::format("{} surrounds {}: drawn with {}, so that both are seen", o.name, i.name, faint));
+    }
 }
 
 }  // namespace
@@ -120,6 +181,7 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::
   const PipelineGraph built = build_graph(file, graph_options, options.results);
   Look first;
   std::vector<PipelineFile::Show> shows;
+  std::vector<Chosen> inputs;
   for (size_t i = 0; i < file.show.size(); ++i) {
     PipelineFile::Show wanted = file.show[i];
     if (wanted.of.empty()) wanted.of = built.nodes.back().first;  // steps may follow
@@ -128,10 +190,14 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::
       continue;
     }
     const Data data = held.emplace_back(built.graph.evaluate(built.show[i], {}, context));
-    const Look look = choose_for(wanted, data, file, shows);
-    notes.push_back(open > 1 ? fmt::format("{}: {}", file_name_of(origin_of(file, wanted.of)), look.reason) : look.reason);
+    Chosen& input = inputs.emplace_back(Chosen{file_name_of(origin_of(file, wanted.of)), {}, shows.size(), 0});
+    for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { input.box.add(d->bounds()); });
+    const Look look = choose_for(wanted, data, file, shows, notes, context);
+    input.end = shows.size();
+    notes.push_back(open > 1 ? fmt::format("{}: {}", input.name, look.reason) : look.reason);
     if (first.shows.empty()) first = look;
   }
+  if (!in_panels(stated_in(file).picture)) see_through(inputs, shows, notes);
   file.show = std::move(shows);
   return first;
 }

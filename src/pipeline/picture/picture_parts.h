@@ -29,14 +29,67 @@ StatedPicture stated_in(const PipelineFile& file);
 /// Throws Error(usage) for data without a mesh; of tables it says how to make points.
 [[noreturn]] void fail_no_mesh(const Data& data, const std::string& where);
 
+/// A step and, one after the other, the first inputs that lead to it.
+std::vector<const PipelineFile::Step*> steps_behind(const PipelineFile& file, std::string name);
 /// The file a step's data comes from, for hints by extension; "" for sources.
-std::string origin_of(const PipelineFile& file, std::string step);
+std::string origin_of(const PipelineFile& file, const std::string& step);
+/// Where the result of a step was cut open by the plane of a `clip`, turns the view to the side of the cut (mirrored in that plane).
+void face_cut(const PipelineFile& file, const std::string& step, CameraDefaults& camera);
 /// Adds options.coloring to every way to show that colours by a field, and puts what suits the data in the place of every `auto` show (when
 /// nothing is shown: of every step that no other takes as input), adding steps to the file where needed. Returns the look of the first
 /// `auto`; one without shows where there is none. `held` keeps what was looked at, so that the cache finds it again and nothing is computed
 /// twice.
 Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::shared_ptr<Cache>& cache, std::vector<Data>& held,
                   std::vector<std::string>& notes, Context& context);
+
+/// The step whose result the i-th show shows.
+const std::string& shown_step(const PipelineFile& file, size_t i);
+
+/// A scene, seen and annotated.
+struct Panel {
+  Scene scene;
+  Camera camera;
+  Annotation annotation;
+};
+struct NamedPanel {
+  std::string title;
+  Panel panel;
+};
+/// Is the picture divided into panels?
+bool in_panels(const PictureParams& p);
+/// The panel of each show: one for each chain of steps from a file or a source on where inputs have panels, else 0 for all.
+std::vector<size_t> panels_of(const PipelineFile& file, const PictureParams& p);
+/// The name of the file, or of the first step, that a panel shows.
+std::string panel_title(const PipelineFile& file, size_t panel);
+/// Throws Error(usage).
+NamedView view_named(const std::string& word);
+/// What is stated for one panel of `count`: no title, and the size that it has beside those of `around`. Throws Error(usage) for a layout
+/// that is none or has no place for all.
+StatedPicture inside_layout(const StatedPicture& stated, const Annotation& around, size_t count);
+/// The panels in rows, each with its title; title and legends of `around` beside them.
+Image draw_layout(const std::vector<NamedPanel>& panels, const StatedPicture& stated, const StatedPicture& inside, const Annotation& around,
+                  Context& context);
+
+/// One entry under `show`, with its parameters.
+struct StatedShow {
+  const ShowKind* kind;
+  ParamSet params;
+};
+
+/// The combined results of the shows of a panel.
+struct Shown {
+  Scene scene;
+  std::vector<Legend> legends;  ///< each once
+  Box3 box;
+  bool outlined = false, any_points = false;
+  bool patient = false;  ///< something of it is in the patient frame
+  Vec3 stretch{1, 1, 1};
+  std::string axis_titles[3], length_unit;
+};
+
+/// What each panel shows; `panel_of` tells the panel of each show. The legends of all are with the first one.
+std::vector<Shown> collect(const PipelineFile& file, const std::vector<StatedShow>& shows, const std::vector<Data>& results,
+                           const std::vector<size_t>& panel_of, const PictureParams& stated, Context& context);
 
 /// The edges of the box that do not lie in front of the data: those with a face turned away from the camera.
 LinesItem back_edges(const Box3& box, const Camera& camera);

@@ -10,6 +10,8 @@
 #include "render/annotate/axes.h"
 #include "render/annotate/legend.h"
 #include "render/annotate/overlay.h"
+#include "render/annotate/patient_sides.h"
+#include "render/annotate/scale_bar.h"
 #include "render/annotate/texts.h"
 
 namespace sg {
@@ -56,6 +58,13 @@ int legend_width(const Annotation& a, int width, int height) {
   return int(std::ceil(legends_width(plan(measuring, a, width, height).legends)));
 }
 
+Rect area_beside(const Annotation& a, int width, int height) {
+  const Overlay measuring(1, 1, a.dark_background);
+  const Plan p = plan(measuring, a, width, height);
+  const double top = a.title.empty() ? 0 : std::ceil(p.title.bottom());
+  return {0, top, std::max(1.0, double(width) - std::ceil(legends_width(p.legends))), std::max(1.0, double(height) - top)};
+}
+
 void annotate(Image& image, const Annotation& a, const Projection& projection) {
   if (image.channels < 3)
     fail_usage(fmt::format("an image of {} channels cannot be annotated", image.channels), "annotate", "3 or 4 channels are needed");
@@ -63,16 +72,18 @@ void annotate(Image& image, const Annotation& a, const Projection& projection) {
   Overlay overlay(image.width, image.height, a.dark_background);
   const Plan p = plan(overlay, a, image.width, image.height);
 
-  // What must not be written over, in order of importance: title, legends, triad, axes.
+  // What must not be written over, in order of importance: title, legends, sides of the patient, triad, axes.
   std::vector<Rect> taken;
   if (!a.title.empty()) {
     overlay.text(a.title, p.title.x, p.title.y, p.title_style, true);
     taken.push_back(p.title);
   }
   for (const LegendLayout& l : p.legends) taken.push_back(l.column.grown(0.5 * l.font));
+  if (a.patient_letters) draw_patient_letters(overlay, projection, p.font, taken);
   const Rect triad = triad_place(image.width, image.height, p.font);
   const bool room_for_triad = a.triad && triad.width < 0.45 * image.width && triad.height < 0.45 * image.height;
   if (room_for_triad) taken.push_back(triad);
+  draw_foot(overlay, a, projection, p.font, taken);
   overlay.keep_clear(taken);
   draw_texts(overlay, a.texts, projection, 0.88 * p.font, taken);
   draw_box_axes(overlay, a, projection, p.font, taken);

@@ -37,18 +37,19 @@ struct PlacedTick {
   Rect rect;
 };
 
-/// The most ticks whose numbers all stay apart along this edge.
-std::vector<PlacedTick> tick_places(const Overlay& o, const BoxAxis& a, const Projection& p, double font, const TextStyle& style) {
+/// The most ticks whose numbers all stay apart along this edge. `stretch`: drawn length of a unit.
+std::vector<PlacedTick> tick_places(const Overlay& o, const BoxAxis& a, double stretch, const Projection& p, double font,
+                                    const TextStyle& style) {
   const Vec3 from = p.to_pixel(a.from), to = p.to_pixel(a.to);
   const double pixels = length_of({to.x - from.x, to.y - from.y});
-  const double lo = a.from[a.axis], hi = a.to[a.axis];
+  const auto [lo, hi] = std::minmax({a.from[a.axis] / stretch, a.to[a.axis] / stretch});
   std::vector<PlacedTick> places;
   for (int wanted = int(std::max(2.0, std::min(7.0, pixels / (3.5 * font)))); wanted >= 1; --wanted) {
     places.clear();
     bool apart = true;
     for (const TickLabel& t : nice_ticks(lo, hi, wanted)) {
       Vec3 world = a.from;
-      world[a.axis] = t.value;
+      world[a.axis] = t.value * stretch;
       const Vec3 q = p.to_pixel(world);
       PlacedTick tick{{q.x, q.y}, typeset_number(t.text), {}};
       tick.rect = beside(tick.at + a.outward * (0.85 * font), a.outward, o.measure(tick.text, style));
@@ -122,7 +123,7 @@ std::vector<BoxAxis> box_axes(const Box3& box, const Projection& p) {
 }
 
 void draw_box_axes(Overlay& o, const Annotation& annotation, const Projection& p, double font, std::vector<Rect>& taken) {
-  if (!annotation.box) return;
+  if (!annotation.box || !annotation.axes) return;
   TextStyle style;
   style.size = 0.88 * font;
   TextStyle name_style;
@@ -133,11 +134,12 @@ void draw_box_axes(Overlay& o, const Annotation& annotation, const Projection& p
     std::vector<PlacedTick> ticks;
   };
   std::vector<Drawn> drawn;
-  for (const BoxAxis& a : box_axes(*annotation.box, p)) drawn.push_back({a, tick_places(o, a, p, font, style)});
+  for (const BoxAxis& a : box_axes(*annotation.box, p)) drawn.push_back({a, tick_places(o, a, annotation.stretch[a.axis], p, font, style)});
   // Names first: a number fewer is a smaller loss than a name.
   for (const Drawn& d : drawn) {
-    std::string name = annotation.axis_names[d.axis.axis];
-    if (!annotation.length_unit.empty()) name += (name.empty() ? "[" : " [") + annotation.length_unit + "]";
+    const std::string& title = annotation.axis_titles[d.axis.axis];
+    std::string name = title.empty() ? annotation.axis_names[d.axis.axis] : title;
+    if (title.empty() && !annotation.length_unit.empty()) name += (name.empty() ? "[" : " [") + annotation.length_unit + "]";
     if (name.empty()) continue;
     std::vector<Rect> others = taken;
     for (const Drawn& other : drawn)
@@ -188,7 +190,7 @@ void draw_triad(Overlay& o, const Annotation& annotation, const Projection& p, d
   Arrow arrows[3];
   for (int i = 0; i < 3; ++i) {
     Vec3 unit;
-    unit[i] = 1;
+    unit[i] = annotation.stretch[i] < 0 ? -1 : 1;
     arrows[i] = {i, on_picture(unit, p), dot(unit, p.forward)};
   }
   std::stable_sort(arrows, arrows + 3, [](const Arrow& a, const Arrow& b) { return a.depth > b.depth; });

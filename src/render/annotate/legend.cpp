@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text/round_number.h"
 #include "base/text/text.h"
 #include "render/annotate/legend_opacity.h"
 
@@ -35,26 +36,32 @@ std::string title_of(const ColorScale& s) {
   std::string title;
   for (char c : shortened(s.title)) title += c == '_' ? std::string("_\u200b") : std::string(1, c);  // names may break after an underscore
   if (s.unit.empty()) return title;
-  return title.empty() ? "[" + s.unit + "]" : title + " [" + s.unit + "]";
+  std::string unit = "[";
+  for (char c : shortened(s.unit)) unit += c == ' ' ? std::string("\u00a0") : std::string(1, c);  // stays on one line
+  unit += "]";
+  return title.empty() ? unit : title + " " + unit;
 }
 
 std::string name_of_label(const ColorScale& s, size_t i) {
   return i < s.label_names.size() && !s.label_names[i].empty() ? shortened(s.label_names[i]) : short_number(s.labels[i], 8);
 }
 
-/// Round numbers that have room, then the ends of the range where they have room too.
+/// The stated numbers, else round ones and the ends of the range, where they have room.
 std::vector<LegendLayout::Tick> ticks_of(const ColorScale& s, const Rect& bar, double line_height) {
   std::vector<LegendLayout::Tick> ticks;
   const double last = bar.height - 1;
   if (s.limits.size() > 1) {
     // Every border of the bands, or every second, third, ... so that the numbers stay apart.
-    const std::vector<std::string> texts = distinct_texts(s.limits);
+    std::vector<std::string> texts = distinct_texts(s.limits);
+    if (!s.number_format.empty())
+      for (size_t i = 0; i < texts.size(); ++i) texts[i] = formatted_number(s.limits[i], s.number_format);
     const size_t n = s.limits.size(), every = size_t(std::ceil(1.15 * line_height * double(n - 1) / std::max(last, 1.0)));
     for (size_t i = 0; i < n; i += std::max<size_t>(every, 1))
       ticks.push_back({s.limits[i], typeset_number(texts[i]), int(bar.y + std::lround((1 - double(i) / double(n - 1)) * last))});
     return ticks;
   }
-  const auto offer = [&](double value, const std::string& text) {
+  const auto offer = [&](double value, std::string text) {
+    if (!s.number_format.empty()) text = formatted_number(value, s.number_format);
     const double t = s.position(value);
     if (!(t >= 0 && t <= 1)) return;
     const int row = int(bar.y + std::lround((1 - t) * last));
@@ -62,6 +69,10 @@ std::vector<LegendLayout::Tick> ticks_of(const ColorScale& s, const Rect& bar, d
       if (std::abs(other.row - row) < 1.05 * line_height || other.text == typeset_number(text)) return;
     ticks.push_back({value, typeset_number(text), row});
   };
+  if (!s.ticks.empty()) {
+    for (const double value : s.ticks) offer(value, short_number(value, 8));
+    return ticks;
+  }
   const int wanted = std::clamp(int(bar.height / (2.6 * line_height)), 2, 9);
   size_t longest = 0;
   for (const TickLabel& t : nice_ticks(s.lo, s.hi, wanted, s.kind, s.linear_threshold))
@@ -85,12 +96,7 @@ TextStyle sized(double font) {
 constexpr double longest_glyph = 5, glyph_gap = 0.6;
 
 /// The largest of 1, 2, 5, 10, ... whose glyph has room, no larger than what there is.
-double glyph_value(const GlyphLegend& g, double room) {
-  const double most = std::min(room / g.pixels, g.most), power = std::pow(10, std::floor(std::log10(most)));
-  for (const double digit : {5.0, 2.0})
-    if (digit * power <= most) return digit * power;
-  return power;
-}
+double glyph_value(const GlyphLegend& g, double room) { return round_below(std::min(room / g.pixels, g.most)); }
 
 /// The glyph's row above the bar; the column is made wide enough for any, since its length is known only once the width is.
 double plan_glyph(const Overlay& o, const GlyphLegend& g, double font, LegendLayout& l) {

@@ -196,7 +196,7 @@ class Preparation {
     PreparedItem e = start(PreparedItem::Kind::lines, s.data, s.opacity);
     if (s.edge_lines) {
       const SurfaceMesh& lines = surface_mesh(s.edge_lines, "surface");
-      e.segments = derived(s.edge_lines, "segments", [&] { return line_segments(*s.edge_lines, lines); });
+      e.segments = derived(s.edge_lines, "curved edges", [&] { return curved_edges(*s.edge_lines, lines); });
       e.color = color_source(s.data, std::nullopt, s.edge_color, "surface");
       const Positions own = packed_positions(s.edge_lines, lines.points);
       e.positions = own.xyz, e.origin = own.origin, e.width = 1;

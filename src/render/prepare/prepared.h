@@ -40,8 +40,11 @@ struct NormalSet {
 /// Two point numbers per line segment; `group` joins the segments of one polyline (empty: all of them).
 struct SegmentSet {
   std::vector<uint32_t> points, cells, groups;
+  /// Edges of cells: how wide the narrowest polygon beside each is, across it, in units of the positions. Lines of a mesh whose cells are
+  /// smaller than pixels would be a dark surface: they fade. Empty: none does.
+  std::vector<float> room;
   size_t count() const { return points.size() / 2; }
-  size_t bytes() const { return 4 * (points.size() + cells.size() + groups.size()); }
+  size_t bytes() const { return 4 * (points.size() + cells.size() + groups.size() + room.size()); }
 };
 
 /// Colour of anything: one colour, a number per point or cell through a table, or linear RGBA per point or cell.
@@ -101,7 +104,9 @@ NormalSet smooth_normals(const TriangleSet& triangles, double feature_angle);
 /// Vectors of a texture as three packed f32 numbers, and the size below which they count as none. Throws Error(usage).
 void take_texture(const SurfaceTexture& texture, PreparedItem& item);
 SegmentSet line_segments(const Dataset& data, const SurfaceMesh& mesh);
-/// Every edge of the polygons and strips once, in order of its points.
+/// The same of lines that are the edges of curved cells: their room is their length.
+SegmentSet curved_edges(const Dataset& data, const SurfaceMesh& mesh);
+/// Every edge of the polygons and strips once, in order of its points, with its room.
 SegmentSet polygon_edges(const Dataset& data, const SurfaceMesh& mesh);
 ColorSource color_source(const DatasetPtr& data, const std::optional<FieldColor>& color, Vec3f constant, const char* where);
 /// Packed f32 positions and their origin; other layouts are copied, f64 ones relative to the middle of the data.

@@ -15,6 +15,7 @@
 #include "render/volume/natural_units.h"
 #include "render/volume/prepare_cast.h"
 #include "render/volume/rays/split_rays.h"
+#include "render/volume/shared_progress.h"
 
 namespace sg::volume {
 
@@ -239,8 +240,10 @@ void cast_volumes(const Scene& scene, const Projection& projection, const Fragme
     engine = engine_for({picture.volumes[0], picture.lattices[0].get(), projection, picture.lamps, picture.shaded, knobs, context});
   const int across = (frame.width + tile - 1) / tile, down = (frame.height + tile - 1) / tile;
   const int blocks_across = (across + block - 1) / block, blocks_down = (down + block - 1) / block;
+  const size_t blocks = size_t(blocks_across) * size_t(blocks_down);
+  SharedProgress progress(context, blocks, "drawing");
   parallel_for(
-      size_t(blocks_across) * size_t(blocks_down), 1,
+      blocks, 1,
       [&](size_t begin, size_t end) {
         Scratch scratch{{}, Caster(picture.volumes), {}};
         const auto draw = [&](int tx0, int ty0, int tx1, int ty1) {
@@ -263,6 +266,7 @@ void cast_volumes(const Scene& scene, const Projection& projection, const Fragme
             for (int tx = tx0; tx < tx1; ++tx)
               if (!knobs.wanted || (*knobs.wanted)[size_t(ty) * size_t(across) + size_t(tx)]) draw(tx, ty, tx + 1, ty + 1);
         }
+        progress.step();
       },
       &context);
 }

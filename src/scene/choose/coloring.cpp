@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "base/text/text.h"
+#include "scene/choose/telling_field.h"
 
 namespace sg {
 
@@ -22,44 +22,35 @@ void describe(Schema& s, ColoringParams& p) {
   s("nan", p.nan, "Colour where there is no value.");
   s("clamp", p.clamp, "Clamp values outside the range to the end colours; false leaves them out of the picture.");
   s("color", p.color, "One colour instead of a field: #rrggbb, r,g,b or a name.");
+  s("legend", p.legend, "Draw a legend of the colours.");
+  s("legend_title", p.legend_title, "Title of the legend; default: the field's name.");
+  s("legend_unit", p.legend_unit, "Unit in the legend's title; default: the one that the data states.");
+  s("legend_ticks", p.legend_ticks, "Numbers beside the legend's bar; default: round ones.").unit("@field");
+  s("legend_format", p.legend_format,
+    "Numbers of the legend as printf formats them: .2f, .3g, .1e; default: as short as they can be told apart.");
 }
-
-namespace {
-
-// Ids: 5, 6, 7, ... in the order of the points or cells, or a name that says so; textures, which go with the colours of another field.
-bool is_numbering(const Field& f) {
-  if (f.components() != 1) return false;
-  if (f.look.texture) return true;
-  const std::string name = to_lower(f.name);
-  for (std::string_view end : {"id", "ids", "nodenums", "elemnums", "number", "valid"})
-    if (name.ends_with(end)) return true;
-  const size_t n = std::min<size_t>(f.array.count(), 1000);
-  if (n < 16) return false;
-  for (size_t i = 1; i < n; ++i)
-    if (f.array.get(i) != f.array.get(i - 1) + 1) return false;
-  return true;
-}
-
-}  // namespace
 
 const Field* automatic_field(const Dataset& d) {
   // A field that is the same everywhere (a contour's own field) says nothing in colour.
-  auto varies = [&](const Field& f) {
+  const auto varies = [&](const Field& f) {
     const Range r = d.range(f);
     return r.empty() || r.lo < r.hi;
   };
-  auto plain = [](Role r) { return r != Role::normals && r != Role::tcoords && r != Role::global_ids; };
+  const auto plain = [](Role r) { return r != Role::normals && r != Role::tcoords && r != Role::global_ids; };
   if (const Field* f = d.fields().result(); f && f->association != Association::whole && f->role != Role::global_ids && varies(*f))
     return f;
   for (const Field& f : d.fields())
     if (f.look.bands) return &f;
-  if (const Field* f = d.fields().with_role(Role::scalars); f && f->components() == 1 && varies(*f)) return f;
+  const Field* scalars = d.fields().with_role(Role::scalars);
+  if (scalars && scalars->components() == 1 && telling(d, *scalars) == Telling::values) return scalars;
   if (const Field* f = d.fields().with_role(Role::colors)) return f;
-  for (const bool numberings : {false, true})
-    for (int components : {1, 3})
-      for (Association a : {Association::point, Association::cell})
+  for (const Telling wanted : {Telling::values, Telling::divisions, Telling::numbering}) {
+    if (scalars && scalars->components() == 1 && telling(d, *scalars) == wanted) return scalars;
+    for (const int components : {1, 3})
+      for (const Association a : {Association::point, Association::cell})
         for (const Field& f : d.fields())
-          if (f.association == a && f.components() == components && plain(f.role) && is_numbering(f) == numberings && varies(f)) return &f;
+          if (f.association == a && f.components() == components && plain(f.role) && telling(d, f) == wanted) return &f;
+  }
   return nullptr;
 }
 

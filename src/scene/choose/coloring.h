@@ -12,6 +12,12 @@
 
 namespace sg {
 
+/// Values that stand for things, in rising order, with a name for each or none.
+struct Labels {
+  std::vector<double> values;
+  std::vector<std::string> names;
+};
+
 struct ColoringParams {
   FieldName field;
   int component = -1;
@@ -22,12 +28,17 @@ struct ColoringParams {
   std::string below, above, nan;
   bool clamp = true;
   std::string color;
+  bool legend = true;
+  std::optional<std::string> legend_title, legend_unit;
+  std::vector<double> legend_ticks;
+  std::string legend_format;
+  Labels labels;  ///< of all datasets that are coloured alike (shared_scale.h); no word states them
 };
 void describe(Schema& s, ColoringParams& p);
 
 /// The field that colours a dataset when none is named: the result of the last operation when it varies, the bands of filled contours, its
-/// scalars when they vary, else its own colours, else the first field that varies, points before cells, scalars before vectors, numberings
-/// last. Null when there is none.
+/// scalars when they tell values, else its own colours, else the first field that tells most (telling_field.h), points before cells,
+/// scalars before vectors. Null when no field varies.
 const Field* automatic_field(const Dataset& data);
 
 /// The field that `params` names, else the automatic one; null for one colour and when there is none. Throws Error(usage).

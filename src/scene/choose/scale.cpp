@@ -12,6 +12,8 @@
 #include "color/map_files/colormap_file.h"
 #include "color/parse_color.h"
 #include "data/lattice.h"
+#include "data/patient/modality.h"
+#include "data/patient/patient_frame.h"
 #include "data/ranks/over_all.h"
 #include "scene/choose/shown_range.h"
 
@@ -19,7 +21,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t most_labels = 64;
+constexpr size_t most_labels = 64, most_legend_labels = 4096;  // where they are guessed, and at all
 
 // Distinct values of all pieces among evenly spread samples, or more than `limit` of them.
 std::vector<double> distinct_values(const Field& field, size_t limit, const Context& context) {
@@ -74,11 +76,10 @@ void take_categories(const FileColormap& file, const Field& field, ColorScale& s
                            field.name, s.map.name, file.map.colors.size()));
 }
 
-// Names of labels from the dataset's note "labels of FIELD", lines of "number=name"; empty when one has none.
-std::vector<std::string> noted_names(const Dataset& d, const Field& field, const std::vector<double>& labels) {
+// Names of numbers by the dataset's note "labels of FIELD", lines of "number=name".
+void add_noted_names(const Dataset& d, const Field& field, std::map<double, std::string>& known) {
   for (const auto& [name, text] : d.notes()) {
     if (name != "labels of " + field.name) continue;
-    std::map<double, std::string> known;
     for (size_t begin = 0; begin < text.size();) {
       const size_t end = std::min(text.find('\n', begin), text.size()), equal = text.find('=', begin);
       double number = 0;
@@ -86,12 +87,13 @@ std::vector<std::string> noted_names(const Dataset& d, const Field& field, const
         known[number] = text.substr(equal + 1, end - equal - 1);
       begin = end + 1;
     }
-    std::vector<std::string> names;
-    for (const double l : labels)
-      if (const auto k = known.find(l); k != known.end()) names.push_back(k->second);
-    if (names.size() == labels.size()) return names;
   }
-  return {};
+}
+
+// What may name things: small integers of one component.
+bool may_be_labels(const Field& field, const Range& r) {
+  return !is_float(field.array.type()) && field.components() == 1 && field.role != Role::global_ids && field.role != Role::colors &&
+         !r.empty() && r.lo >= 0 && r.hi - r.lo <= 10000;
 }
 
 // The point field whose values lie within the limits of every polygon's band: what the bands are of. Null when there is none.
@@ -110,6 +112,14 @@ const Field* banded_field(const Dataset& d, const Field& low, const Field& high)
   for (const Field& f : d.fields())
     if (f.association == Association::point && f.components() == 1 && fits(f)) return &f;
   return nullptr;
+}
+
+// What is stated of the legend.
+void name_legend(const ColoringParams& p, ColorScale& s) {
+  if (p.legend_title) s.title = *p.legend_title;
+  if (p.legend_unit) s.unit = *p.legend_unit;
+  s.ticks = p.legend_ticks, s.number_format = p.legend_format;
+  if (!s.number_format.empty()) formatted_number(0, s.number_format);  // mistakes are told before anything is drawn
 }
 
 // Filled contours: a colour for each band, and a legend of the limits between them.
@@ -160,17 +170,16 @@ ColorScale band_scale(const Dataset& d, const Field& band, const ColoringParams&
   }
   s.lo = s.labels.front(), s.hi = std::max(s.labels.back(), s.lo + 1);
   if (!p.nan.empty()) s.nan = parse_color(p.nan, "nan");
+  name_legend(p, s);
   return s;
 }
 
 }  // namespace
 
 bool looks_like_labels(const Dataset& data, const Field& field, const Context& context) {
-  if (is_float(field.array.type()) || field.components() != 1) return false;
-  if (field.role == Role::global_ids || field.role == Role::colors) return false;
+  if (is_float(field.array.type()) || field.components() != 1) return false;  // before anything is read
   const uint64_t count = all_sum(uint64_t(field.array.count()), context.communicator);
-  const Range r = range_over_all(data, field, -1, context);
-  if (count < 2 || r.empty() || r.lo < 0 || r.hi - r.lo > 10000) return false;
+  if (!may_be_labels(field, range_over_all(data, field, -1, context)) || count < 2) return false;
   const auto values = distinct_values(field, most_labels, context);
   if (values.size() > most_labels || values.size() < 2) return false;
   // A piece without cells is no grid, whatever the others are.
@@ -182,11 +191,37 @@ bool looks_like_labels(const Dataset& data, const Field& field, const Context& c
   return share_of_equal_neighbours(field, nx, values[0], context) > 0.7;
 }
 
+Labels labels_of(std::span<const FieldOf> fields, bool categorical, const Context& context) {
+  Labels labels;
+  std::map<double, std::string> known;
+  for (const FieldOf& f : fields) {
+    const Range r = range_over_all(*f.data, *f.field, -1, context);
+    if (r.empty()) continue;
+    if (!categorical && !(may_be_labels(*f.field, r) && (r.lo == r.hi || looks_like_labels(*f.data, *f.field, context)))) return {};
+    const auto values = distinct_values(*f.field, most_legend_labels, context);
+    labels.values.insert(labels.values.end(), values.begin(), values.end());
+    add_noted_names(*f.data, *f.field, known);
+  }
+  std::sort(labels.values.begin(), labels.values.end());
+  labels.values.erase(std::unique(labels.values.begin(), labels.values.end()), labels.values.end());
+  if (!categorical && (labels.values.size() < 2 || labels.values.size() > most_labels)) return {};
+  for (const double v : labels.values)
+    if (const auto k = known.find(v); k != known.end()) labels.names.push_back(k->second);
+  if (labels.names.size() != labels.values.size()) labels.names.clear();
+  return labels;
+}
+
 bool two_sided(const Field& field, const Range& r) {
   const FieldLook& look = field.look;
   if (look.one_sided || !(r.lo < 0 && r.hi > 0)) return false;
   return look.two_sided || std::min(-r.lo, r.hi) > 0.05 * std::max(-r.lo, r.hi);
 }
+
+bool is_scanned(const Dataset& data, const Field& field) {
+  return in_patient_frame(data) && field.role == Role::scalars && field.components() == 1 && !field.look.result;
+}
+
+std::string_view sequential_map(const Dataset& data, const Field& field) { return is_scanned(data, field) ? "gray" : "sight"; }
 
 ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringParams& p, Context& context) {
   ColorScale s;
@@ -204,7 +239,8 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   const bool automatic = !p.map;
   const std::optional<FileColormap> file = p.map && names_colormap_file(*p.map) ? std::optional(find_file_colormap(*p.map)) : std::nullopt;
   const Colormap asked = automatic ? Colormap{} : file ? file->map : find_colormap(*p.map);
-  const bool labels = automatic ? p.range.empty() && looks_like_labels(data, field, context) : asked.categorical();
+  const bool shared = !p.labels.values.empty();
+  const bool labels = shared || (automatic ? p.range.empty() && looks_like_labels(data, field, context) : asked.categorical());
   s.kind = p.scale;
   if (s.kind == ScaleKind::log && p.range.empty() && r.lo <= 0) {
     // Zeros and negative values have no place on a log scale: start at the smallest positive value.
@@ -223,7 +259,8 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
     context.info(fmt::format("values of '{}' at or below 0 have no place on a log scale; they are drawn as below it", field.name));
   }
   const bool is_signed = two_sided(field, r);
-  if (automatic) s.map = find_colormap(labels ? "labels" : is_signed && s.kind != ScaleKind::log ? "coolwarm" : "sight");
+  if (automatic)
+    s.map = find_colormap(labels ? "labels" : is_signed && s.kind != ScaleKind::log ? "coolwarm" : sequential_map(data, field));
   else s.map = asked;
   if (s.map.kind == MapKind::unsafe)
     context.warn(fmt::format(
@@ -241,6 +278,9 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
     if (s.kind == ScaleKind::linear && !labels && !file)
       if (const ShownRange shown = shown_range({&one, 1}, p.component, centred, context); !shown.range.empty())
         take_shown_range(shown, r, field.name, s, context);
+    if (const Range window = stated_window(data);
+        automatic && !labels && !is_signed && is_scanned(data, field) && window.lo < s.hi && window.hi > s.lo)
+      s.lo = std::max(s.lo, window.lo), s.hi = std::min(s.hi, window.hi);
   }
   if (s.lo == s.hi) {  // a constant field: any range around it will do
     const double d = s.lo == 0 ? 1 : std::abs(s.lo) * 0.01;
@@ -249,9 +289,11 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   }
   if (s.kind == ScaleKind::symlog) s.linear_threshold = p.linear_threshold > 0 ? p.linear_threshold : nice_symmetric({s.lo, s.hi}) * 1e-3;
   if (labels) {
-    s.labels = distinct_values(field, 4096, context);
+    const FieldOf one{&data, &field};
+    const Labels found = shared ? p.labels : labels_of({&one, 1}, true, context);
+    s.labels = found.values;
     if (file) take_categories(*file, field, s, context);
-    else s.label_names = noted_names(data, field, s.labels);
+    else s.label_names = found.names;
     if (!s.labels.empty()) s.lo = s.labels.front(), s.hi = std::max(s.labels.back(), s.lo + 1);
   }
   if (file) {
@@ -263,6 +305,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   if (!p.above.empty()) s.above = parse_color(p.above, "above");
   if (!p.nan.empty()) s.nan = parse_color(p.nan, "nan");
   s.clamp = p.clamp;
+  name_legend(p, s);
   return s;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "color/map_files/colormap_file.h"
 #include "color/parse_color.h"
 #include "data/ranks/over_all.h"
 #include "scene/choose/scale.h"
@@ -10,6 +11,9 @@
 namespace sg {
 
 bool share_scale(std::span<const FieldOf> fields, ColoringParams& p, const Context& context) {
+  const bool categorical = p.map && !names_colormap_file(*p.map) && find_colormap(*p.map).categorical();
+  if (categorical || (!p.map && p.range.empty() && p.scale == ScaleKind::linear)) p.labels = labels_of(fields, categorical, context);
+  if (!p.labels.values.empty()) return true;
   Range all;
   bool same = true;
   for (const FieldOf& f : fields) {
@@ -24,7 +28,7 @@ bool share_scale(std::span<const FieldOf> fields, ColoringParams& p, const Conte
   else if (automatic && is_signed) shown.range.hi = std::max(-all.lo, all.hi), shown.range.lo = -shown.range.hi;
   const bool cut = shown.cut_low || shown.cut_high;
   if ((same && !cut) || !(all.lo < all.hi)) return false;
-  const std::string map = is_signed ? "coolwarm" : "sight";
+  const std::string map(is_signed ? "coolwarm" : sequential_map(*fields[0].data, *fields[0].field));
   if (automatic) p.map = map;
   if (!p.range.empty()) return true;
   p.range = {shown.range.lo, shown.range.hi};

@@ -8,9 +8,9 @@
 
 namespace sg {
 
-/// What choose_scale() does for one dataset, decided once for all: fills in map, range, and the colours beyond cut ends, where they are not
-/// stated. `fields`: the same field of each dataset that has it, at least one. False, and nothing changed, where every dataset comes to the
-/// same by itself.
+/// What choose_scale() does for one dataset, decided once for all: fills in labels, or map, range and the colours beyond cut ends, where
+/// not stated. `fields`: the same field of each dataset that has it, at least one. False, and nothing changed, where every dataset comes to
+/// the same by itself.
 bool share_scale(std::span<const FieldOf> fields, ColoringParams& p, const Context& context = Context());
 
 /// The same by the range of all, for datasets that are not in memory together; no tails are cut. `one`: the field in one of them.

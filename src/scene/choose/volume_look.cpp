@@ -6,6 +6,8 @@
 #include "base/text/text.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
+#include "data/patient/modality.h"
+#include "data/patient/patient_frame.h"
 #include "scene/choose/scale.h"
 #include "scene/choose/shown_range.h"
 
@@ -34,13 +36,16 @@ std::vector<size_t> histogram(const Field& field, int component, double lo, doub
 bool looks_like_ct(const Dataset& data, const Field& field, double* offset) {
   const ElementType t = field.array.type();
   if ((t != ElementType::i16 && t != ElementType::u16) || field.components() != 1) return false;
+  const Modality modality = modality_of(data, field);
   const Range r = data.range(field);
-  if (r.empty() || r.hi < 1500 || r.hi > 8000 || r.lo < -4000) return false;
+  if (r.empty() || modality == Modality::other) return false;
   const bool hounsfield = r.lo <= -500;
-  if (!hounsfield && r.lo > 300) return false;
   *offset = hounsfield ? 0 : 1024;
-  // Air: a good part of the volume lies at least 300 HU below water.
-  const auto h = histogram(field, -1, r.lo, r.hi);
+  if (modality == Modality::ct) return hounsfield || r.hi > 500;
+  if (r.hi < 1500 || r.hi > 8000 || r.lo < -4000 || (!hounsfield && r.lo > 300)) return false;
+  // Air: a good part of the volume lies at least 300 HU below water. Of the rest soft tissue is a narrow peak about water; MR images, which
+  // begin at 0 as well, are spread over their whole range.
+  const auto h = histogram(field, -1, r.lo, r.hi, 1024);
   size_t all = 0, air = 0, tissue = 0;
   for (size_t b = 0; b < h.size(); ++b) {
     const double hu = r.lo + (double(b) + 0.5) / double(h.size()) * (r.hi - r.lo) - *offset;
@@ -48,7 +53,7 @@ bool looks_like_ct(const Dataset& data, const Field& field, double* offset) {
     if (hu < -300) air += h[b];
     if (hu > -150 && hu < 200) tissue += h[b];
   }
-  return air * 10 > all && tissue * 20 > all;
+  return air * 10 > all && tissue * 20 > all && (hounsfield || tissue * 5 > 2 * (all - air));
 }
 
 namespace {
@@ -82,7 +87,7 @@ size_t fullest(const std::vector<size_t>& h) {
 std::string known_look(const Dataset& data, const Field& field, const Range& r, int component, VolumeItem& item) {
   using Shows = FieldLook::Shows;
   const Shows shows = field.look.shows;
-  if (shows == Shows::any) return "";
+  if (shows == Shows::any || shows == Shows::zero) return "";
   const auto h = histogram(field, component, r.lo, r.hi, 1024);
   size_t all = 0;
   for (const size_t n : h) all += n;
@@ -133,6 +138,18 @@ void ct_look(const Range& r, double offset, bool choose_colors, VolumeItem& item
   if (item.color.title == "MetaImage" || item.color.title.empty()) item.color.title = "CT value";
 }
 
+// Whatever is no air, in grey and lit, so that the skin can be read; the window is the file's own or that of the foreground.
+void scan_look(const Dataset& data, const Field& field, int component, const Range& r, VolumeItem& item) {
+  const Range f = foreground(field, component, r.lo, r.hi), stated = stated_window(data);
+  const bool window = !stated.empty() && stated.hi > r.lo && stated.lo < r.hi;
+  const double width = f.hi - f.lo;
+  item.opacity.points = {{r.lo, 0}, {f.lo, 0}, {f.lo + 0.06 * width, 0.25}, {f.hi, 0.5}, {r.hi, 0.5}};
+  if (f.hi >= r.hi) item.opacity.points.pop_back();
+  item.shaded = true;
+  item.color.map = find_colormap("gray");
+  item.color.lo = window ? std::max(stated.lo, r.lo) : r.lo, item.color.hi = window ? std::min(stated.hi, r.hi) : f.hi;
+}
+
 }  // namespace
 
 Range foreground(const Field& field, int component, double lo, double hi) {
@@ -163,7 +180,9 @@ std::string choose_volume_look(const Dataset& data, const Field& field, const Co
   double offset = 0;
   if (anatomy && params.range.empty() && looks_like_ct(data, field, &offset)) {
     ct_look(data.range(field), offset, !params.map, item);
-    return fmt::format("CT (an air peak and soft tissue in 16-bit values{}): skin and bone colours", offset ? ", Hounsfield + 1024" : "");
+    const bool stated = modality_of(data, field) == Modality::ct;
+    return fmt::format("CT ({}{}): skin and bone colours", stated ? "stated in the file" : "an air peak and soft tissue in 16-bit values",
+                       offset ? ", Hounsfield + 1024" : "");
   }
   if (item.color.kind != ScaleKind::linear) {  // by position, so that decades get equal shares
     item.opacity.points.clear();
@@ -175,6 +194,10 @@ std::string choose_volume_look(const Dataset& data, const Field& field, const Co
     const double m = std::max(-r.lo, r.hi);
     item.opacity.points = {{-m, 0.8}, {-0.5 * m, 0.25}, {-0.2 * m, 0}, {0.2 * m, 0}, {0.5 * m, 0.25}, {m, 0.8}};
     return "signed: opaque away from zero on both sides";
+  }
+  if (anatomy && in_patient_frame(data) && !params.map && params.range.empty()) {
+    scan_look(data, field, params.component, r, item);
+    return fmt::format("a scan: in grey, values above {} are shown", short_number(item.opacity.points[1].x, 3));
   }
   // What most samples have about is taken for the background; opacity follows the quantiles away from it.
   const auto h = histogram(field, params.component, r.lo, r.hi);

@@ -6,6 +6,7 @@
 #include "scene/show/glyphs.h"
 #include "scene/show/labels.h"
 #include "scene/show/lines.h"
+#include "scene/show/other_names.h"
 #include "scene/show/outline.h"
 #include "scene/show/points.h"
 #include "scene/show/show.h"
@@ -66,7 +67,7 @@ const ShowKind& find_show(std::string_view name) {
     if (k.name == name) return k;
     names.emplace_back(k.name);
   }
-  fail_usage(fmt::format("unknown way to show '{}'", name), "--show", unknown_name_hint(name, names));
+  fail_usage(fmt::format("unknown way to show '{}'", name), "--show", said_here(name, names));
 }
 
 const Field* shown_field(const ShowKind& kind, const ParamSet& params, const Dataset& d) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/show/parts.h"
 
+#include <algorithm>
+
 #include "scene/choose/shared_scale.h"
 #include "scene/show/volume.h"
 #include "scene/show/volume_parts.h"
@@ -21,16 +23,19 @@ std::string field_of_parts(const std::vector<DatasetPtr>& parts, const ShowKind&
   return "";
 }
 
-void share_colors(const std::vector<DatasetPtr>& parts, const ShowKind& kind, std::vector<ParamSet>& params) {
+void share_colors(const std::vector<DatasetPtr>& parts, const ShowKind& kind, const std::vector<DatasetPtr>& beside,
+                  std::vector<ParamSet>& params) {
   ColoringParams shared = *kind.coloring(params[0]);
   const bool by_themselves = kind.automatic && shared.field.empty();  // they choose their field: here the range alone
   const std::string name = field_of_parts(parts, kind, params[0]);
   if (name.empty()) return;
   std::vector<FieldOf> fields;
-  for (const DatasetPtr& d : parts)
-    if (const Field* f = d->fields().find(name); f && f->association != Association::whole) fields.push_back({d.get(), f});
+  for (const auto* some : {&parts, &beside})
+    for (const DatasetPtr& d : *some)
+      if (const Field* f = d->fields().find(name); f && f->association != Association::whole) fields.push_back({d.get(), f});
   if (fields.empty()) return;  // the show says what there is instead
-  share_scale(fields, shared);
+  const bool own_colors = std::all_of(fields.begin(), fields.end(), [](const FieldOf& f) { return f.field->role == Role::colors; });
+  if (!own_colors) share_scale(fields, shared);
   for (size_t i = 0; i < parts.size(); ++i) {
     ColoringParams& own = *kind.coloring(params[i]);
     const bool has = parts[i]->fields().find(name) != nullptr;
@@ -42,18 +47,35 @@ void share_colors(const std::vector<DatasetPtr>& parts, const ShowKind& kind, st
 
 }  // namespace
 
-std::vector<ParamSet> params_of_parts(const std::vector<DatasetPtr>& parts, const ShowKind& kind, const ParamSet& stated) {
+std::vector<std::vector<DatasetPtr>> colored_alike(const std::vector<ShownParts>& shown) {
+  std::vector<std::string> names;
+  for (const ShownParts& s : shown) {
+    const ColoringParams* c = s.kind->coloring && !s.kind->is<VolumeShow>() ? s.kind->coloring(*s.stated) : nullptr;
+    const bool chooses = c && !c->map && c->range.empty() && c->scale == ScaleKind::linear && c->component < 0;
+    names.push_back(chooses ? field_of_parts(s.parts, *s.kind, *s.stated) : "");
+  }
+  std::vector<std::vector<DatasetPtr>> beside(shown.size());
+  for (size_t i = 0; i < shown.size(); ++i)
+    for (size_t k = 0; k < shown.size(); ++k)
+      if (i != k && !names[i].empty() && names[i] == names[k])
+        beside[i].insert(beside[i].end(), shown[k].parts.begin(), shown[k].parts.end());
+  return beside;
+}
+
+std::vector<ParamSet> params_of_parts(const std::vector<DatasetPtr>& parts, const ShowKind& kind, const ParamSet& stated,
+                                      const std::vector<DatasetPtr>& beside) {
   std::vector<ParamSet> params;
   for (size_t i = 0; i < parts.size(); ++i) params.push_back(copy_of(stated));
-  if (parts.size() < 2) return params;
-  if (kind.coloring) share_colors(parts, kind, params);
-  if (kind.share) kind.share(parts, params);
+  if (kind.coloring && parts.size() + beside.size() > 1) share_colors(parts, kind, beside, params);
+  if (kind.share && parts.size() > 1) kind.share(parts, params);
   return params;
 }
 
-std::vector<Legend> show_parts(Scene& scene, const std::vector<DatasetPtr>& parts, const ShowKind& kind, const ParamSet& stated,
-                               uint32_t group, Context& context) {
-  const std::vector<ParamSet> params = params_of_parts(parts, kind, stated);
+std::vector<Legend> show_parts(Scene& scene, const ShownParts& shown, const std::vector<DatasetPtr>& beside, uint32_t group,
+                               Context& context) {
+  const std::vector<DatasetPtr>& parts = shown.parts;
+  const ShowKind& kind = *shown.kind;
+  const std::vector<ParamSet> params = params_of_parts(parts, kind, *shown.stated, beside);
   const size_t first = scene.items.size();
   const bool several = parts.size() > 1, joined = several && kind.is<VolumeShow>();
   std::vector<Legend> legends;
@@ -79,8 +101,8 @@ std::vector<Legend> show_parts(Scene& scene, const std::vector<DatasetPtr>& part
 }
 
 bool same_legend(const Legend& a, const Legend& b) {
-  return a.title == b.title && a.map.name == b.map.name && a.lo == b.lo && a.hi == b.hi && a.kind == b.kind && a.labels == b.labels &&
-         a.limits == b.limits && (!a.glyph || !b.glyph || a.glyph->length == b.glyph->length);
+  return a.title == b.title && a.map.name == b.map.name && a.unit == b.unit && a.lo == b.lo && a.hi == b.hi && a.kind == b.kind &&
+         a.labels == b.labels && a.limits == b.limits && (!a.glyph || !b.glyph || a.glyph->length == b.glyph->length);
 }
 
 }  // namespace sg

@@ -5,14 +5,26 @@
 
 namespace sg {
 
+/// What is shown in one way.
+struct ShownParts {
+  std::vector<DatasetPtr> parts;
+  const ShowKind* kind;
+  const ParamSet* stated;
+};
+/// Of each entry the datasets of the others that are coloured by the same field and choose their colours themselves, as it does: they take
+/// one range with it, and one legend. Volumes, whose colours go with their opacity, stand alone.
+std::vector<std::vector<DatasetPtr>> colored_alike(const std::vector<ShownParts>& shown);
+
 /// The parameters for each part: the field is that of the part with the most points (a mask or a numbering says less than the values of
-/// another), over the range of all; parts without it take one colour. A single part gets them as they are. Values of their own.
-std::vector<ParamSet> params_of_parts(const std::vector<DatasetPtr>& parts, const ShowKind& kind, const ParamSet& stated);
+/// another), over the range of all and of `beside`; parts without it take one colour. A single part with nothing beside it gets them as
+/// they are. Values of their own.
+std::vector<ParamSet> params_of_parts(const std::vector<DatasetPtr>& parts, const ShowKind& kind, const ParamSet& stated,
+                                      const std::vector<DatasetPtr>& beside = {});
 
 /// Adds the items of all parts, but those of which nothing is left. Volumes are joined: rays see all of them together (`group`: a number
 /// that no other volume has, not 0). Returns the legends, not yet compared with each other.
-std::vector<Legend> show_parts(Scene& scene, const std::vector<DatasetPtr>& parts, const ShowKind& kind, const ParamSet& stated,
-                               uint32_t group, Context& context);
+std::vector<Legend> show_parts(Scene& scene, const ShownParts& shown, const std::vector<DatasetPtr>& beside, uint32_t group,
+                               Context& context);
 
 /// The same colours of the same values.
 bool same_legend(const Legend& a, const Legend& b);

@@ -3,6 +3,7 @@
 
 #include "color/parse_color.h"
 #include "data/field_ops.h"
+#include "filter/field/sampling/point_cell.h"
 #include "filter/mesh/faces/faces.h"
 #include "filter/mesh/surface.h"
 #include "scene/show/field_color.h"
@@ -12,8 +13,9 @@ namespace sg {
 
 void describe(Schema& s, SurfaceShow& p) {
   describe(s, p.coloring);
+  s("style", p.style, "solid: its faces; wireframe: the edges of the faces alone; points: their points alone.");
   s("opacity", p.opacity, "Opacity: 1 is opaque, 0 invisible.").range(0, 1);
-  s("edges", p.edges, "Draw the edges of the cells.");
+  s("edges", p.edges, "Draw the edges of the cells, where those are wider than a few pixels; below eight they fade.");
   s("flat", p.flat, "Shade with one normal per polygon instead of smoothly.");
   s("lit", p.lit, "Light the surface; false shows unlit colours.");
   s("feature_angle", p.feature_angle, "Edges with a larger angle stay sharp when normals are computed.").unit("deg").range(0, 180);
@@ -43,9 +45,51 @@ DatasetPtr vertex_cells(const Dataset& d, const SurfaceMesh& mesh, const std::st
   return make_dataset(Mesh(PointCloud{{Array::from_vector(std::move(xyz), 3), mesh.points.origin}}), std::move(fields));
 }
 
+// Its points with their fields, and its edges as lines.
+DatasetPtr edges_as_lines(const Dataset& surface) {
+  const SurfaceMesh& from = *surface.as<SurfaceMesh>();
+  const std::vector<uint32_t> ends = edges_of(from);
+  SurfaceMesh mesh;
+  mesh.points = from.points;
+  mesh.lines = {Array::from_vector(std::vector<int64_t>(ends.begin(), ends.end())), {}, 2};
+  FieldSet fields;
+  for (const Field& f : surface.fields())
+    if (f.association == Association::point) fields.add(f);
+  return make_dataset(Mesh(std::move(mesh)), std::move(fields));
+}
+
+std::optional<Legend> add_sparse(Scene& scene, const DatasetPtr& input, const SurfaceShow& p, Context& context) {
+  DatasetPtr data = surface_of(input, context);
+  auto color_by = field_color(*input, p.coloring, context);
+  const auto legend = legend_of(color_by);
+  if (color_by && color_by->direct && color_by->association == Association::cell) color_by.reset();  // colours have no mean
+  if (color_by && color_by->association == Association::cell) {                                      // edges and points lie between cells
+    CellToPointParams to_points;
+    to_points.fields = {color_by->field};
+    data = cell_to_point(data, to_points, context);
+    color_by->association = Association::point;
+  }
+  const auto draw = [&](auto item) {
+    item.color_by = color_by, item.opacity = p.opacity;
+    if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
+    scene.items.emplace_back(std::move(item));
+  };
+  if (p.style == SurfaceStyle::points) {
+    PointsItem points;
+    points.data = data;
+    draw(std::move(points));
+  } else {
+    LinesItem lines;
+    lines.data = edges_as_lines(*data), lines.width = 1.2;
+    draw(std::move(lines));
+  }
+  return legend;
+}
+
 }  // namespace
 
 std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceShow& p, Context& context) {
+  if (p.style != SurfaceStyle::solid) return add_sparse(scene, input, p, context);
   SurfaceItem item;
   // Ranges come from the whole input, so that a surface and its volume share colours.
   item.color_by = field_color(*input, p.coloring, context);

@@ -8,8 +8,15 @@
 
 namespace sg {
 
+enum class SurfaceStyle { solid, wireframe, points };
+constexpr auto enum_words(SurfaceStyle) {
+  using enum SurfaceStyle;
+  return std::array{Word{"solid", solid}, Word{"wireframe", wireframe}, Word{"points", points}};
+}
+
 struct SurfaceShow {
   ColoringParams coloring;
+  SurfaceStyle style = SurfaceStyle::solid;
   double opacity = 1;
   bool edges = false, flat = false, lit = true;
   double feature_angle = 40;

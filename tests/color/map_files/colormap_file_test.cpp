@@ -91,6 +91,14 @@ TEST_CASE("colour map files: colours as HSV, CMYK, greys, names with shades, and
   CHECK(color_text(one("hsv2.cpt", "# COLOR_MODEL = hsv\n0 240/1/0.5 1 60/0/1\n").map.at(0)) == "#000080");
   const FileColormap hsv = one("hsv3.cpt", "# COLOR_MODEL = HSV\n0 0-1-1 1 240-1-1\n");
   CHECK(length(hsv.map.at(0.5) - Vec3f(0, 1, 0)) < 0.01f);  // over green, not through purple
+  // A whole turn is one, and greys have the hue that the table gives them.
+  const FileColormap turn = one("turn.cpt", "# COLOR_MODEL = +HSV\n# CYCLIC\n0 0-1-1 1 360-1-1\n");
+  CHECK(length(turn.map.at(1 / 3.0) - Vec3f(0, 1, 0)) < 0.01f);
+  CHECK(turn.map.kind == MapKind::unsafe);  // closed, but its lightness rises and falls three times
+  const FileColormap dark = one("dark.cpt", "# COLOR_MODEL = +HSV\n0 240-1-0 1 240-1-1\n");
+  CHECK(length(dark.map.at(0.5) - Vec3f(0, 0, 0.5f)) < 0.01f);
+  CHECK(color_text(one("columns.cpt", "# COLOR_MODEL = +HSV\n0 240 1 1 1 240 0 1\n").map.at(0)) == "#0000ff");
+  CHECK(color_text(one("word.cpt", "# COLOR_MODEL = +HSV\n0 red 1 blue\n").map.at(0)) == "#ff0000");
   CHECK(color_text(one("cmyk.cpt", "# COLOR_MODEL = CMYK\n0 100/0/0/0 1 0/0/100/50\n").map.at(0)) == "#00ffff");
   CHECK(color_text(one("cmyk2.cpt", "# COLOR_MODEL = CMYK\n0 100/0/0/0 1 0/0/100/50\n").map.at(1)) == "#808000");
   CHECK(color_text(one("old.cpt", "0 10 20 30 1 40 50 60 B\n").map.at(1)) == "#28323c");

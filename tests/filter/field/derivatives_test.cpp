@@ -231,6 +231,11 @@ TEST_CASE("derivatives: wrong fields are refused, threads do not change a byte")
   const DatasetPtr d = with(tets(3), Association::point, 1, wave_value);
   CHECK(test::error_of([&] { curl(d, {}, ctx); }).find("no field of 3 components") != std::string::npos);
   CHECK(test::error_of([&] { divergence(d, {{"f"}, ""}, ctx); }).find("has 1 components, not 3") != std::string::npos);
+  DatasetParts whole = d->parts();
+  whole.fields.add({"of all", Association::whole, Array::from_vector(std::vector<double>{1, 2, 3}), "", Role::none});
+  CHECK(test::error_of([&] {
+          hessian(make_dataset(whole), {{"of all"}, ""}, ctx);
+        }).find("on neither points nor cells") != std::string::npos);
   std::vector<Array> r;
   for (const int threads : {1, 8}) {
     set_thread_count(threads);

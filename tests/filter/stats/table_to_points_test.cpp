@@ -27,6 +27,9 @@ TEST_CASE("table_to_points: usual names of coordinates are found, rows without a
   CHECK(d->fields().require("speed").array.get(1) == 8);
   CHECK(d->fields().require("speed").unit == "m/s");
   CHECK(d->fields().active()->name == "speed");
+  CHECK(d->fields().require("name").role == Role::labels);
+  const std::pair<std::string, std::string> names("labels of name", "0=a\n1=b");
+  CHECK(d->notes() == std::vector{names});
 }
 
 TEST_CASE("table_to_points: named columns, and mistakes in them") {

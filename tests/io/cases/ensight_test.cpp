@@ -371,7 +371,7 @@ TEST_CASE("ensight: errors say what is wrong and where") {
     s.replace(at, from.size(), to);
     return error_of([&] { read_any(write_case("ens_bad", files) + "m.case"); });
   };
-  CHECK(contains(refused("m.case", "ensight gold", "ensight"), "type 'ensight' is not supported"));
+  CHECK(contains(refused("m.case", "ensight gold", "ensight 5"), "type 'ensight 5' is not supported"));
   CHECK(contains(refused("m.case", "model: m.geo", ""), "not name a geometry"));
   CHECK(contains(refused("m.case", "pressure m.scl", "pressure"), "line 8"));
   CHECK(contains(refused("m.case", "pressure m.scl", "pressure none.scl"), "none.scl"));

@@ -34,6 +34,24 @@ NcBytes packed_grid(int version) {
 
 }  // namespace
 
+TEST_CASE("netcdf: flags are labels with their meanings as names") {
+  const auto file = [](bool masks) {
+    NcBytes f(1);
+    const int lat = f.dim("lat", 2), lon = f.dim("lon", 3);
+    f.var<double>("lon", {lon}, {10, 20, 30}).att("units", "degrees_east");
+    f.var<double>("lat", {lat}, {0, 10}).att("units", "degrees_north");
+    auto& v =
+        f.var<int16_t>("surface", {lat, lon}, {1, 2, 2, 1, 4, 4}).num("flag_values", {1., 2., 4.}).att("flag_meanings", "sea land sea_ice");
+    if (masks) v.num("flag_masks", {1., 2., 4.});
+    return f.bytes();
+  };
+  const DatasetPtr d = read_text("flags.nc", file(false));
+  CHECK(d->fields().require("surface").role == Role::labels);
+  const std::pair<std::string, std::string> names("labels of surface", "1=sea\n2=land\n4=sea ice");
+  CHECK(std::find(d->notes().begin(), d->notes().end(), names) != d->notes().end());
+  CHECK(read_text("masks.nc", file(true))->fields().require("surface").role != Role::labels);
+}
+
 TEST_CASE("netcdf: a packed variable on a longitude-latitude grid is unpacked, with NaN for the missing value") {
   for (const int version : {1, 2, 5}) {
     CAPTURE(version);
@@ -267,7 +285,7 @@ TEST_CASE("minc: slices are scaled by their own image-min and image-max") {
   REQUIRE(g);
   CHECK(g->dims == std::array<size_t, 3>{3, 2, 2});
   CHECK(g->spacing == Vec3(2, 1, 3));
-  CHECK(g->origin == Vec3(-5, 1, 7));
+  CHECK(g->origin == Vec3(5, -1, 7));  // MINC's x is to the right, y to the front
   const Field& image = d->fields().require("image");
   CHECK(image.role == Role::scalars);
   CHECK(image.array.get(1) == doctest::Approx(1));
@@ -283,8 +301,8 @@ TEST_CASE("minc: a negative step turns the axis, the world position of each voxe
   const DatasetPtr d = read_text("b.mnc", minc(true));
   const Lattice lattice(d->mesh());
   const Vec3 p = lattice.view().position(2, 1, 1);
-  CHECK(p.x == doctest::Approx(-9));
-  CHECK(p.y == doctest::Approx(2));
+  CHECK(p.x == doctest::Approx(9));
+  CHECK(p.y == doctest::Approx(-2));
   CHECK(p.z == doctest::Approx(10));
 }
 

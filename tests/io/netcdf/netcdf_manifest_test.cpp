@@ -7,6 +7,7 @@
 
 #include "base/text/text.h"
 #include "data/lattice.h"
+#include "data/patient/patient_frame.h"
 #include "io/io_files.h"
 
 using namespace sg;
@@ -71,9 +72,12 @@ void check_dataset(const Dataset& d, const Json& vtk, bool values) {
                                                     {"vtkStructuredGrid", "curvilinear"},
                                                     {"vtkUnstructuredGrid", "unstructured"}};
   CHECK(d.kind() == kinds.at(vtk["class"].get<std::string>()));
+  // VTK leaves MINC's world as it is: right, anterior, superior.
+  const bool turned = in_patient_frame(d);
   for (int a = 0; a < 3; ++a) {
-    check_number(d.bounds().lo[a], vtk["bounds"][size_t(2 * a)], 1e-6);
-    check_number(d.bounds().hi[a], vtk["bounds"][size_t(2 * a + 1)], 1e-6);
+    const bool flip = turned && a < 2;
+    check_number(flip ? -d.bounds().hi[a] : d.bounds().lo[a], vtk["bounds"][size_t(2 * a)], 1e-6);
+    check_number(flip ? -d.bounds().lo[a] : d.bounds().hi[a], vtk["bounds"][size_t(2 * a + 1)], 1e-6);
   }
   check_arrays(d, vtk["point_data"], Association::point, values);
   check_arrays(d, vtk["cell_data"], Association::cell, values);

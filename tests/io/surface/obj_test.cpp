@@ -65,7 +65,22 @@ TEST_CASE("obj: groups and materials become cell fields, and their names notes")
   CHECK(read_text("g.obj", square + "g a\nf 1 2 3\n")->fields().active(1) == nullptr);
   std::string text;
   for (const auto& [key, value] : d->notes()) text += key + "=" + value + ";";
-  CHECK(text == "MaterialLibrary=m.mtl;MaterialNames=0 red\n2 blue;GroupNames=0 \n1 one\n2 two;");
+  CHECK(text == "MaterialLibrary=m.mtl;MaterialNames=0 red\n2 blue;labels of MaterialIds=0=red\n2=blue;GroupNames=0 \n1 one\n2 two;");
+}
+
+TEST_CASE("obj: materials have the diffuse colours of their library, which lies below the file's folder") {
+  const std::string cells = square + "usemtl red\nf 1 2 3\nusemtl my grey\nf 1 2 4\nusemtl unknown\nf 2 3 4\n";
+  write_file(temp_folder() + "m.mtl",
+             "newmtl red\nKa 1 1 1\nKd 1 0.25 0 # dark\nd 1\n\nnewmtl my grey\nKd 0.5\nKd spectral x.rfl\nnewmtl odd\nKd a b c\n");
+  const auto d = read_text("g.obj", "mtllib m.mtl\n" + cells);
+  const Field& c = d->fields().require("MaterialColors", Association::cell);
+  CHECK(c.role == Role::colors);
+  const int rgb[3][3] = {{255, 64, 0}, {128, 128, 128}, {204, 204, 204}};
+  for (size_t i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) CHECK(c.array.get(i, k) == rgb[i][k]);
+  CHECK(!read_text("g.obj", "mtllib missing.mtl\n" + cells)->fields().find("MaterialColors"));
+  CHECK(!read_text("g.obj", "mtllib ../../../etc/m.mtl\n" + cells)->fields().find("MaterialColors"));
+  CHECK(!read_text("g.obj", "mtllib m.mtl\n" + square + "f 1 2 3\n")->fields().find("MaterialColors"));
 }
 
 TEST_CASE("obj: vertex colours") {

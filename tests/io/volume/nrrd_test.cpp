@@ -97,7 +97,7 @@ TEST_CASE("nrrd: space directions become spacing, direction and origin") {
   const Lattice lattice(d->mesh());
   CHECK(lattice.view().position(1, 1, 1) == Vec3(7, 22, 30.5));
   REQUIRE(d->notes().size() >= 1);
-  CHECK(d->notes()[0] == std::pair<std::string, std::string>("space", "left-posterior-superior"));
+  CHECK(d->notes().back() == std::pair<std::string, std::string>("space", "left-posterior-superior"));
   // A slice in space: the third axis is completed.
   d = read_text("g.nrrd",
                 "NRRD0004\ntype: float\ndimension: 2\nspace dimension: 3\nsizes: 4 2\nspace directions: (0,1,0) (0,0,1)\n" + body);
@@ -192,7 +192,7 @@ TEST_CASE("nrrd: writing and reading back gives the same grid, field and notes")
   for (size_t i = 0; i < v.size(); ++i) v[i] = float(i) * 0.37f;
   v[7] = std::nanf("");
   p.fields.add({"u", Association::point, Array::from_vector(v, 3), "m/s", Role::vectors});
-  p.notes = {{"key one", "two\nlines \\ and: a colon"}, {"space", "right-anterior-superior"}, {"content", "a test"}};
+  p.notes = {{"key one", "two\nlines \\ and: a colon"}, {"space", "left-posterior-superior"}, {"content", "a test"}};
   const auto d = make_dataset(p);
   for (const char* compression : {"none", "gzip"}) {
     CAPTURE(compression);

@@ -56,6 +56,26 @@ TEST_CASE("vdb: what is written reads back the same, background and all") {
   CHECK(r->fields().require("exact").array.type() == ElementType::f64);
 }
 
+TEST_CASE("vdb: a level set is one again, and outside everywhere beyond its box") {
+  UniformGrid g;
+  g.dims = {12, 12, 12};
+  std::vector<float> v;
+  for (int k = 0; k < 12; ++k)
+    for (int j = 0; j < 12; ++j)
+      for (int i = 0; i < 12; ++i) v.push_back(std::clamp(std::hypot(float(i) - 5.5f, float(j) - 5.5f, float(k) - 5.5f) - 4, -1.5f, 1.5f));
+  DatasetParts p;
+  p.mesh = g;
+  p.fields.add({"ball", Association::point, Array::from_vector(v), "", Role::scalars, {.shows = FieldLook::Shows::zero}});
+  p.fields.add({"smoke", Association::point, Array::from_vector(v), "", Role::none});
+  Context context;
+  const std::string path = temp_folder() + "ball.vdb";
+  write_data(path, make_dataset(p), {}, context);
+  const auto r = read_file(path);
+  CHECK(r->fields().require("ball").look.shows == FieldLook::Shows::zero);
+  CHECK(r->fields().require("smoke").look.shows == FieldLook::Shows::any);
+  CHECK(same_array(r->fields().require("ball").array, Array::from_vector(v)));
+}
+
 TEST_CASE("vdb: a region, a stride and single fields") {
   const std::string path = written();
   const auto whole = read_file(path);

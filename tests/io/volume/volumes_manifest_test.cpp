@@ -68,7 +68,7 @@ void check_nibabel(const std::string& path, const Json& t) {
         const Json& row = t["affine"][r];
         const double want = row[0].get<double>() * double(c[0]) + row[1].get<double>() * double(c[1]) +
                             row[2].get<double>() * double(c[2]) + row[3].get<double>();
-        CHECK(std::abs(p[int(r)] - want) < 1e-4);
+        CHECK(std::abs((r < 2 ? -p[int(r)] : p[int(r)]) - want) < 1e-4);  // the affine is NIfTI's: right, anterior, superior
       }
     }
   }
@@ -129,7 +129,9 @@ TEST_CASE("volumes: the diffusion tensor of one voxel" * doctest::skip(no_data()
       CHECK(d->point_count() == 1);
       if (a.components() == 3) {
         CHECK(d->fields()[0].role == Role::vectors);
-        for (int c = 0; c < 3; ++c) CHECK(a.get(0, c) == doctest::Approx(values[size_t(c)]));
+        // FSL's directions, along voxels whose x leads to the right: in the patient frame y, which leads to the front, has the other sign.
+        const double sign[3] = {1, -1, 1};
+        for (int c = 0; c < 3; ++c) CHECK(a.get(0, c) == doctest::Approx(sign[c] * values[size_t(c)]));
         continue;
       }
       for (size_t s = 0; s < values.size(); ++s) {

@@ -67,6 +67,26 @@ TEST_CASE("vtm: blocks nest, keep their names, and blocks without a mesh are lef
   }
 }
 
+TEST_CASE("vtm: of missing files the others are read with a warning") {
+  write(temp("here.vtu"), tetras(2));
+  write_file(temp("some.vtm"), vtm("<DataSet index=\"0\" file=\"gone1.vtu\"/><Block index=\"1\"><DataSet index=\"0\" file=\"gone2.vtu\"/>"
+                                   "</Block><DataSet index=\"2\" file=\"here.vtu\"/>"));
+  Context context;
+  std::string warned;
+  context.on_log = [&](LogLevel level, std::string_view text) { warned += level == LogLevel::warning ? std::string(text) : ""; };
+  CHECK(cells_in(read_data(temp("some.vtm"), {}, context)) == 2);
+  CHECK(warned.find("2 of the 3 files that it names are missing (") != std::string::npos);
+  CHECK(warned.find("gone1.vtu, ...); the rest is read") != std::string::npos);
+  // A series below, whose only file is missing: a part without a mesh.
+  write_file(temp("lost.pvd"), pvd("<DataSet timestep=\"0\" file=\"gone3.vtu\"/>"));
+  write_file(temp("below.vtm"), vtm("<DataSet index=\"0\" file=\"here.vtu\"/><DataSet index=\"1\" file=\"lost.pvd\"/>"));
+  warned.clear();
+  CHECK(cells_in(read_data(temp("below.vtm"), {}, context)) == 2);
+  CHECK(warned.find("1 of the 3 files that it names is missing (") != std::string::npos);
+  write_file(temp("none.vtm"), vtm("<DataSet index=\"0\" file=\"gone1.vtu\"/>"));
+  CHECK(error_of([&] { read_in_temp("none.vtm"); }).find("gone1.vtu: no such file") != std::string::npos);
+}
+
 TEST_CASE("vtm: what names itself, or names too much, is refused") {
   auto error = [&](const std::string& name) { return error_of([&] { read_in_temp(name); }); };
   write_file(temp("self.vtm"), vtm("<DataSet index=\"0\" file=\"self.vtm\"/>"));

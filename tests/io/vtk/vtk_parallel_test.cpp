@@ -186,14 +186,26 @@ TEST_CASE("vtk parallel: a process reads its share of the pieces, and all shares
   CHECK(error_of([&] { read(temp("share.pvtu"), o); }).find("piece 3 of 3") != std::string::npos);
 }
 
-TEST_CASE("vtk parallel: missing, repeated and foreign pieces are refused by name") {
+TEST_CASE("vtk parallel: of missing pieces the others are read with a warning") {
+  write_halves(lattice(image(5, 3, 2)), "part", "vti", 2);
+  Context context;
+  std::string warned;
+  context.on_log = [&](LogLevel level, std::string_view text) { warned += level == LogLevel::warning ? std::string(text) : ""; };
+  write_file(temp("part.pvti"), parallel("ImageData", extent({5, 3, 2}), {"part0.vti", "gone.vti"}));
+  const Data half = read_data(temp("part.pvti"), {}, context);
+  CHECK(warned.find("1 of the 2 files that it names is missing (") != std::string::npos);
+  const DatasetPtr d = std::get<DatasetPtr>(half);
+  CHECK(d->point_count() == 18);  // the first three of five layers
+}
+
+TEST_CASE("vtk parallel: absent, repeated and foreign pieces are refused by name") {
   const DatasetPtr d = lattice(image(3, 3, 3));
   write(temp("one.vti"), d);
   auto error = [&](const std::string& text) {
     write_file(temp("bad.pvti"), text);
     return error_of([&] { read(temp("bad.pvti")); });
   };
-  CHECK(error(parallel("ImageData", extent({3, 3, 3}), {"one.vti", "gone.vti"})).find("gone.vti") != std::string::npos);
+  CHECK(error(parallel("ImageData", extent({3, 3, 3}), {"gone.vti"})).find("gone.vti") != std::string::npos);
   CHECK(error(parallel("ImageData", extent({3, 3, 3}), {"one.vti", "one.vti"})).find("second time") != std::string::npos);
   CHECK(error(parallel("ImageData", extent({3, 3, 3}), {"bad.pvti"})).find("PImageData") != std::string::npos);
   CHECK(error(parallel("ImageData", extent({3, 3, 3}), {""})).find("Source") != std::string::npos);

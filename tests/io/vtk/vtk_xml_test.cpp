@@ -207,6 +207,30 @@ TEST_CASE("vtk xml: big-endian bytes, 32-bit headers and bits are understood") {
   for (size_t i = 0; i < 10; ++i) CHECK(bits.get(i) == want[i]);
 }
 
+TEST_CASE("vtk xml: strings of points and cells are categories with names, those of the whole are notes") {
+  const auto file = [](const char* codes) {
+    return std::string(
+               "<VTKFile type=\"PolyData\"><PolyData><FieldData><Array type=\"String\" Name=\"Title\" NumberOfTuples=\"1\" "
+               "format=\"ascii\">72 105 0</Array></FieldData><Piece NumberOfPoints=\"3\" NumberOfVerts=\"3\"><PointData>"
+               "<Array type=\"String\" Name=\"site\" format=\"ascii\">") +
+           codes +
+           "</Array></PointData><Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 2 0 0</DataArray>"
+           "</Points><Verts><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 2</DataArray>"
+           "<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">1 2 3</DataArray></Verts></Piece></PolyData></VTKFile>";
+  };
+  const DatasetPtr d = read_text("strings.vtp", file("116 105 110 0 97 0 116 105 110 0"));  // tin a tin
+  const Field& site = d->fields().require("site", Association::point);
+  CHECK(site.role == Role::labels);
+  REQUIRE(site.array.count() == 3);
+  CHECK((site.array.get(0) == 1 && site.array.get(1) == 0 && site.array.get(2) == 1));
+  std::string notes;
+  for (const auto& [key, value] : d->notes()) notes += key + ":" + value + ";";
+  CHECK(notes.find("labels of site:0=a\n1=tin;") != std::string::npos);
+  CHECK(notes.find("Title:Hi;") != std::string::npos);
+  CHECK(refusal("strings.vtp", file("97 0 98 0")).find("has 2 strings for 3 points") != std::string::npos);
+  CHECK(refusal("strings.vtp", file("97 0 98 0 97 0 97 0 97 0")).find("has more strings for 3 points") != std::string::npos);
+}
+
 TEST_CASE("vtk xml: base64 may be wrapped, and its size may be padded on its own") {
   auto file = [](const char* data) {
     return std::string(

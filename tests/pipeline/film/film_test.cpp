@@ -117,6 +117,35 @@ TEST_CASE("film: the camera and the title take the time, of data that stand stil
   CHECK(word_value(both[1].pipeline.picture, "camera.roll") == "0.5");
 }
 
+TEST_CASE("film: a turntable is one turn of the camera from where it stands, and nothing else moves") {
+  Context context;
+  PipelineFile file =
+      parse_pipeline("sightglass: 1\nsteps:\n  a: {tangle: {size: 8}}\npicture: {size: 40x30, camera: {azimuth: 10, roll: 5}}\n", "",
+                     picture_vocabulary());
+  FilmParams params;
+  params.turntable = 4;
+  const std::vector<Shot> shots = shots_of(file, params, context);
+  REQUIRE(shots.size() == 4);
+  const char* azimuths[] = {"10", "100", "190", "280"};
+  for (size_t i = 0; i < 4; ++i) {
+    CHECK(word_value(shots[i].pipeline.picture, "camera.azimuth") == azimuths[i]);
+    CHECK(word_value(shots[i].pipeline.picture, "camera.roll") == "5");
+  }
+  // A view in one word, and data that could move by itself.
+  file = parse_pipeline(gyre, "", picture_vocabulary());
+  take_film_words(file, params);
+  params.times.clear();
+  std::erase_if(file.picture, [](const std::string& w) { return w.starts_with("camera"); });
+  file.picture.push_back("camera=top azimuth=45");
+  const std::vector<Shot> top = shots_of(file, params, context);
+  REQUIRE(top.size() == 4);
+  CHECK(top[0].image.pixels != top[1].image.pixels);
+  CHECK(word_value(top[1].pipeline.picture, "camera") == "top azimuth=135");
+  CHECK_FALSE(word_value(top[1].pipeline.steps[0].words, "time"));
+  params.times = "0:1";
+  CHECK(error_of([&] { shots_of(file, params, context); }).find("a turntable has no times") != std::string::npos);
+}
+
 TEST_CASE("film: progress goes on over all pictures") {
   PipelineFile file = parse_pipeline(gyre, "", picture_vocabulary());
   FilmParams params;

@@ -113,7 +113,11 @@ void draw(const std::vector<DatasetPtr>& parts, const std::vector<std::pair<std:
   set_params(schema, camera_stated, "camera");
   if (random.chance(0.7) && !box.empty()) annotation.box = box;
   const Vec3 direction = normalize(Vec3(random.in(-1, 1), random.in(-1, 1), 0.2));
-  Camera camera = make_camera(params, box, double(stated.width) / stated.height, direction, {0, 0, 1}, random.chance(0.5), 0.1);
+  CameraDefaults defaults;
+  defaults.direction = direction, defaults.parallel = random.chance(0.5);
+  if (random.chance(0.3)) defaults.axes = random.chance(0.5) ? graphics_axes : patient_view_axes;
+  annotation.patient_letters = random.chance(0.3);
+  Camera camera = make_camera(params, box, double(stated.width) / stated.height, defaults, 0.1);
   Box3 all = scene_bounds(scene);
   all.add(box);
   fit_planes(camera, all);

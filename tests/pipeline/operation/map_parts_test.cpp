@@ -84,3 +84,34 @@ TEST_CASE("collections: parts of which nothing is left are told of once, and onl
   run("clip", in, {"field=T", "value=60"}, none.context);
   CHECK(none.text == "clip: nothing is left\n");
 }
+
+TEST_CASE("collections: a value that is chosen is chosen once for all parts, round, and told once") {
+  // T runs over 0..2 and 0..10: the middle of all is 5, of the small part 1.
+  const Data in = collection({{"small", surface_of(2)}, {"large", surface_of(10)}});
+  Told told;
+  const Data out = run("isolines", in, {"count=1"}, told.context);
+  for (const Collection::Part& part : std::get<CollectionPtr>(out)->parts) {
+    const DatasetPtr d = std::get<DatasetPtr>(part.data);
+    if (const Field* v = d->fields().find("contour value"); v && v->array.count() > 0) CHECK(v->array.get(0) == 5);
+  }
+  CHECK(std::get<DatasetPtr>(std::get<CollectionPtr>(out)->parts[1].data)->cell_count() > 0);
+
+  Told clip;
+  run("clip", in, {"field=T"}, clip.context);
+  CHECK(clip.text == "clip: T = 5, near the middle of 0 to 10\n");
+
+  // The plane goes through the middle of the box of all, which is the large part's.
+  const Data moved = collection(
+      {{"one", surface_of(9)}, {"two", std::get<DatasetPtr>(run("transform", Data(surface_of(9)), {"translate=4,0,0"}, told.context))}});
+  const Data cut = run("slice", moved, {"normal=1,0,0"}, told.context);
+  double at = -1;
+  size_t pieces = 0;
+  for_each_dataset(cut, [&](const std::string&, const DatasetPtr& d) {
+    if (d->point_count() == 0) return;
+    ++pieces;
+    CHECK(d->bounds().lo.x == doctest::Approx(d->bounds().hi.x));
+    if (at >= 0) CHECK(d->bounds().lo.x == doctest::Approx(at));
+    at = d->bounds().lo.x;
+  });
+  CHECK(pieces <= 1);  // the middle lies between the two
+}

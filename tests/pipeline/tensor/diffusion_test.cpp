@@ -26,9 +26,7 @@ Vec3 fsl_vector(const std::string& file) {
   Context context;
   const DatasetPtr d = std::get<DatasetPtr>(read_data(data_file(one + file), {}, context));
   const Array& a = d->fields().require("NIFTI").array;
-  const auto& g = *d->as<UniformGrid>();
-  const double flip = determinant(g.direction) > 0 ? -1 : 1;
-  return g.direction * Vec3(flip * a.get(0, 0), a.get(0, 1), a.get(0, 2));
+  return {a.get(0, 0), a.get(0, 1), a.get(0, 2)};
 }
 double fsl_number(const std::string& file) {
   Context context;

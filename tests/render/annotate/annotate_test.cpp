@@ -14,6 +14,8 @@
 #include "render/annotate/axes.h"
 #include "render/annotate/legend.h"
 #include "render/annotate/overlay.h"
+#include "render/annotate/patient_sides.h"
+#include "render/annotate/scale_bar.h"
 #include "render/annotate/texts.h"
 #include "support/test.h"
 
@@ -215,6 +217,41 @@ TEST_CASE("annotate: numbers on a legend do not touch, and read differently far 
       CHECK(std::abs(l.ticks[i].row - l.ticks[j].row) >= 16);
       CHECK(l.ticks[i].text != l.ticks[j].text);
     }
+}
+
+TEST_CASE("annotate: a legend has the numbers that are stated, in the stated format") {
+  Annotation a;
+  a.legends = {temperature()};
+  ColorScale& s = a.legends[0];
+  s.lo = 0, s.hi = 100, s.ticks = {0, 12.5, 100, 250}, s.number_format = ".1f";
+  const LegendLayout l = layouts(a, 1280, 720, 15)[0];
+  REQUIRE(l.ticks.size() == 3);  // 250 lies beyond the scale
+  const char* texts[] = {"0.0", "12.5", "100.0"};
+  for (size_t i = 0; i < 3; ++i) {
+    CHECK(l.ticks[i].text == texts[i]);
+    CHECK(l.ticks[i].row == int(l.bar.y + std::lround((1 - s.position(s.ticks[i])) * (l.bar.height - 1))));
+  }
+  s.ticks = {};
+  const LegendLayout automatic = layouts(a, 1280, 720, 15)[0];
+  for (const auto& t : automatic.ticks) CHECK(t.text.substr(t.text.size() - 2, 1) == ".");
+}
+
+TEST_CASE("scale bar: the longest round length that has room, as long as it is in the picture") {
+  Camera camera;
+  camera.position = {0, 0, 10}, camera.target = {}, camera.up = {0, 1, 0};
+  camera.parallel = true, camera.parallel_height = 4;
+  const Projection flat = make_projection(camera, 400, 200);  // 50 pixels a unit
+  CHECK(scale_bar(flat, {}, 99)->length == 1);
+  CHECK(scale_bar(flat, {}, 101)->length == 2);
+  CHECK(scale_bar(flat, {}, 260)->length == 5);
+  CHECK(scale_bar(flat, {}, 260)->pixels == doctest::Approx(250));
+  CHECK(scale_bar(flat, {}, 49)->length == doctest::Approx(0.5));
+  camera.parallel = false, camera.view_angle = 90;
+  const Projection deep = make_projection(camera, 400, 200);  // at depth 10 the height is 20 units: 10 pixels a unit
+  CHECK(scale_bar(deep, {}, 60)->length == 5);
+  CHECK(scale_bar(deep, {}, 60)->pixels == doctest::Approx(50));
+  CHECK(scale_bar(deep, {0, 0, 5}, 60)->length == 2);
+  CHECK(!scale_bar(deep, {0, 0, 20}, 60));
 }
 
 TEST_CASE("annotate: long legend titles wrap at blanks and underscores or run upwards, and stay inside the column") {
@@ -466,4 +503,37 @@ TEST_CASE("annotate: names of any length are laid out in no time, with their beg
   CHECK(width < image.width / 2);
   CHECK(Overlay(640, 400, false).measure(std::string(20000, 'y'), wrapped).lines > 10);
   CHECK(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() < 4);
+}
+
+TEST_CASE("annotate: sides of the patient at the edges of the picture, free of title and legends") {
+  const Box3 box{{-1, -1, -1}, {1, 1, 1}};
+  const auto sides_from = [&](Vec3 towards_viewer, Vec3 up) {
+    Projection p = look(towards_viewer, box, 200, 150);
+    p.right = normalize(cross(p.forward, up)), p.up = cross(p.right, p.forward);
+    const PatientSides s = patient_sides(p);
+    return s.left + "|" + s.right + "|" + s.top + "|" + s.bottom;
+  };
+  CHECK(sides_from({0, -1, 0}, {0, 0, 1}) == "R|L|S|I");   // coronal, from the front
+  CHECK(sides_from({0, 0, -1}, {0, -1, 0}) == "R|L|A|P");  // axial, from the feet
+  CHECK(sides_from({1, 0, 0}, {0, 0, 1}) == "A|P|S|I");    // sagittal, from the patient's left
+  CHECK(sides_from({1, -1, 0}, {0, 0, 1}) == "RA|LP|S|I");
+
+  // 400 x 300: letters in the middle of the edges, nothing else.
+  Annotation a;
+  a.triad = false, a.patient_letters = true;
+  const Projection p = look({0, -1, 0}, box, 400, 300);
+  Image image = blank(400, 300);
+  annotate(image, a, p);
+  const auto ink = [&](int x0, int y0, int x1, int y1) {
+    int n = 0;
+    for (int y = y0; y < y1; ++y)
+      for (int x = x0; x < x1; ++x) n += image.pixels[3 * (size_t(y) * 400 + size_t(x))] < 128;
+    return n;
+  };
+  const int left = ink(0, 130, 30, 170), right = ink(370, 130, 400, 170), top = ink(185, 0, 215, 30), bottom = ink(185, 270, 215, 300);
+  CHECK(left > 5);
+  CHECK(right > 5);
+  CHECK(top > 5);
+  CHECK(bottom > 5);
+  CHECK(ink(0, 0, 400, 300) == left + right + top + bottom);
 }

@@ -19,6 +19,15 @@ double ink(const Picture& p) {
   return sum;
 }
 
+/// What shows through black fragments of the opaque picture's red.
+double red_behind(const Picture& p, int x, int y) {
+  double red = double(p.rgba(x, y)[0]);
+  const size_t i = size_t(y) * size_t(p.frame.width) + size_t(x);
+  if (!p.fragments.empty())
+    for (uint32_t k = p.fragments.start[i]; k < p.fragments.start[i + 1]; ++k) red *= 1 - double(p.fragments.fragments[k].rgba[3]);
+  return red;
+}
+
 }  // namespace
 
 TEST_CASE("raster lines: the covered area is length times width plus the round caps, for any width and direction") {
@@ -164,6 +173,42 @@ TEST_CASE("raster edges: every edge once, over the surface, diagonals of polygon
   CHECK_FALSE(red(70, 100));  // a diagonal would pass here
   CHECK(p.rgba(70, 100)[1] == 1);
   CHECK(p.id(100, 100) == 1);
+}
+
+TEST_CASE("raster edges: they fade where cells are narrower than eight pixels across them, and are gone below three") {
+  // A square of 120 pixels in cells of dx by dy of them; a pixel of the rule is `scale` pixels.
+  const auto drawn = [](int dx, int dy, int scale) {
+    std::vector<float> xyz;
+    std::vector<int32_t> ids;
+    const int nx = 120 / dx, ny = 120 / dy;
+    for (int j = 0; j <= ny; ++j)
+      for (int i = 0; i <= nx; ++i) xyz.insert(xyz.end(), {float(i * dx - 60), float(j * dy - 60), 0});
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i) {
+        const int a = j * (nx + 1) + i;
+        ids.insert(ids.end(), {a, a + 1, a + nx + 2, a + nx + 1});
+      }
+    SurfaceMesh m = triangle_mesh(xyz, {});
+    m.polygons = {Array::from_vector(ids), {}, 4};
+    SurfaceItem q = item(make_dataset(m), {1, 1, 1}, false);
+    q.edges = true, q.edge_color = {0, 0, 0};
+    Scene s;
+    s.items = {q};
+    return draw(s, front_parallel(200), 200, 200, scale);
+  };
+  for (const int scale : {1, 2}) {
+    const Picture wide = drawn(20, 20, scale), narrow = drawn(2, 2, scale), layers = drawn(30, 2, scale),
+                  five = drawn(5 * scale, 5 * scale, scale);
+    CHECK(red_behind(wide, 100, 90) < 0.6);  // on the line x = 0
+    CHECK(red_behind(wide, 110, 90) == 1);   // inside a cell
+    for (int x = 60; x < 140; ++x) CHECK(red_behind(narrow, x, 90) == 1);
+    CHECK(red_behind(layers, 100, 90) < 0.6);  // across the layers cells are wide, along them they are not
+    for (int y = 60; y < 140; ++y) CHECK(red_behind(layers, 115, y) == 1);
+    double dark = 1;
+    for (int x = 90; x < 110; ++x) dark = std::min(dark, red_behind(five, x, 92));
+    CHECK(dark > 0.5);
+    CHECK(dark < 0.95);
+  }
 }
 
 TEST_CASE("raster marks: mistakes are told") {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is chosen when nobody says: colours, ranges, representations.
 #include "scene/look.h"
+#include "scene/choose/shared_scale.h"
 #include "scene/show/labels.h"
 #include "scene/show/points.h"
 #include "scene/show/surface.h"
@@ -67,6 +68,37 @@ TEST_CASE("choose_scale: labels have the names that the dataset notes, when it n
   CHECK(test::chosen_scale(make_dataset(parts)).label_names.empty());
 }
 
+TEST_CASE("share_scale: labels of several datasets are one list, with the names that any of them knows") {
+  const auto block = [](int number, const char* names) {
+    DatasetParts parts = image<int32_t>(4, [=](size_t, size_t, size_t) { return number; })->parts();
+    parts.notes.emplace_back("labels of v", names);
+    return make_dataset(parts);
+  };
+  const auto shared = [](const std::vector<DatasetPtr>& parts, ColoringParams p = {}) {
+    std::vector<FieldOf> fields;
+    for (const DatasetPtr& d : parts) fields.push_back({d.get(), &d->fields()[0]});
+    share_scale(fields, p);
+    return p;
+  };
+  const std::vector<DatasetPtr> blocks = {block(7, "7=wheel"), block(2, "2=axle"), block(7, "7=wheel")};
+  for (const DatasetPtr& d : blocks) {
+    const ColorScale s = test::chosen_scale(d, shared(blocks));
+    CHECK(s.map.categorical());
+    CHECK(s.labels == std::vector<double>{2, 7});
+    CHECK(s.label_names == std::vector<std::string>{"axle", "wheel"});
+  }
+  CHECK(shared({block(7, "7=wheel"), block(2, "")}).labels.names.empty());
+  // The same number everywhere, and integers that count: values.
+  CHECK(shared({block(7, "7=wheel"), block(7, "7=wheel")}).labels.values.empty());
+  const auto counts = image<int32_t>(16, [](size_t i, size_t j, size_t k) { return int((i * 37 + j * 101 + k * 53) % 60); });
+  CHECK(shared({counts, block(7, "")}).labels.values.empty());
+  CHECK(shared({counts, block(7, "")}).range == std::vector<double>{0, 59});
+  // A map of categories makes labels of anything.
+  ColoringParams categories;
+  categories.map = "labels";
+  CHECK(shared({counts, block(70, "")}, categories).labels.values.size() == 61);
+}
+
 TEST_CASE("choose_scale: a log scale begins at the smallest positive value, and refuses data without one") {
   const auto d = image<float>(4, [](size_t i, size_t, size_t) { return i == 0 ? 0.f : float(i) * 10; });
   ColoringParams p;
@@ -103,6 +135,43 @@ TEST_CASE("choose_scale: jet is drawn with a warning") {
   CHECK(warned.find("uniform") != std::string::npos);
 }
 
+TEST_CASE("choose_look: one thin layer of solid cells is seen straight on, a block is not") {
+  const auto grid = [](size_t nx, size_t ny, size_t nz, Vec3 spacing) {
+    RectilinearGrid g;
+    const auto axis = [](size_t n, double step) {
+      std::vector<double> v;
+      for (size_t i = 0; i <= n; ++i) v.push_back(double(i) * step);
+      return Array::from_vector(v);
+    };
+    g.x = axis(nx, spacing.x), g.y = axis(ny, spacing.y), g.z = axis(nz, spacing.z);
+    return make_dataset(Mesh(g));
+  };
+  const Look layer = choose_look(*grid(20, 20, 1, {1, 1, 2}), "", "");
+  CHECK(layer.camera.direction == Vec3(0, 0, 1));
+  CHECK(layer.camera.parallel);
+  CHECK(choose_look(*grid(20, 1, 20, {1, 2, 1}), "", "").camera.direction == Vec3(0, -1, 0));
+  CHECK(!choose_look(*grid(20, 20, 2, {1, 1, 1}), "", "").camera.parallel);
+  CHECK(!choose_look(*grid(20, 20, 1, {1, 1, 18}), "", "").camera.parallel);
+  CHECK(!choose_look(*grid(2, 2, 1, {1, 1, 0.1}), "", "").camera.parallel);
+}
+
+TEST_CASE("choose_look: a level set is shown as its surface of zero, where it has one") {
+  const auto ball = [](float radius) {
+    const auto d = image<float>(
+        12, [&](size_t i, size_t j, size_t k) { return std::hypot(float(i) - 5.5f, float(j) - 5.5f, float(k) - 5.5f) - radius; });
+    DatasetParts parts = d->parts();
+    Field f = parts.fields[0];
+    f.look.shows = FieldLook::Shows::zero;
+    parts.fields = {};
+    parts.fields.add(f);
+    return make_dataset(parts);
+  };
+  const Look look = choose_look(*ball(4), "", "");
+  CHECK(look.filter == std::vector<std::string>{"contour", "field=v", "values=0"});
+  CHECK(look.shows[0].kind->is<SurfaceShow>());
+  CHECK(choose_look(*ball(-1), "", "").filter.empty());
+}
+
 TEST_CASE("choose_look: CT, labels, flat images, surfaces and points are recognised") {
   // A body of water (0 HU) with bone (700 HU) in air (-1000 HU).
   const auto ct = image<int16_t>(32, [](size_t i, size_t j, size_t k) {
@@ -125,8 +194,8 @@ TEST_CASE("choose_look: CT, labels, flat images, surfaces and points are recogni
   FieldSet f;
   f.add({"a", Association::point, Array::from_vector(std::vector<float>(32, 1.f)), "", Role::none});
   const Look map = choose_look(*make_dataset(flat, f), "", "");
-  CHECK(map.parallel);
-  CHECK(map.direction == Vec3(0, 0, 1));
+  CHECK(map.camera.parallel);
+  CHECK(map.camera.direction == Vec3(0, 0, 1));
   CHECK(map.shows[0].kind->is<SurfaceShow>());
 
   PointCloud cloud;
@@ -219,7 +288,7 @@ TEST_CASE("choose_look: filled contours are coloured by band, unlit on a plane, 
   CHECK(s.limits == std::vector<double>{0, 2, 4, 6, 8});
   CHECK(s.color(0) == Vec4f{find_colormap("sight").at(0).x, find_colormap("sight").at(0).y, find_colormap("sight").at(0).z, 1});
   CHECK_FALSE(s.color(1) == s.color(2));
-  CHECK(changed_words(choose_look(*d, "t", "").shows[0].params).empty());
+  CHECK(changed_words(choose_look(*d, "t", "").shows[0].params) == std::vector<std::string>{"lit=false"});
 }
 
 TEST_CASE("labels: a cloud of line labels becomes texts that lie along their lines") {
@@ -242,4 +311,89 @@ TEST_CASE("labels: a cloud of line labels becomes texts that lie along their lin
   CHECK(length(scene.texts[0].along - Vec3(std::sqrt(0.75), 0.5, 0)) < 1e-12);
   CHECK(length(scene.texts[1].along - Vec3(0, -1, 0)) < 1e-12);
   CHECK(test::error_of([&] { add_show(scene, "labels", d, {"field=none such"}, ctx); }).find("none such") != std::string::npos);
+}
+
+TEST_CASE("look: slices of a patient as radiologists see them, bodies from the front") {
+  const auto slice = [](Vec3 a, Vec3 b, bool patient) {
+    DatasetParts parts;
+    UniformGrid g;
+    g.dims = {4, 5, 1};
+    const Vec3 n = cross(a, b);
+    for (int r = 0; r < 3; ++r) g.direction.m[r][0] = a[r], g.direction.m[r][1] = b[r], g.direction.m[r][2] = n[r];
+    parts.mesh = g;
+    std::vector<float> v(20);
+    for (size_t i = 0; i < v.size(); ++i) v[i] = float(i);
+    parts.fields.add({"t", Association::point, Array::from_vector(v), "", Role::scalars});
+    if (patient) parts.notes = {{"space", "left-posterior-superior"}};
+    return choose_look(*make_dataset(parts), "", "").camera;
+  };
+  CameraDefaults c = slice({1, 0, 0}, {0, 1, 0}, true);  // axial
+  CHECK(c.direction == Vec3(0, 0, -1));
+  CHECK(c.up == Vec3(0, -1, 0));
+  CHECK(c.parallel);
+  c = slice({1, 0, 0}, {0, 1, 0}, false);
+  CHECK(c.direction == Vec3(0, 0, 1));
+  CHECK(c.up == Vec3(0, 1, 0));
+  c = slice({1, 0, 0}, {0, 0, -1}, true);  // coronal
+  CHECK(c.direction == Vec3(0, -1, 0));
+  CHECK(c.up == Vec3(0, 0, 1));
+  c = slice({0, 1, 0}, {0, 0, -1}, true);  // sagittal
+  CHECK(c.direction == Vec3(1, 0, 0));
+  CHECK(c.up == Vec3(0, 0, 1));
+  // Leaning by a fifth: still axial, along its own normal.
+  c = slice({1, 0, 0}, normalize(Vec3(0, 1, 0.2)), true);
+  CHECK(length(c.direction - normalize(Vec3(0, 0.2, -1))) < 1e-12);
+  CHECK(c.up == Vec3(0, -1, 0));
+  CHECK(c.parallel);
+  const CameraDefaults body = choose_view({{0, 0, 0}, {1, 1, 1}}, "nii", true);
+  CHECK(-body.direction.y > 2 * std::abs(body.direction.x));
+}
+
+TEST_CASE("volume looks: a scan that is no CT is grey, in its own window; CT is said where the file or the values say so") {
+  // A head of 400 in a background of 0 to 20, as MR gives it.
+  const auto mr = [](std::vector<std::pair<std::string, std::string>> notes) {
+    DatasetParts parts = image<int16_t>(24, [](size_t i, size_t j, size_t k) {
+                           const double x = double(i) - 11.5, y = double(j) - 11.5, z = double(k) - 11.5;
+                           return int16_t(x * x + y * y + z * z < 64 ? 400 + int(i * 7 + j * 3) : int(i + 2 * j + k) % 20);
+                         })->parts();
+    parts.notes = std::move(notes);
+    FieldSet fields;
+    for (Field f : parts.fields) f.role = Role::scalars, fields.add(std::move(f));
+    parts.fields = std::move(fields);
+    return make_dataset(std::move(parts));
+  };
+  const auto look_of = [](const DatasetPtr& d, VolumeItem& item) {
+    Context quiet;
+    item.color = choose_scale(*d, d->fields()[0], {}, quiet);
+    return choose_volume_look(*d, d->fields()[0], {}, item);
+  };
+  VolumeItem item;
+  const auto scan = mr({{"space", "left-posterior-superior"}, {"Modality", "MR"}});
+  CHECK(look_of(scan, item).find("in grey") != std::string::npos);
+  CHECK(item.color.map.name == "gray");
+  CHECK(item.shaded);
+  CHECK(item.opacity.points[1].x > 15);
+  CHECK(item.opacity.points[1].x < 200);
+  const auto windowed = mr({{"space", "left-posterior-superior"}, {"WindowCenter", "300\\150"}, {"WindowWidth", "200\\100"}});
+  VolumeItem own;
+  look_of(windowed, own);
+  CHECK(own.color.lo == 200);
+  CHECK(own.color.hi == 400);
+  // No patient: the usual colours.
+  VolumeItem other;
+  CHECK(look_of(mr({}), other).find("grey") == std::string::npos);
+  CHECK(other.color.map.name == "sight");
+  // What the file calls MR is no CT, whatever its values; what it calls CT is.
+  const auto body = [](const char* modality) {
+    DatasetParts parts = image<int16_t>(32, [](size_t i, size_t j, size_t k) {
+                           const double x = double(i) - 15.5, y = double(j) - 15.5, z = double(k) - 15.5,
+                                        r = std::sqrt(x * x + y * y + z * z);
+                           return int16_t(r < 4 ? 1600 : r < 12 ? 20 + int(i % 3) : -1000);
+                         })->parts();
+    parts.notes = {{"Modality", modality}};
+    return make_dataset(std::move(parts));
+  };
+  double offset = 0;
+  CHECK(!looks_like_ct(*body("MR"), body("MR")->fields()[0], &offset));
+  CHECK(looks_like_ct(*body("CT"), body("CT")->fields()[0], &offset));
 }

@@ -28,6 +28,8 @@ const Field& choose(const DatasetPtr& in, const FieldName& name, int components,
   if (!f && components == 1) f = in->fields().active(1);
   if (!f)
     fail_usage(fmt::format("there is no field of {} component{}", components, components == 1 ? "" : "s"), who, "name one: field=...");
+  if (f->association == Association::whole)
+    fail_usage(fmt::format("field '{}' is defined on neither points nor cells", f->name), who, "name another: field=...");
   if (f->components() != components)
     fail_usage(fmt::format("field '{}' has {} components, not {}", f->name, f->components(), components), who);
   return *f;

@@ -10,6 +10,7 @@
 #include "data/field_ops.h"
 #include "data/lattice.h"
 #include "data/ranks/over_all.h"
+#include "filter/field/automatic_values.h"
 #include "filter/mesh/clip/clip_box.h"
 #include "filter/mesh/clip/clip_impl.h"
 #include "filter/mesh/select/extract.h"
@@ -181,8 +182,7 @@ Data clip(const DatasetPtr& in, const DatasetPtr& surface, const ClipParams& p, 
     if (shape) fail_usage("both a shape and a field are given", "clip", "give only one of them");
     const Field* field = nullptr;
     Job job{mesh, numbers_of(*mesh, p.field, p.component, "clip", &field), {}, {}, ctx};
-    const Range range = p.value ? Range() : range_over_all(*mesh, *field, p.component, ctx);
-    job.keep.level = p.value.value_or(range.empty() ? 0.0 : 0.5 * (range.lo + range.hi));
+    job.keep.level = p.value ? *p.value : middle_value(*mesh, *field, p.component, "clip", ctx);
     if (!std::isfinite(job.keep.level)) fail_usage("the value is not finite", "clip value");
     return both_sides(job, p.keep, flat);
   }

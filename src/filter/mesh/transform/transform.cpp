@@ -204,6 +204,8 @@ DatasetPtr transform(const DatasetPtr& in, const TransformParams& p, Context& ct
   DatasetParts out = in->parts();
   out.mesh = std::visit(Mover{t, in->mesh()}, in->mesh());
   if (out.mesh.index() != in->mesh().index()) ctx.info(fmt::format("transform: the {} grid becomes {}", in->kind(), mesh_kind(out.mesh)));
+  // Turned or scaled, a patient's left is not where the frame says.
+  if (!(t.linear == Mat3())) std::erase_if(out.notes, [](const auto& n) { return n.first == "space"; });
   if (p.vectors) transform_fields(*in, t.linear, p.fields, out.fields, ctx);
   if (determinant(t.linear) < 0) turn_mirrored_cells(out, ctx);
   else ascend_amr(out);

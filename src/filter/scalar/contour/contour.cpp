@@ -9,8 +9,8 @@
 #include "base/parallel.h"
 #include "base/text/text.h"
 #include "data/cells/mesh_dimension.h"
-#include "data/ranks/over_all.h"
 #include "data/trusted.h"
+#include "filter/field/automatic_values.h"
 #include "filter/field/sampling/point_cell.h"
 #include "filter/mesh/select/extract.h"
 #include "filter/scalar/contour/cells/contour_curved.h"
@@ -317,10 +317,7 @@ DatasetPtr contour(const DatasetPtr& given, const ContourParams& params, Context
   const int component = choose_component(field, params.component);
   const int dimension = dimension_to_cut(*input);
   std::vector<double> values = params.values;
-  if (values.empty()) {
-    const Range range = range_over_all(*input, field, component, context);
-    values.push_back(range.empty() ? 0.0 : range.lo + 0.5 * (range.hi - range.lo));
-  }
+  if (values.empty()) values.push_back(middle_value(*input, field, component, "contour", context));
   for (double v : values)
     if (!std::isfinite(v)) fail_usage(fmt::format("{} is not a valid isovalue", v), "contour values", "give finite numbers");
 

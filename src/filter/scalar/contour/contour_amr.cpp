@@ -9,7 +9,7 @@
 
 #include "base/parallel.h"
 #include "data/field_ops.h"
-#include "data/ranks/over_all.h"
+#include "filter/field/automatic_values.h"
 #include "filter/scalar/contour/amr_leaves.h"
 #include "filter/scalar/contour/amr_outline.h"
 
@@ -356,10 +356,7 @@ DatasetPtr contour_amr(const DatasetPtr& input, const ContourParams& params, int
     fail_usage(fmt::format("field '{}' belongs to the whole mesh; a contour needs values at the points", field->name), "contour");
   const int component = component_of(*field, params.component);
   ContourParams flat = params;
-  if (flat.values.empty()) {
-    const Range range = range_over_all(*input, *field, component, context);
-    flat.values.push_back(range.empty() ? 0.0 : range.lo + 0.5 * (range.hi - range.lo));
-  }
+  if (flat.values.empty()) flat.values.push_back(middle_value(*input, *field, component, "contour", context));
   for (double v : flat.values)
     if (!std::isfinite(v)) fail_usage(fmt::format("{} is not a valid isovalue", v), "contour values", "give finite numbers");
   flat.field.name = field->name;

@@ -11,6 +11,7 @@
 #include "base/file/file_fence.h"
 #include "base/parallel.h"
 #include "base/text/text.h"
+#include "data/patient/patient_frame.h"
 #include "io/mesh/unread.h"
 #include "io/plugin.h"
 #include "io/plugins/gdcm/dicom_picture.h"
@@ -124,7 +125,7 @@ void place(UniformGrid& grid, const std::vector<Slice>& v, bool placed, DatasetP
     }
   }
   for (int r = 0; r < 3; ++r) grid.direction.m[r][0] = p.x[r], grid.direction.m[r][1] = p.y[r], grid.direction.m[r][2] = z[r];
-  if (p.has_orientation) out.notes.emplace_back("space", "left-posterior-superior");
+  if (p.has_orientation) note_patient_frame(out);
   if (p.has_spacing) out.notes.emplace_back("length unit", "mm");
 }
 

@@ -4,16 +4,21 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cstring>
+#include <optional>
 
 #include "base/bytes.h"
 #include "base/error.h"
 #include "base/text/text.h"
+#include "io/bytes/inflate.h"
 
 namespace sg {
 
 namespace {
 
 constexpr uint32_t undefined = 0xffffffff, item_tag = 0xfffee000, item_end = 0xfffee00d, sequence_end = 0xfffee0dd;
+constexpr uint32_t syntax_tag = 0x00020010;
+constexpr std::string_view explicit_syntax = "1.2.840.10008.1.2.1", deflated_syntax = "1.2.840.10008.1.2.1.99";
 constexpr uint32_t shared_groups = 0x52009229, frame_groups = 0x52009230;
 
 struct Walker {
@@ -157,6 +162,27 @@ size_t DicomElements::whole(uint32_t tag, size_t otherwise) const {
   return load<uint16_t>(bytes.data() + it->second.value, big_endian);
 }
 
+DicomFile::DicomFile(const std::string& path) : file_(path) {
+  constexpr size_t preamble = 132;
+  if (file_.size() < preamble || std::memcmp(file_.data() + preamble - 4, "DICM", 4) != 0) return;
+  DicomElements d;
+  d.bytes = bytes(), d.path = path;
+  const Walker w{d};
+  size_t at = preamble;
+  std::optional<DicomElement> syntax;
+  while (at + 8 <= file_.size() && load<uint16_t>(file_.data() + at) == 2) {
+    const auto h = w.head(at, file_.size());
+    if (h.e.tag == syntax_tag && d.text(h.e) == deflated_syntax) syntax = h.e;
+    at = h.e.end;
+  }
+  if (!syntax) return;
+  const std::vector<std::byte> rest = inflate_raw(bytes().subspan(at), path);
+  inflated_.assign(file_.data(), file_.data() + at);
+  inflated_.insert(inflated_.end(), rest.begin(), rest.end());
+  std::memset(inflated_.data() + syntax->value, 0, syntax->end - syntax->value);
+  std::memcpy(inflated_.data() + syntax->value, explicit_syntax.data(), explicit_syntax.size());
+}
+
 DicomElements walk_dicom(std::span<const std::byte> bytes, const std::string& path) {
   DicomElements d;
   d.bytes = bytes;
@@ -169,7 +195,7 @@ DicomElements walk_dicom(std::span<const std::byte> bytes, const std::string& pa
     for (at = 132; at + 8 <= bytes.size() && load<uint16_t>(bytes.data() + at) == 2;) {
       const auto h = w.head(at, bytes.size());
       if (h.sequence) w.fail(at, h.e.tag, "is an unexpected sequence");
-      if (h.e.tag == 0x00020010) d.transfer_syntax = d.text(h.e);
+      if (h.e.tag == syntax_tag) d.transfer_syntax = d.text(h.e);
       at = h.e.end;
     }
   } else if (bytes.size() < 16 || (load<uint16_t>(bytes.data()) != 8 && load<uint16_t>(bytes.data()) != 2)) {
@@ -180,8 +206,6 @@ DicomElements walk_dicom(std::span<const std::byte> bytes, const std::string& pa
     if (vr[0] >= 'A' && vr[0] <= 'Z' && vr[1] >= 'A' && vr[1] <= 'Z') d.transfer_syntax = "1.2.840.10008.1.2.1";
   }
   d.meta_end = at;
-  if (d.transfer_syntax == "1.2.840.10008.1.2.1.99")
-    fail_data("its data set is deflated, which is not supported", path, "convert it: gdcmconv --raw");
   w.explicit_vr = d.explicit_vr = d.transfer_syntax != "1.2.840.10008.1.2";
   w.big = d.big_endian = d.transfer_syntax == "1.2.840.10008.1.2.2";
   w.dataset(at);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/file/file.h"
 #include "base/vec.h"
 
 namespace sg {
@@ -38,6 +39,20 @@ struct DicomElements {
   std::vector<double> numbers(uint32_t tag) const;
   /// An unsigned 16-bit value.
   size_t whole(uint32_t tag, size_t otherwise) const;
+};
+
+/// The bytes of a file, whose data set is inflated where it is stored deflated (PS3.5 A.5): then they say so no longer.
+class DicomFile {
+ public:
+  DicomFile() = default;
+  explicit DicomFile(const std::string& path);
+  std::span<const std::byte> bytes() const {
+    return inflated_.empty() ? std::span<const std::byte>(file_.data(), file_.size()) : std::span<const std::byte>(inflated_);
+  }
+
+ private:
+  MappedFile file_;
+  std::vector<std::byte> inflated_;
 };
 
 /// Walks over the file. Throws Error(data) naming byte and tag where a length leaves the file or sequences nest too deep.

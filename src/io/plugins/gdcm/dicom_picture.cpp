@@ -126,11 +126,11 @@ void decode_here(const std::string& file, const DicomPicture& p, Result& r, char
 
 // GDCM ends the program on some damaged files (its assertions are compiled in), so it works in a process of its own.
 Decoded decode(const DicomPicture& p) {
-  const MappedFile file(p.path);
-  const DicomElements d = walk_dicom({file.data(), file.size()}, p.path);
+  const DicomFile file(p.path);
+  const DicomElements d = walk_dicom(file.bytes(), p.path);
   const std::string minimal = minimal_file(d);
   const size_t room = p.numbers_per_frame() * p.frames * (p.photometric == "PALETTE COLOR" ? 2 : size_t(p.bits_allocated / 8));
-  check_plausible(room, file.size(), p.path);
+  check_plausible(room, file.bytes().size(), p.path);
   const size_t total = sizeof(Result) + room;
   void* shared = ::mmap(nullptr, total, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (shared == MAP_FAILED) fail_data(fmt::format("not enough memory for {} bytes of pixels", room), p.path);
@@ -192,8 +192,8 @@ ElementType stored_type(int bits, bool is_signed) {
 }  // namespace
 
 bool read_dicom_header(const std::string& path, DicomPicture& p) {
-  const MappedFile file(path);
-  const DicomElements d = walk_dicom({file.data(), file.size()}, path);
+  const DicomFile file(path);
+  const DicomElements d = walk_dicom(file.bytes(), path);
   p.path = path;
   if (!d.has(pixel_tag)) return false;
   const DicomElement& pixels = d.top.at(pixel_tag);
@@ -235,6 +235,8 @@ bool read_dicom_header(const std::string& path, DicomPicture& p) {
                                   {0x0008103eu, "SeriesDescription"},
                                   {0x00180015u, "BodyPartExamined"},
                                   {0x00185100u, "PatientPosition"},
+                                  {0x00281050u, "WindowCenter"},
+                                  {0x00281051u, "WindowWidth"},
                                   {0x00280004u, "PhotometricInterpretation"}})
     if (const std::string v = d.text(tag); !v.empty()) p.notes.emplace_back(name, v);
   return true;
@@ -254,7 +256,7 @@ ElementType dicom_type(const DicomPicture& p, bool as_float) {
 void read_dicom_frames(const DicomPicture& p, size_t first, size_t count, ElementType type, std::byte* out) {
   Convert c{p.bits_allocated, p.bits_stored, p.high_bit, p.is_signed, p.big_endian, p.slope, p.intercept};
   Decoded decoded;
-  MappedFile file;
+  DicomFile file;
   const std::byte* in = nullptr;
   if (p.decode) {
     decoded = decode(p);
@@ -263,9 +265,10 @@ void read_dicom_frames(const DicomPicture& p, size_t first, size_t count, Elemen
     if (p.photometric == "PALETTE COLOR" && c.bits == 16) c.slope = 1.0 / 257, c.intercept = 0;  // colours of 16 bits
     in = decoded.bytes;
   } else {
-    file = MappedFile(p.path);
-    if (p.pixels_begin > file.size() || p.pixels_bytes > file.size() - p.pixels_begin) fail_data("changed while it was being read", p.path);
-    in = file.data() + p.pixels_begin;
+    file = DicomFile(p.path);
+    const size_t size = file.bytes().size();
+    if (p.pixels_begin > size || p.pixels_bytes > size - p.pixels_begin) fail_data("changed while it was being read", p.path);
+    in = file.bytes().data() + p.pixels_begin;
   }
   const size_t n = p.numbers_per_frame(), size = size_t(c.bits / 8);
   in += first * n * size;

@@ -4,10 +4,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "base/parallel.h"
 #include "base/text/text.h"
+#include "data/fields/label_names.h"
 #include "data/lattice.h"
 #include "data/lattice_crop.h"
 #include "io/mesh/unread.h"
@@ -106,6 +109,21 @@ std::vector<int> own_order(const CfGrid& grid, const CfVariable& c, const std::v
   return own;
 }
 
+// CF section 3.5: each of flag_values has a word in flag_meanings. Masks, whose bits mean something one by one, have no names for values.
+std::optional<LabelNames> flags_of(const NcFile& file, const Variable& v) {
+  const std::vector<double> values = file.numbers(&v, "flag_values");
+  const std::vector<std::string> meanings = file.words(&v, "flag_meanings");
+  if (values.empty() || values.size() != meanings.size() || !file.numbers(&v, "flag_masks").empty()) return {};
+  LabelNames names(v.name);
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (values[i] != std::round(values[i]) || std::abs(values[i]) > 1e15) return {};
+    std::string word = meanings[i];
+    std::replace(word.begin(), word.end(), '_', ' ');
+    names.add(int64_t(values[i]), word);
+  }
+  return names;
+}
+
 DatasetPtr read_grid(const NcFile& file, const CfModel& model, const CfGrid& grid, bool main, size_t step, std::optional<double> time,
                      const ReadOptions& options, Context& context) {
   CfMesh mesh = cf_mesh(file, model, grid, context);
@@ -132,7 +150,9 @@ DatasetPtr read_grid(const NcFile& file, const CfModel& model, const CfGrid& gri
     }
     Array a = read_step(file, c, step, spans, n, options.header_only);
     if (!options.header_only) a = permuted(a, n, own);
-    parts.fields.add({c.v->name, mesh.association, std::move(a), unit_of(file, *c.v), Role::none});
+    const std::optional<LabelNames> flags = flags_of(file, *c.v);
+    if (flags) mesh.notes.push_back(flags->note());
+    parts.fields.add({c.v->name, mesh.association, std::move(a), unit_of(file, *c.v), flags ? Role::labels : Role::none});
     if (!c.first.empty()) {
       std::string held;
       for (const int p : c.first) held += (held.empty() ? "" : ", ") + file.dimensions()[size_t(c.v->dims[size_t(p)])].name;

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "base/text/text.h"
+#include "data/fields/axis_notes.h"
 #include "io/plugins/netcdf/cf.h"
 
 namespace sg::nc {
@@ -64,13 +65,8 @@ Array axis_array(const Axis& axis) {
   return Array::from_vector(std::vector<float>(axis.at.begin(), axis.at.end()));
 }
 
-void note_axis(const NcFile& file, const Variable& v, char letter, CfMesh& out) {
-  const std::string unit = file.text(&v, "units"), positive = file.text(&v, "positive");
-  std::string text = v.name;
-  if (!unit.empty()) text += ", " + unit;
-  if (!positive.empty()) text += ", positive " + positive;
-  if (unit.starts_with("degree")) text += " (drawn flat)";
-  out.notes.emplace_back(fmt::format("{} axis", letter), text);
+void note_axis(const NcFile& file, const Variable& v, int axis, CfMesh& out) {
+  sg::note_axis(out.notes, axis, {v.name, file.text(&v, "units"), file.text(&v, "positive")});
 }
 
 // Which dimension goes along x, y, z: as their letters indicate; those without one take what is left, the fastest first.
@@ -99,7 +95,7 @@ void lattice(const NcFile& file, const CfModel& model, const CfGrid& grid, CfMes
     const int dim = grid.dims[size_t(out.order[a])];
     axes[a] = axis_of(file, model, dim, out, context);
     uniform = uniform && regular(axes[a].at);
-    if (const Variable* v = model.coordinate(dim)) note_axis(file, *v, "xyz"[a], out);
+    if (const Variable* v = model.coordinate(dim)) note_axis(file, *v, int(a), out);
   }
   if (uniform) {
     UniformGrid g;
@@ -158,9 +154,9 @@ void curvilinear(const NcFile& file, const CfModel& model, const CfGrid& grid, C
     }
   }
   out.used.push_back(grid.lon), out.used.push_back(grid.lat);
-  note_axis(file, *grid.lon, 'x', out), note_axis(file, *grid.lat, 'y', out);
+  note_axis(file, *grid.lon, 0, out), note_axis(file, *grid.lat, 1, out);
   if (n > 2)
-    if (const Variable* v = model.coordinate(grid.dims[n - 3])) note_axis(file, *v, 'z', out);
+    if (const Variable* v = model.coordinate(grid.dims[n - 3])) note_axis(file, *v, 2, out);
   out.mesh = std::move(g);
 }
 
@@ -169,7 +165,7 @@ void listed(const NcFile& file, const CfGrid& grid, CfMesh& out) {
   const Variable* bounds[2] = {file.find(file.text(grid.lon, "bounds")), file.find(file.text(grid.lat, "bounds"))};
   out.used = {grid.lon, grid.lat};
   out.order = {0, -1, -1};
-  note_axis(file, *grid.lon, 'x', out), note_axis(file, *grid.lat, 'y', out);
+  note_axis(file, *grid.lon, 0, out), note_axis(file, *grid.lat, 1, out);
   const size_t n = grid.points;
   for (const Variable* b : bounds)
     if (!b || !b->is_number() || b->shape.size() != 2 || b->shape[0] != n || b->shape[1] < 3 || b->shape != bounds[0]->shape) {

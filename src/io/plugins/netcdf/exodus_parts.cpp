@@ -6,6 +6,7 @@
 
 #include "base/bytes.h"
 #include "base/parallel.h"
+#include "data/fields/label_names.h"
 #include "io/plugins/netcdf/exodus.h"
 
 namespace sg::nc {
@@ -229,6 +230,12 @@ DatasetPtr ExodusMesh::finish(UnstructuredMesh mesh, std::vector<int64_t> ids, F
   for (const Field& f : cell_fields) parts.fields.add(f);
   for (const Field& f : whole_) parts.fields.add(f);
   parts.notes = notes_;
+  // The names of all objects of the kind, so that one legend fits all parts.
+  LabelNames names("ObjectId");
+  for (const auto* kind : {&elements, &faces, &edges, &sides, &node_lists})
+    for (const ExodusObject& other : *kind)
+      if (other.kind == o.kind) names.add(other.id, other.name);
+  parts.notes.push_back(names.note());
   parts.time = time_;
   return make_dataset(std::move(parts));
 }

@@ -13,6 +13,7 @@
 #include "base/text/text.h"
 #include "data/lattice_crop.h"
 #include "io/volume/direction.h"
+#include "io/volume/nifti_header.h"
 
 namespace sg::nc {
 
@@ -45,6 +46,7 @@ MincLayout layout_of(const NcFile& file, const Variable& image) {
 }
 
 UniformGrid grid_of(const NcFile& file, const Variable& image, const MincLayout& l) {
+  // MINC's world is NIfTI's: +x right, +y anterior, +z superior.
   UniformGrid g;
   Vec3 direction[3];
   Vec3 origin(0, 0, 0);
@@ -76,6 +78,7 @@ UniformGrid grid_of(const NcFile& file, const Variable& image, const MincLayout&
       if (const auto start = file.number(v, "start")) origin[s] += *start;
   g.direction = direction_of(direction, n, file.path());
   g.origin = origin;
+  turn(g, nifti_axes);
   return g;
 }
 
@@ -207,6 +210,7 @@ DatasetPtr read_volume(const NcFile& file, const ReadOptions& options) {
   DatasetParts parts;
   const UniformGrid grid = grid_of(file, image, l);
   parts.mesh = grid;
+  note_patient_frame(parts, nifti_space);
   std::vector<size_t> start(image.shape.size(), 0), count = image.shape;
   size_t step = 0;
   if (l.time >= 0) {
@@ -233,9 +237,13 @@ DatasetPtr read_volume(const NcFile& file, const ReadOptions& options) {
   const Array stored = with_sign(file, image, file.read(image, start, count, image.element()));
   const Scaling scaling(file, image, stored.type());
   const Components order(l, count, stored.count());
-  if (wanted("image") && (scaling.used() || is_float(stored.type())))
-    parts.fields.add(
-        {"image", Association::point, real_values(stored, image, l, step, scaling, order), file.text(&image, "units"), Role::scalars});
+  if (wanted("image") && (scaling.used() || is_float(stored.type()))) {
+    // Three numbers are displacements, but bytes, which are colours.
+    const Role role = order.components == 3 && element_size(stored.type()) > 1 ? Role::vectors : Role::scalars;
+    Field f{"image", Association::point, real_values(stored, image, l, step, scaling, order), file.text(&image, "units"), role};
+    turn(f, nifti_axes.matrix());
+    parts.fields.add(std::move(f));
+  }
   if (wanted("ImageScalars") && !is_float(stored.type()))
     parts.fields.add({"ImageScalars", Association::point, stored_values(stored, order), {}, scaling.used() ? Role::none : Role::scalars});
   return make_dataset(std::move(parts));

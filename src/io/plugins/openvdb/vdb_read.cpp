@@ -164,7 +164,9 @@ DatasetPtr make_grid(const Group& g, const std::string& path, const ReadOptions&
                   path, "read a region of it or every n-th voxel, or allow more memory");
       if (options.header_only) return;
       const Role role = n == 3 ? Role::vectors : out.fields.empty() ? Role::scalars : Role::none;
-      out.fields.add({name, Association::point, dense<std::decay_t<decltype(typed)>, T, n>(typed, g.box, part), "", role});
+      FieldLook look;
+      if (n == 1 && one->getGridClass() == openvdb::GRID_LEVEL_SET) look.shows = FieldLook::Shows::zero;
+      out.fields.add({name, Association::point, dense<std::decay_t<decltype(typed)>, T, n>(typed, g.box, part), "", role, look});
     });
     if (!known) context.warn(fmt::format("{}: grid '{}' of type {} holds no numbers of a supported type", path, name, one->valueType()));
     if (one->getGridClass() != openvdb::GRID_UNKNOWN)

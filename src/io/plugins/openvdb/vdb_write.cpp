@@ -18,14 +18,14 @@ namespace sg {
 namespace {
 
 template <class GridType, class T, int N>
-openvdb::GridBase::Ptr sparse(const Array& values, const openvdb::CoordBBox& box) {
+openvdb::GridBase::Ptr sparse(const Array& values, const openvdb::CoordBBox& box, double outside = 0) {
   using Value = typename GridType::ValueType;
   const Array packed = values.converted(element_type_of<T>());
   auto* data = const_cast<Value*>(reinterpret_cast<const Value*>(packed.raw()));  // only read
   openvdb::tools::Dense<Value, openvdb::tools::LayoutXYZ> dense(box, data);
-  auto grid = GridType::create(openvdb::zeroVal<Value>());
-  openvdb::tools::copyFromDense(dense, *grid, openvdb::zeroVal<Value>());  // tolerance 0: what is not zero stays as it is
-  // A leaf of zeros and NaN counts as all zero there.
+  auto grid = GridType::create(Value(T(outside)));
+  openvdb::tools::copyFromDense(dense, *grid, openvdb::zeroVal<Value>());  // tolerance 0: what is not background stays as it is
+  // A leaf of background and NaN counts as all background there.
   auto tree = grid->getAccessor();
   const T* v = reinterpret_cast<const T*>(packed.raw());
   const openvdb::Coord n = box.dim();
@@ -57,12 +57,14 @@ class Archive : openvdb::io::Archive {
 
 // Floats stay what they are; whole numbers become f32, which every program reads, where that changes none of them, else the integers
 // that OpenVDB has. Null: neither 1 nor 3 components.
-openvdb::GridBase::Ptr grid_of(const Field& f, const openvdb::CoordBBox& box, WriteLosses& losses) {
+openvdb::GridBase::Ptr grid_of(const Dataset& d, const Field& f, const openvdb::CoordBBox& box, WriteLosses& losses) {
   const Array& a = f.array;
   const bool f32 = a.type() == ElementType::f32 || (a.type() != ElementType::f64 && survives(a, ElementType::f32));
   if (a.components() == 1) {
-    if (f32) return sparse<openvdb::FloatGrid, float, 1>(a, box);
-    if (a.type() == ElementType::f64) return sparse<openvdb::DoubleGrid, double, 1>(a, box);
+    // Beyond a level set everything lies outside.
+    const double outside = f.look.shows == FieldLook::Shows::zero ? std::max(0.0, d.range(f, 0).hi) : 0;
+    if (f32) return sparse<openvdb::FloatGrid, float, 1>(a, box, outside);
+    if (a.type() == ElementType::f64) return sparse<openvdb::DoubleGrid, double, 1>(a, box, outside);
     if (a.type() == ElementType::i32) return sparse<openvdb::Int32Grid, int32_t, 1>(a, box);
     if (survives(a, ElementType::i64)) return sparse<openvdb::Int64Grid, int64_t, 1>(a, box);
     losses.rounds(f, ElementType::f64);
@@ -96,13 +98,15 @@ void write_vdb(const std::string& path, const Data& data, const WriteOptions&, C
     for (int a = 0; a < 3; ++a)
       for (int c = 0; c < 3; ++c) map[a][c] = g->direction.m[c][a] * g->spacing[a], map[3][c] = g->origin[c];
     for (const Field& f : d->fields()) {
-      const openvdb::GridBase::Ptr grid = f.association == Association::point ? grid_of(f, box, losses) : nullptr;
+      const openvdb::GridBase::Ptr grid = f.association == Association::point ? grid_of(*d, f, box, losses) : nullptr;
       if (!grid) {
         losses.leaves_out(f);
         continue;
       }
       losses.drops_unit(f);
       grid->setName(f.name);
+      if (f.look.shows == FieldLook::Shows::zero && (grid->isType<openvdb::FloatGrid>() || grid->isType<openvdb::DoubleGrid>()))
+        grid->setGridClass(openvdb::GRID_LEVEL_SET);
       grid->setTransform(openvdb::math::Transform::createLinearTransform(map));
       grid->insertMeta(vdb_box_lo, openvdb::Vec3IMetadata(openvdb::Vec3i(0, 0, 0)));
       grid->insertMeta(vdb_box_hi, openvdb::Vec3IMetadata(last.asVec3i()));

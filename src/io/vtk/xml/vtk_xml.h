@@ -37,6 +37,8 @@ class XmlFile {
   /// The numbers of a DataArray. With `tuples` there must be at least as many (more are dropped), without all there are.
   /// Little-endian uncompressed appended bytes are not copied when they lie on multiples of the element size.
   Array array(pugi::xml_node element, std::optional<uint64_t> tuples) const;
+  /// The characters of a string array, as bytes.
+  Array codes(pugi::xml_node element) const;
   /// The same for point ids: 64-bit numbers that have to be unpacked or copied come as 32-bit ones where all of them fit.
   Array ids(pugi::xml_node element, std::optional<uint64_t> tuples) const;
   /// The step s of n offsets s, 2s, 3s, ...; 0 when they are others, or when telling takes an array (text, base64, other byte orders).
@@ -67,6 +69,7 @@ class XmlFile {
   void read_root();
   Source source(pugi::xml_node element) const;
   Wanted wanted(pugi::xml_node element, std::optional<uint64_t> tuples) const;
+  Array read(const Wanted& want) const;
   BlockTable block_table(const Wanted& want, const Source& source) const;
   Array raw_window(const Wanted& want, const std::byte* numbers, const Window& window) const;
   Array compressed_window(const Wanted& want, const Source& source, const Window& window) const;

@@ -454,12 +454,21 @@ XmlFile::Wanted XmlFile::wanted(pugi::xml_node element, std::optional<uint64_t> 
   return want;
 }
 
-Array XmlFile::array(pugi::xml_node element, std::optional<uint64_t> tuples) const {
-  const Wanted want = wanted(element, tuples);
+Array XmlFile::array(pugi::xml_node element, std::optional<uint64_t> tuples) const { return read(wanted(element, tuples)); }
+
+Array XmlFile::codes(pugi::xml_node element) const {
+  Wanted want;
+  want.element = element, want.type = ElementType::i8, want.components = 1;
+  const std::string_view format = element.attribute("format").value();
+  want.text = format.empty() || format == "ascii";
+  return read(want);
+}
+
+Array XmlFile::read(const Wanted& want) const {
   if (want.text) return text(want);
-  const Source s = source(element);
+  const Source s = source(want.element);
   // An array of nothing may have no bytes at all.
-  if (s.bytes.empty() && (!tuples || *tuples == 0)) return finished(want, {}, 0, 0);
+  if (s.bytes.empty() && (!want.tuples || *want.tuples == 0)) return finished(want, {}, 0, 0);
   return codec_ == Codec::none ? plain(want, s) : compressed(want, s);
 }
 

@@ -193,6 +193,8 @@ void read_unstructured(const XmlRead& read, DatasetParts& parts) {
     if (is_attribute(f, "HigherOrderDegrees")) set_degrees(mesh, field);
     parts.fields.add(std::move(field));
   }
+  add_categories(read, pieces, "PointData", Association::point, points, parts);
+  add_categories(read, pieces, "CellData", Association::cell, cells, parts);
   parts.mesh = std::move(mesh);
 }
 
@@ -287,6 +289,8 @@ void read_polydata(const XmlRead& read, DatasetParts& parts) {
     field.array = joined_cell_field(read, pieces, f, meshes);
     parts.fields.add(std::move(field));
   }
+  add_categories(read, pieces, "PointData", Association::point, points, parts);
+  if (meshes.size() == 1) add_categories(read, pieces, "CellData", Association::cell, {meshes[0].cell_count()}, parts);
   if (meshes.size() == 1) parts.mesh = std::move(meshes[0]);
   else parts.mesh = meshes.empty() ? SurfaceMesh{} : joined(meshes);
 }

@@ -64,11 +64,6 @@ bool shapes_mesh(pugi::xml_node data, std::string_view name) {
   return false;
 }
 
-bool is_wanted(const XmlRead& read, std::string_view name) {
-  const auto& wanted = read.options.fields;
-  return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
-}
-
 // The array of that name among the PointData or CellData of a piece; the last one when there are several.
 pugi::xml_node array_of(const XmlPiece& piece, const char* element, std::string_view name) {
   pugi::xml_node found;
@@ -79,6 +74,11 @@ pugi::xml_node array_of(const XmlPiece& piece, const char* element, std::string_
 }
 
 }  // namespace
+
+bool is_wanted(const XmlRead& read, std::string_view name) {
+  const auto& wanted = read.options.fields;
+  return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+}
 
 std::vector<XmlField> list_fields(const XmlRead& read, const std::vector<XmlPiece>& pieces, const char* element, Association association) {
   std::vector<XmlField> fields;

@@ -28,6 +28,8 @@ struct XmlField {
   std::vector<pugi::xml_node> nodes;
 };
 
+/// Is a field of this name asked for?
+bool is_wanted(const XmlRead& read, std::string_view name);
 /// The fields of PointData or CellData that all pieces have with one type and number of components and that are wanted; others
 /// are dropped with a warning.
 std::vector<XmlField> list_fields(const XmlRead& read, const std::vector<XmlPiece>& pieces, const char* element, Association association);
@@ -37,6 +39,12 @@ bool header_only(const XmlRead& read, const XmlField& field);
 void check_backed(const std::vector<XmlPiece>& pieces, const XmlField& field, size_t tuples);
 /// All numbers of a field, piece after piece of tuples[i] each.
 Array joined_field(const XmlRead& read, const std::vector<XmlPiece>& pieces, const XmlField& field, const std::vector<size_t>& tuples);
+/// String arrays of PointData or CellData: their words, in alphabetical order, are numbered from 0 and noted as "labels of NAME"; the field
+/// holds the numbers. Throws Error(data) when there are not tuples[i] strings in piece i.
+void add_categories(const XmlRead& read, const std::vector<XmlPiece>& pieces, const char* element, Association association,
+                    const std::vector<size_t>& tuples, DatasetParts& parts);
+/// String arrays of FieldData below `parent`, as notes.
+void add_texts(const XmlRead& read, pugi::xml_node parent, DatasetParts& parts);
 /// Arrays of FieldData below `parent`.
 FieldSet read_whole_fields(const XmlRead& read, pugi::xml_node parent);
 

@@ -11,6 +11,7 @@
 #include "base/text/text.h"
 #include "io/formats.h"
 #include "io/vtk/vtk_cells.h"
+#include "io/vtk/vtk_missing.h"
 #include "io/vtk/xml/vtk_xml_pieces.h"
 
 namespace sg {
@@ -39,11 +40,13 @@ void add_pieces(const XmlFile& file, std::vector<XmlPiece>& pieces) {
 }
 
 void add_whole_fields(const XmlRead& read, DatasetParts& parts) {
-  for (const pugi::xml_node& owner : {read.file.dataset(), read.file.dataset().parent()})
+  for (const pugi::xml_node& owner : {read.file.dataset(), read.file.dataset().parent()}) {
     for (const Field& f : read_whole_fields(read, owner)) {
       if (f.name == "TimeValue" && f.array.count() == 1 && f.components() == 1) parts.time = f.array.get(0);
       else if (!parts.fields.find(f.name, f.association)) parts.fields.add(f);
     }
+    add_texts(read, owner, parts);
+  }
 }
 
 // Every mapped piece keeps its file open.
@@ -106,15 +109,22 @@ Data read_vtk_parallel(const std::string& path, const ReadOptions& options, Cont
   vtk::allow_open_files(end - begin + 256);
   std::vector<std::unique_ptr<vtk::XmlFile>> files;
   vtk::XmlRead read{file, options, context};
+  vtk::MissingFiles missing;
   for (size_t i = begin; i < end; ++i) {
     context.check();
-    files.push_back(with_context(fmt::format("reading the pieces of '{}'", path),
-                                 [&] { return std::make_unique<vtk::XmlFile>(named_file(path, sources[i])); }));
+    auto piece = with_context(fmt::format("reading the pieces of '{}'", path), [&]() -> std::unique_ptr<vtk::XmlFile> {
+      const std::string name = named_file(path, sources[i]);
+      return missing.lacks(name) ? nullptr : std::make_unique<vtk::XmlFile>(name);
+    });
+    if (!piece) continue;
+    missing.found();
+    files.push_back(std::move(piece));
     if (files.back()->type() != kind->type)
       fail_data(fmt::format("holds {}", files.back()->type()), files.back()->path(),
                 fmt::format("expected {}, as in the other pieces of {}", kind->type, file_name_of(path)));
     vtk::add_pieces(*files.back(), read.pieces);
   }
+  missing.tell(path, context);
   DatasetParts parts;
   kind->read(read, parts);
   vtk::add_whole_fields(read, parts);

@@ -44,13 +44,24 @@ bool clip_depth(const Projection& p, Vec3& a, Vec3& b, float& from, float& to) {
   return true;
 }
 
-bool make_record(const PreparedItem& item, const Projection& p, size_t i, MarkRecord& m) {
+// Edges of cells that are wider than the first number of pixels are whole, below the second there are none.
+constexpr double roomy = 8, crowded = 3;
+
+double edge_fade(double room_pixels) { return std::clamp((room_pixels - crowded) / (roomy - crowded), 0.0, 1.0); }
+
+bool make_record(const PreparedItem& item, const Projection& p, double pixel_scale, size_t i, MarkRecord& m) {
   const bool line = item.kind == PreparedItem::Kind::lines;
   Vec3 a = eye_point(item, p, line ? item.segments->points[2 * i] : (*item.points)[i]);
   Vec3 b = line ? eye_point(item, p, item.segments->points[2 * i + 1]) : a;
   m.primitive = item.first_primitive + uint32_t(i), m.group = !line                           ? uint32_t(i)
                                                               : item.segments->groups.empty() ? 0
                                                                                               : item.segments->groups[i];
+  m.fade = 1;
+  if (line && !item.segments->room.empty()) {
+    const double depth = 0.5 * (a.z + b.z), pixels = (p.parallel ? p.scale : p.scale / std::max(depth, 1e-300)) / pixel_scale;
+    m.fade = float(edge_fade(double(item.segments->room[i]) * pixels));
+    if (!(m.fade > 0)) return false;
+  }
   if (!place_segment(p, a, b, m)) return false;
   if (!line) m.from = m.to = 0;
   return true;
@@ -78,7 +89,7 @@ std::vector<MarkRecord> mark_records(const PreparedItem& item, uint32_t number, 
     MarkRecord m;
     m.half = float(0.5 * item.width * pixel_scale), m.halo = float(item.halo * pixel_scale), m.item = number;
     for (size_t i = begin; i < end; ++i)
-      if (make_record(item, projection, i, m)) parts[begin / marks_per_chunk].push_back(m);
+      if (make_record(item, projection, pixel_scale, i, m)) parts[begin / marks_per_chunk].push_back(m);
   });
   std::vector<MarkRecord> all;
   for (const auto& p : parts) all.insert(all.end(), p.begin(), p.end());
@@ -122,7 +133,7 @@ void MarkTile::draw(const MarkRecord& m, std::vector<Cover>& out) {
       if (!(float(front) < key_depth(keys_[size_t(y) * size_t(p.width) + size_t(x)]))) continue;
       Cover c;
       c.pixel = uint32_t((y - box_.y0) * tile_size + (x - box_.x0));
-      c.order = float(front), c.depth = float(z), c.primitive = m.primitive, c.item = m.item, c.alpha = float(alpha);
+      c.order = float(front), c.depth = float(z), c.primitive = m.primitive, c.item = m.item, c.alpha = float(alpha) * m.fade;
       if (line) {
         const double s = p.parallel ? t : t * m.bw / w;
         c.s = float(m.from + s * (double(m.to) - m.from)), c.t = 0;

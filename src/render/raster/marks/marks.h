@@ -13,6 +13,7 @@ struct MarkRecord {
   double ax, ay, aw, bx, by, bw;
   float from, to;  ///< places of a and b on the segment, after near clipping; equal for dots
   float half;      ///< half the width, pixels
+  float fade = 1;  ///< factor of the coverage: edges of cells of a few pixels vanish
   float halo = 0;  ///< pixels around that hide what is behind
   uint32_t primitive;
   uint32_t item;  ///< of the prepared scene

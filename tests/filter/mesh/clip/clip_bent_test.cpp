@@ -14,12 +14,27 @@ namespace {
 
 constexpr int corner_place[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
 
+// -1 where the faces of a polyhedron look inwards: a piece whose cut points were moved through it is inside out.
+double facing(const UnstructuredMesh& m, size_t cell) {
+  if (m.type(cell) != CellType::polyhedron) return 1;
+  const CellsView faces = cells_view(m.faces);
+  const auto begin = size_t(m.polyhedron_faces.get(cell)), end = size_t(m.polyhedron_faces.get(cell + 1));
+  const Vec3 first = m.points.at(size_t(faces.point(begin, 0)));
+  double flux = 0;
+  for (size_t f = begin; f < end; ++f) {
+    const auto at = [&](size_t k) { return m.points.at(size_t(faces.point(f, k))) - first; };
+    for (size_t k = 1; k + 1 < faces.size(f); ++k) flux += dot(at(0), cross(at(k), at(k + 1)));
+  }
+  return flux < 0 ? -1 : 1;
+}
+
 double volume(const DatasetPtr& d) {
   CellMap map(d);
+  const auto* m = d->as<UnstructuredMesh>();
   double sum = 0;
   for (size_t c = 0; c < d->cell_count(); ++c) {
     map.open(c);
-    if (map.dimension() == 3) sum += map.measure();
+    if (map.dimension() == 3) sum += map.measure() * (m ? facing(*m, c) : 1);
   }
   return sum;
 }

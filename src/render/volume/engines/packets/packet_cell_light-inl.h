@@ -58,7 +58,9 @@ class CellLight {
     const auto some = max(sm.weight, max(s0.weight, s1.weight)) > zero, border = some & !both;
     const F turn0 = only(begins, turn_between(s0, sm)), turn1 = only(stops, turn_between(sm, s1));
     // For an angle a that is turned evenly the light bends by a^2 / 24 of its second derivative; a^2 = 2 (1 - cos a).
-    const F turned = select(begins, swept(g0, middle, turn0), at_border) + select(stops, swept(middle, g1, turn1), at_border);
+    const F fastest = max(rate_near(zero, g0), max(rate_near(half, middle), rate_near(one, g1)));
+    const F turned =
+        select(begins, swept(g0, middle, turn0, fastest), at_border) + select(stops, swept(middle, g1, turn1, fastest), at_border);
     const F faded = half * (Fade<D>(s0, sm, turn0).hollow + Fade<D>(sm, s1, turn1).hollow) * lighting_.most_fade();
     const F turn = max(turn0, turn1), near = max(nearest[2], max(nearest[0], nearest[1]));
     const F bend = turned * (lighting_.bend(near, turn) * (1.0f / 24));
@@ -178,8 +180,9 @@ class CellLight {
     }
   }
   /// The square of the angle that is turned over half of the way from one gradient to the next, as if it were turned evenly over all of it:
-  /// it is turned fastest where the gradient is smallest. `turn`: 1 - cosine.
-  static HWY_INLINE F swept(const F a[3], const F b[3], F turn) {
+  /// it is turned fastest where the gradient is smallest. `turn`: 1 - cosine. `fastest`: the square of the largest known rate, in radians
+  /// over half of the way; a gradient that turns fast and back between the two is told by that alone.
+  static HWY_INLINE F swept(const F a[3], const F b[3], F turn, F fastest) {
     const D d;
     const F zero = set(d, 0), one = set(d, 1.0f), two = set(d, 2.0f), least = set(d, 1e-30f);
     const F c[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
@@ -187,8 +190,29 @@ class CellLight {
     const F to = max(zero, min(-Lighting<D>::dot(a, c) / change, one));
     const F near[3] = {mul_add(c[0], to, a[0]), mul_add(c[1], to, a[1]), mul_add(c[2], to, a[2])};
     const F smallest = max(Lighting<D>::dot(near, near), change * (1 / (most_rate * most_rate)));
-    const F even = turn + turn;  // the square of the angle
-    return two * sqrt(even * max(even, change / smallest));
+    const F even = max(turn + turn, 0.05f * fastest);  // the square of the angle
+    return two * sqrt(even * max(even, max(fastest, change / smallest)));
+  }
+  /// The square of the rate at which the gradient turns, in radians over half of the way, where it comes nearest to nothing as its tangent
+  /// at s tells (g: there): |g x g'|^2 / |g|^4.
+  HWY_INLINE F rate_near(F s, const F g[3]) const {
+    const D d;
+    const F zero = set(d, 0), one = set(d, 1.0f), least = set(d, 1e-30f);
+    F rise[3], near[3];
+    slope(s, rise);
+    const F to = s - Lighting<D>::dot(g, rise) / max(Lighting<D>::dot(rise, rise), least);
+    const F at = max(zero, min(to, one));
+    gradient(at, near), slope(at, rise);
+    const F gg = Lighting<D>::dot(near, near), along = Lighting<D>::dot(near, rise), rr = Lighting<D>::dot(rise, rise);
+    const F across = max(zero, neg_mul_add(along, along, gg * rr)) * 0.25f;
+    return min(across / max(gg * gg, least), most_rate * most_rate);
+  }
+  /// How the gradient changes at the share s of the way.
+  HWY_INLINE void slope(F s, F out[3]) const {
+    for (int a = 0; a < 3; ++a) {
+      const Cubic<D>& g = gradient_[a];
+      out[a] = mul_add(s, mul_add(3.0f * s, g.e, g.c + g.c), g.b);
+    }
   }
 
   static constexpr float at_border = 0.1f;  // what a surface is thought to turn that begins or ends on the way

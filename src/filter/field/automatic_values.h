@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Values that operations choose when none are stated: round numbers within the range of all parts and pieces of the data.
+#pragma once
+#include <string_view>
+#include <vector>
+
+#include "base/context.h"
+#include "data/dataset.h"
+
+namespace sg {
+
+/// A round number within a tenth of the range about its middle; 0 for an empty range. Tells `who` chose it.
+double middle_value(const Dataset& data, const Field& field, int component, std::string_view who, const Context& context);
+
+/// `count` values in even steps inside a range, each rounded by at most a twentieth of a step; none for an empty range.
+std::vector<double> even_values(const Range& range, int count);
+
+}  // namespace sg

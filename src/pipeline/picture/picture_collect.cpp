@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// The results of all shows as scenes, with what the axes and the colours mean.
+#include <algorithm>
+
+#include "base/file/file.h"
+#include "data/fields/axis_notes.h"
+#include "data/patient/patient_frame.h"
+#include "data/ranks/over_all.h"
+#include "pipeline/file/transfer_file.h"
+#include "pipeline/picture/picture_parts.h"
+#include "scene/choose/stretch.h"
+#include "scene/show/outline.h"
+#include "scene/show/parts.h"
+#include "scene/show/volume.h"
+
+namespace sg {
+
+namespace {
+
+// What the axes measure, as the first dataset that tells it has it.
+void take_axis_titles(const std::vector<DatasetPtr>& data, Shown& s) {
+  for (const DatasetPtr& d : data) {
+    for (int a = 0; a < 3; ++a)
+      if (const auto note = axis_note(*d, a); note && s.axis_titles[a].empty()) s.axis_titles[a] = note->title();
+    for (const auto& [key, text] : d->notes())
+      if (key == "length unit" && s.length_unit.empty()) s.length_unit = text;
+  }
+  if (s.length_unit.empty() && s.patient) s.length_unit = "mm";
+}
+
+}  // namespace
+
+std::vector<Shown> collect(const PipelineFile& file, const std::vector<StatedShow>& shows, const std::vector<Data>& results,
+                           const std::vector<size_t>& panel_of, const PictureParams& stated, Context& context) {
+  std::vector<Shown> panels(panel_of.empty() ? 1 : *std::max_element(panel_of.begin(), panel_of.end()) + 1);
+  std::vector<Legend>& legends = panels[0].legends;
+  std::vector<DatasetPtr> all;
+  std::vector<ShownParts> shown;
+  for (size_t i = 0; i < results.size(); ++i) {
+    const auto& [kind, params] = shows[i];
+    Shown& s = panels[panel_of[i]];
+    s.outlined = s.outlined || kind->is<OutlineShow>();
+    if (std::holds_alternative<TablePtr>(results[i])) fail_no_mesh(results[i], file_name_of(origin_of(file, shown_step(file, i))));
+    std::vector<DatasetPtr>& parts = shown.emplace_back(ShownParts{{}, kind, &params}).parts;
+    for_each_dataset(results[i], [&](const std::string&, const DatasetPtr& d) {
+      parts.push_back(d), all.push_back(d);
+      s.any_points = s.any_points || d->point_count() > 0;
+      s.patient = s.patient || in_patient_frame(*d);
+      s.box.add(d->bounds());
+    });
+  }
+  Box3 box;
+  for (Shown& s : panels) take_axis_titles(all, s), box.add(s.box);
+  if (const Vec3 stretch = stated.stretch.value_or(chosen_stretch(all, over_all(box, context))); stretch != Vec3{1, 1, 1}) {
+    for (Shown& s : panels) s.box = {}, s.stretch = stretch;
+    for (size_t i = 0; i < shown.size(); ++i)
+      for (DatasetPtr& d : shown[i].parts) d = stretched(d, stretch, context), panels[panel_of[i]].box.add(d->bounds());
+  }
+  const std::vector<std::vector<DatasetPtr>> beside = colored_alike(shown);
+  for (size_t i = 0; i < shown.size(); ++i) {
+    const auto& [kind, params] = shows[i];
+    Shown& s = panels[panel_of[i]];
+    const size_t first = s.scene.items.size();
+    for (const Legend& legend : show_parts(s.scene, shown[i], beside[i], uint32_t(i + 1), context)) {
+      if (!stated.legend || (kind->coloring && !kind->coloring(params)->legend)) continue;
+      const auto have = std::find_if(legends.begin(), legends.end(), [&](const Legend& l) { return same_legend(l, legend); });
+      if (have == legends.end()) legends.push_back(legend);
+      else if (legend.glyph && (!have->glyph || have->glyph->most < legend.glyph->most)) have->glyph = legend.glyph;
+    }
+    if (!kind->is<VolumeShow>() || s.scene.items.size() == first) continue;
+    if (const std::string& path = params.as<VolumeShow>().save; !path.empty())
+      save_transfer_file(path_beside(file.origin, path), std::get<VolumeItem>(s.scene.items.back()));
+  }
+  return panels;
+}
+
+}  // namespace sg

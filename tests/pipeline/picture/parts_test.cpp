@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a picture shows of data in parts, and from where, when nothing is said.
+#include <algorithm>
+
+#include "data/dataset.h"
+#include "pipeline/picture/picture.h"
+#include "support/test.h"
+
+using namespace sg;
+
+namespace {
+
+// A square in the plane z with its number as the cell field "ObjectId".
+DatasetPtr square(float z, int number, const std::string& names) {
+  SurfaceMesh m;
+  m.points.xyz = Array::from_vector<float>({0, 0, z, 1, 0, z, 1, 1, z, 0, 1, z}, 3);
+  m.polygons = {Array::from_vector<int32_t>({0, 1, 2, 3}), {}, 4};
+  DatasetParts parts;
+  parts.mesh = m;
+  parts.fields.add({"ObjectId", Association::cell, Array::from_vector<int32_t>({number}), "", Role::none});
+  parts.notes.emplace_back("labels of ObjectId", names);
+  return make_dataset(std::move(parts));
+}
+
+CollectionPtr collection(std::vector<Collection::Part> parts) {
+  auto c = std::make_shared<Collection>();
+  c->parts = std::move(parts);
+  return c;
+}
+
+struct Shown {
+  PipelineFile file;
+  Picture picture;
+};
+
+Shown shown(const Data& data) {
+  Shown r;
+  r.file = parse_pipeline("sightglass: 1\nsteps:\n  in: {read: given.exo}\npicture: {size: 80x60}\n", "", picture_vocabulary());
+  PictureOptions options;
+  options.results["in"] = data;
+  Context context;
+  r.picture = make_picture(r.file, options, context);
+  return r;
+}
+
+}  // namespace
+
+TEST_CASE("pictures of parts: sets of sides lie upon their blocks and are left out, blocks are told apart by their numbers") {
+  const CollectionPtr blocks = collection({{"rim", square(0, 1, "1=rim")}, {"tyre", square(2, 2, "2=tyre")}});
+  const CollectionPtr sides = collection({{"outer", square(2, 1, "1=outer")}});
+  const Shown all = shown(Data(collection({{"Element Blocks", Data(blocks)}, {"Side Sets", Data(sides)}})));
+  REQUIRE(all.file.steps.size() >= 2);
+  CHECK(all.file.steps[1].operation == "extract");
+  CHECK(all.file.steps[1].words == std::vector<std::string>{"blocks=Element Blocks"});
+  REQUIRE(!all.file.show.empty());
+  CHECK(word_value(all.file.show[0].words, "field") == "ObjectId");
+  const std::string said = all.picture.notes.empty() ? "" : all.picture.notes[0];
+  CHECK(said.find("sets of sides and nodes lie upon the blocks and are left out") != std::string::npos);
+  // Nothing to leave out.
+  const Shown alone = shown(Data(collection({{"Side Sets", Data(sides)}})));
+  CHECK(alone.file.steps.size() == 1);
+  const Shown plain = shown(Data(blocks));
+  CHECK(plain.file.steps.size() == 1);
+  CHECK(word_value(plain.file.show[0].words, "field") == "ObjectId");
+  // The same number everywhere tells nothing.
+  const Shown same = shown(Data(collection({{"a", square(0, 1, "")}, {"b", square(2, 1, "")}})));
+  CHECK(!word_value(same.file.show[0].words, "field"));
+}
+
+TEST_CASE("pictures: an input that surrounds another does not hide it") {
+  const auto drawn = [](float first, float second) {
+    Shown r;
+    r.file = parse_pipeline("sightglass: 1\nsteps:\n  a: {read: first.ply}\n  b: {read: second.ply}\npicture: {size: 80x60}\n", "",
+                            picture_vocabulary());
+    PictureOptions options;
+    const auto box = [](float r) {
+      std::vector<float> xyz;
+      for (int i = 0; i < 8; ++i)
+        for (int a = 0; a < 3; ++a) xyz.push_back((i >> a & 1) ? r : -r);
+      SurfaceMesh m;
+      m.points.xyz = Array::from_vector(std::move(xyz), 3);
+      m.polygons = {Array::from_vector<int32_t>({0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5}), {}, 4};
+      return make_dataset(m);
+    };
+    options.results["a"] = Data(box(first)), options.results["b"] = Data(box(second));
+    Context context;
+    r.picture = make_picture(r.file, options, context);
+    return r;
+  };
+  const auto opacities = [](const Shown& s) {
+    std::vector<std::string> all;
+    for (const auto& show : s.file.show) all.push_back(word_value(show.words, "opacity").value_or("1"));
+    return all;
+  };
+  const Shown inside = drawn(1, 2);
+  CHECK(opacities(inside) == std::vector<std::string>{"1", "0.35"});
+  CHECK(std::count(inside.picture.notes.begin(), inside.picture.notes.end(),
+                   "second.ply surrounds first.ply: drawn with opacity=0.35, so that both are seen") == 1);
+  CHECK(opacities(drawn(2, 1)) == std::vector<std::string>{"0.35", "1"});
+  CHECK(opacities(drawn(1, 1)) == std::vector<std::string>{"1", "0.35"});
+}
+
+TEST_CASE("pictures: what a plane has cut open is seen from the side of the cut") {
+  const auto picture = [](const std::string& clip, const std::string& camera) {
+    PipelineFile file = parse_pipeline("sightglass: 1\nsteps:\n  a: {tangle: {size: 8}}\n  b: {clip: {" + clip +
+                                           "}}\nshow: [{surface: {}}]\npicture: {size: 60x40, camera: {" + camera + "}}\n",
+                                       "", picture_vocabulary());
+    Context context;
+    return make_picture(file, {}, context).image.pixels;
+  };
+  const std::string usual = "direction: [0.75, -1, 0.55]", behind = "direction: [0.75, 1, 0.55]";
+  CHECK(picture("axis: x", "") == picture("axis: x", usual));
+  CHECK(picture("axis: y", "") == picture("axis: y", behind));
+  CHECK(picture("axis: y, keep: outside", "") == picture("axis: y, keep: outside", usual));
+  CHECK(picture("axis: x, keep: outside", "") == picture("axis: x, keep: outside", "direction: [-0.75, -1, 0.55]"));
+  CHECK(picture("axis: y", "zoom: 1") == picture("axis: y", behind));
+  CHECK(picture("sphere: [0, 0, 0, 2]", "") == picture("sphere: [0, 0, 0, 2]", usual));
+}
+
+TEST_CASE("pictures: progress goes on while volumes and surfaces are drawn") {
+  for (const char* show : {"volume: {}", "surface: {}"}) {
+    CAPTURE(show);
+    PipelineFile file = parse_pipeline(
+        std::string("sightglass: 1\nsteps:\n  a: {tangle: {size: 16}}\nshow: [{") + show + "}]\npicture: {size: 500x400, samples: 2}\n", "",
+        picture_vocabulary());
+    Context context;
+    std::vector<double> told;
+    context.on_progress = [&](double f, std::string_view) { told.push_back(f); };
+    make_picture(file, {}, context);
+    CHECK(std::is_sorted(told.begin(), told.end()));
+    REQUIRE(!told.empty());
+    CHECK(told.back() == 1);
+    if (show[0] == 'v') CHECK(std::count_if(told.begin(), told.end(), [](double f) { return f > 0.5 && f < 1; }) >= 5);
+  }
+}
