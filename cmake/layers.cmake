@@ -30,6 +30,9 @@ endfunction()
 function(sg_quick_to_compile target)
   set_target_properties(${target} PROPERTIES SG_QUICK ON)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)  # no inner loops whose calls joining could leave standing: GCC's own bound
+    target_compile_options(${target} PRIVATE --param=inline-unit-growth=40)
+  endif()
 endfunction()
 
 # Holds their precompiled header; made before them.

@@ -106,8 +106,9 @@ Candidates legend_candidates(const std::string& text) {
   ColoringParams params;
   const size_t blank = text.find_last_of(' ');
   const std::string before = blank == text.npos ? "" : text.substr(0, blank + 1);
+  const auto schema = schema_of(params);  // outlives the loop over its declarations
   Candidates all;
-  for (const ParamDecl& d : schema_of(params).decls())
+  for (const ParamDecl& d : schema.decls())
     if (d.name.starts_with(prefix)) all.push_back(before + d.name.substr(prefix.size()) + "=");
   all.push_back("false");
   return all;
