@@ -191,7 +191,7 @@ FeCollection parse_collection(std::string_view name, const std::string& where) {
   // What is left reads "2D_P3".
   if (s.size() < 5 || s[0] < '0' || s[0] > '3' || s.substr(1, 3) != "D_P") unknown();
   c.order = number(s.substr(4));
-  if (c.family == Family::h1 && c.order < 1) unknown();
+  if ((c.family == Family::h1 || c.family == Family::nd) && c.order < 1) unknown();
   return c;
 }
 

@@ -48,6 +48,9 @@ struct FeCollection {
 /// Throws Error(data) naming `where` for a collection that is not read, or an order above 10.
 FeCollection parse_collection(std::string_view name, const std::string& where);
 
+/// Fields in H(curl) or H(div), whose values are vectors of space though each degree of freedom is one number.
+inline bool is_vector_valued(const FeCollection& c) { return c.family == Family::nd || c.family == Family::rt; }
+
 double binomial(int n, int k);
 
 /// Degrees of freedom of one element (all of its own, for discontinuous ones).

@@ -6,7 +6,9 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "data/cells/shape/cell_shape.h"
 #include "io/mfem/mesh_file.h"
+#include "io/mfem/vector_numbering.h"
 
 namespace sg::mfem {
 
@@ -53,6 +55,67 @@ class Sampler {
   NodeMatrix matrices_[geometry_count];
   std::optional<Numbering> numbering_;
   std::vector<size_t> first_;
+  std::vector<double> coefficients_;
+};
+
+/// A vector-valued space sampled. The reference field û becomes one of space by Piola's transformations, with J the columns of
+/// derivatives of the positions: u = J û / det J for RT, u = J^-T û for ND.
+class VectorSampler {
+ public:
+  VectorSampler(const Topology& t, const GridFunction& f, int q, const std::string& where)
+      : t_(t), f_(f), rt_(f.space.collection.family == Family::rt), numbering_(t, f.space.collection, where) {
+    for (const Geometry g : t.geometry)
+      if (Kind& kind = kinds_[size_t(g)]; kind.matrix.nodes == 0) {
+        kind.matrix = vector_matrix(g, f.space.collection, q, where);
+        const size_t n = kind.matrix.nodes;
+        const CellShape* shape = CellShape::find(lagrange_type(info(g).shape, q), n);
+        kind.derivatives.resize(n * n);
+        for (size_t k = 0; k < n; ++k) shape->derivatives(shape->node(k), kind.derivatives.data() + k * n);
+      }
+  }
+
+  /// Fills nodes x space_dimension numbers at stride `width`, from the positions at the same stride.
+  void sample(size_t e, const double* positions, double* out, size_t width, size_t space_dimension) {
+    const Kind& kind = kinds_[size_t(t_.geometry[e])];
+    const size_t n = kind.matrix.nodes, dofs = kind.matrix.dofs;
+    const VectorNumbering::Shares& shares = numbering_.element(e);
+    coefficients_.assign(dofs, 0);
+    for (size_t d = 0; d < dofs; ++d)
+      for (uint32_t i = shares.begin[d]; i < shares.begin[d + 1]; ++i)
+        coefficients_[d] += shares.shares[i].factor * f_.get(shares.shares[i].dof, 0);
+    for (size_t k = 0; k < n; ++k) {
+      Vec3 reference, column[3];
+      for (size_t a = 0; a < 3; ++a)
+        for (size_t d = 0; d < dofs; ++d) reference[int(a)] += kind.matrix.m[(3 * k + a) * dofs + d] * coefficients_[d];
+      for (size_t j = 0; j < n; ++j) {
+        Vec3 x;
+        for (size_t a = 0; a < space_dimension; ++a) x[int(a)] = positions[j * width + a];
+        for (int a = 0; a < 3; ++a) column[a] += x * kind.derivatives[k * n + j][a];
+      }
+      const Vec3 u = mapped(reference, column, space_dimension);
+      for (size_t a = 0; a < space_dimension; ++a) out[k * width + a] = u[int(a)];
+    }
+  }
+
+ private:
+  struct Kind {
+    NodeMatrix matrix;
+    std::vector<Vec3> derivatives;  // of the cell's functions at its nodes: nodes x nodes
+  };
+
+  Vec3 mapped(Vec3 v, Vec3 (&j)[3], size_t space_dimension) const {
+    if (t_.dimension == 2) j[2] = cross(j[0], j[1]);  // across the surface, where v is zero
+    const Vec3 a = cross(j[1], j[2]), b = cross(j[2], j[0]), c = cross(j[0], j[1]);
+    if (!rt_) return (a * v.x + b * v.y + c * v.z) / dot(j[0], a);
+    const double area = t_.dimension == 2 && space_dimension == 2 ? j[2].z : length(j[2]);  // det J has a sign in the plane
+    return (j[0] * v.x + j[1] * v.y + j[2] * v.z) / (t_.dimension == 2 ? area : dot(j[0], a));
+  }
+
+  const Topology& t_;
+  const GridFunction& f_;
+  bool rt_;
+  VectorNumbering numbering_;
+  Kind kinds_[geometry_count];
   std::vector<double> coefficients_;
 };
 
@@ -106,12 +169,14 @@ GridFunction vertex_positions(const MeshFile& mesh) {
   return f;
 }
 
+size_t components_of(const GridFunction& f, int space_dimension) {
+  return size_t(is_vector_valued(f.space.collection) ? space_dimension : f.space.vdim);
+}
+
 bool constant_on_elements(const GridFunction& f) { return f.space.collection.family == Family::l2 && f.space.collection.order == 0; }
 
 // A vector of the plane gets a third component, so that it is one of space.
-size_t stored_components(const GridFunction& f, int space_dimension) {
-  return f.space.vdim == 2 && space_dimension == 2 ? 3 : size_t(f.space.vdim);
-}
+size_t stored_components(size_t components, int space_dimension) { return components == 2 && space_dimension == 2 ? 3 : components; }
 
 double largest(const GridFunction& f) {
   double m = 0;
@@ -154,7 +219,7 @@ UnstructuredMesh mesh_of(MixedCells& cells, const PointMerger& merger, const std
 // Numbers `from(i, component)` for i < n as a field; a vector of the plane is filled up with 0.
 template <class From>
 Field stored_field(const GridFunction& f, Association association, int space_dimension, size_t n, From from) {
-  const size_t stored = stored_components(f, space_dimension), vdim = size_t(f.space.vdim);
+  const size_t vdim = components_of(f, space_dimension), stored = stored_components(vdim, space_dimension);
   double* out = nullptr;
   Array a = Array::make<double>(n, int(stored), &out);
   for (size_t i = 0; i < n; ++i)
@@ -172,44 +237,62 @@ DatasetPtr lagrange_dataset(const MeshFile& mesh, const std::vector<GridFunction
   for (const GridFunction& f : fields) {
     if (constant_on_elements(f)) continue;
     sampled.push_back(&f);
-    q = std::max(q, f.space.collection.order);
+    q = std::max(q, is_vector_valued(f.space.collection) ? vector_degree(f.space.collection) : f.space.collection.order);
   }
   size_t width = 0;
   std::vector<size_t> at;
   std::vector<double> tolerance;
-  std::vector<Sampler> samplers;
+  const auto space_dimension = size_t(positions.space.vdim);
+  std::vector<std::variant<Sampler, VectorSampler>> samplers;
   for (const GridFunction* f : sampled) {
     at.push_back(width);
-    width += size_t(f->space.vdim);
-    tolerance.resize(width, 1e-9 * largest(*f));
-    samplers.emplace_back(t, *f, q, where);
+    width += components_of(*f, mesh.space_dimension);
+    const bool is_vector = is_vector_valued(f->space.collection);
+    tolerance.resize(width, is_vector ? 0 : 1e-9 * largest(*f));
+    if (is_vector) samplers.emplace_back(std::in_place_type<VectorSampler>, t, *f, q, where);
+    else samplers.emplace_back(std::in_place_type<Sampler>, t, *f, q, where);
   }
   std::vector<uint32_t> to_local[geometry_count];
   for (Geometry g : t.geometry)
     if (to_local[size_t(g)].empty()) to_local[size_t(g)] = places_in_local_nodes(g, q);
 
+  std::vector<double> values;  // of the nodes of one element
+  const auto sample = [&](size_t e) {
+    if (e % 4096 == 0) context.check();
+    values.resize(to_local[size_t(t.geometry[e])].size() * width);
+    for (size_t s = 0; s < sampled.size(); ++s)
+      if (auto* scalar = std::get_if<Sampler>(&samplers[s])) scalar->sample(e, values.data() + at[s], width);
+      else std::get<VectorSampler>(samplers[s]).sample(e, values.data(), values.data() + at[s], width, space_dimension);
+  };
+  // How large a vector-valued field is its degrees of freedom do not tell, as they grow with the elements.
+  const auto is_vector = [](const auto& s) { return std::holds_alternative<VectorSampler>(s); };
+  for (size_t e = 0; e < t.size() && std::any_of(samplers.begin(), samplers.end(), is_vector); ++e) {
+    sample(e);
+    for (size_t s = 0; s < sampled.size(); ++s)
+      for (size_t i = at[s]; is_vector(samplers[s]) && i < values.size(); i += width)
+        for (size_t c = 0; c < space_dimension; ++c)
+          if (const double v = 1e-9 * std::fabs(values[i + c]); v > tolerance[at[s]] && v < 1e300)
+            std::fill_n(tolerance.begin() + ptrdiff_t(at[s]), space_dimension, v);
+  }
+
   Numbering slots(t, q, where);
   PointMerger merger(slots.size(), width, tolerance);
   MixedCells cells;
-  std::vector<double> values;
   std::vector<int64_t> ids;
   for (size_t e = 0; e < t.size(); ++e) {
-    if (e % 4096 == 0) context.check();
-    const Geometry g = t.geometry[e];
-    const auto& map = to_local[size_t(g)];
-    values.resize(map.size() * width);
-    for (size_t s = 0; s < sampled.size(); ++s) samplers[s].sample(e, values.data() + at[s], width);
+    sample(e);
+    const auto& map = to_local[size_t(t.geometry[e])];
     const auto slot = slots.element(e);
     ids.clear();
     for (size_t k = 0; k < map.size(); ++k) ids.push_back(merger.find_or_add(size_t(slot[map[k]]), values.data() + k * width));
-    cells.add(lagrange_type(info(g).shape, q), ids);
+    cells.add(lagrange_type(info(t.geometry[e]).shape, q), ids);
   }
 
   const std::vector<int64_t> number = merger.order();
   std::vector<int64_t> source(number.size());
   for (size_t p = 0; p < number.size(); ++p) source[size_t(number[p])] = int64_t(p);
   DatasetParts parts;
-  parts.mesh = mesh_of(cells, merger, number, source, size_t(positions.space.vdim));
+  parts.mesh = mesh_of(cells, merger, number, source, space_dimension);
   size_t s = 1;
   for (const GridFunction& f : fields) {
     if (constant_on_elements(f)) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/text/text.h"
+#include "io/mfem/vector_numbering.h"
 
 namespace sg::mfem {
 
@@ -49,6 +50,8 @@ FeSpace parse_space(TextCursor& in) {
   const int64_t ordering = in.integer("the ordering");
   if (ordering < 0 || ordering > 1) in.fail(fmt::format("Ordering is {}", ordering), "0 is byNODES, 1 is byVDIM");
   s.by_vdim = ordering == 1;
+  if (is_vector_valued(s.collection) && s.vdim > 1)
+    in.fail(fmt::format("VDim is {} with the vector-valued collection '{}'", s.vdim, s.collection.name), "one is supported");
   while (versioned) {
     const std::string_view w = in.word();
     if (w.empty()) in.fail("the space has no end line", "expected the line 'End: MFEM FiniteElementSpace v1.0'");
@@ -71,10 +74,10 @@ size_t space_size(const Topology& t, const FeCollection& c, const std::string& w
       return n;
     }
     case Family::nurbs: fail_data(fmt::format("the space '{}' needs a NURBS mesh", c.name), where);
-    default:
-      fail_data(fmt::format("the vector-valued collection '{}' is not supported", c.name), where,
-                "project it onto an L2 or H1 space of several components before writing it");
+    case Family::nd:
+    case Family::rt: return VectorNumbering(t, c, where).size();
   }
+  fail_internal("mfem: a family of collections that is not known");
 }
 
 std::vector<double> parse_values(TextCursor& in, size_t n) {
@@ -98,6 +101,7 @@ void parse_nodes(TextCursor& in, MeshFile& mesh) {
   if (f.space.vdim > 3) in.fail(fmt::format("positions have {} components", f.space.vdim));
   const FeCollection& c = f.space.collection;
   if (c.family == Family::l2 && c.order == 0) in.fail("the positions are constant on each element");
+  if (is_vector_valued(c)) in.fail(fmt::format("the positions are in the collection '{}'", c.name), "H1 or L2 collections hold positions");
   f.values = parse_values(in, space_size(mesh.topology, c, in.where()) * size_t(f.space.vdim));
   mesh.space_dimension = f.space.vdim;
   mesh.nodes = std::move(f);

@@ -11,54 +11,20 @@
 
 #include "data/cells/shape/cell_map.h"
 #include "io/io_files.h"
+#include "io/mesh/mfem_lists.h"
 #include "io/mfem/element.h"
 #include "support/property.h"
 #include "support/test.h"
 
 using namespace sg;
 using namespace sg::mfem;
+using namespace sg::test::mfem_lists;
 using sg::test::Random;
 
 namespace {
 
-using Places = std::vector<Vec3>;  // of reference coordinates
-
-struct Element {
-  Geometry shape;
-  std::vector<int64_t> corners;
-};
-
 // Points along [0, 1]: closed at equal distances (a) or Gauss and Lobatto's (b).
 std::vector<double> axis(bool lobatto, int p) { return basis_points(lobatto ? Basis::gauss_lobatto : Basis::closed_uniform, p); }
-
-Places corners_of(Geometry g) {
-  switch (g) {
-    case Geometry::segment: return {{0, 0, 0}, {1, 0, 0}};
-    case Geometry::triangle: return {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    case Geometry::square: return {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-    case Geometry::tetrahedron: return {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    case Geometry::prism: return {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
-    default: return {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
-  }
-}
-std::vector<std::vector<int>> edges_of(Geometry g) {
-  switch (g) {
-    case Geometry::triangle: return {{0, 1}, {1, 2}, {2, 0}};
-    case Geometry::square: return {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
-    case Geometry::tetrahedron: return {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
-    case Geometry::prism: return {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}};
-    case Geometry::cube: return {{0, 1}, {1, 2}, {3, 2}, {0, 3}, {4, 5}, {5, 6}, {7, 6}, {4, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
-    default: return {};
-  }
-}
-std::vector<std::vector<int>> faces_of(Geometry g) {
-  switch (g) {
-    case Geometry::tetrahedron: return {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-    case Geometry::prism: return {{0, 2, 1}, {3, 4, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
-    case Geometry::cube: return {{3, 2, 1, 0}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}, {4, 5, 6, 7}};
-    default: return {};
-  }
-}
 
 // Places inside a face or a cell, in the order in which MFEM lists them: rows, the first axis fastest.
 Places inside(Geometry g, const std::vector<double>& x, bool around) {
@@ -87,17 +53,7 @@ struct MfemMesh {
   Places vertices;
   std::vector<Element> elements;
 
-  Vec3 place(const Element& e, Vec3 r) const {
-    const Vec3 o = vertices[size_t(e.corners[0])];
-    Vec3 x = o;
-    const Places ref = corners_of(e.shape);
-    for (size_t c = 1; c < ref.size(); ++c) {
-      if (ref[c] == Vec3(1, 0, 0)) x += (vertices[size_t(e.corners[c])] - o) * r.x;
-      if (ref[c] == Vec3(0, 1, 0)) x += (vertices[size_t(e.corners[c])] - o) * r.y;
-      if (ref[c] == Vec3(0, 0, 1)) x += (vertices[size_t(e.corners[c])] - o) * r.z;
-    }
-    return x;
-  }
+  Vec3 place(const Element& e, Vec3 r) const { return placed(vertices, e, r); }
 
   template <class Bend>
   std::string text(const std::string& collection, bool lobatto, int p, Bend bend) const {

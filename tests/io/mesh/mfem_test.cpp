@@ -221,9 +221,9 @@ TEST_CASE("mfem: what cannot be read says so") {
   CHECK(message("MFEM mesh v2.0\n").find("its content is not") != std::string::npos);
   CHECK(message("MFEM mesh v1.0\ndimension\n2\nelements\n99999999999\n").find("line 5") != std::string::npos);
   CHECK(test::error_of([&] {
-          test::read_bytes("nd.saved",
-                           "solution\n" + mesh + "FiniteElementSpace\nFiniteElementCollection: ND_2D_P1\nVDim: 1\nOrdering: 0\n\n1\n");
-        }).find("ND_2D_P1") != std::string::npos);
+          test::read_bytes(
+              "nd.saved", "solution\n" + mesh + "FiniteElementSpace\nFiniteElementCollection: RT_Trace_2D_P1\nVDim: 1\nOrdering: 0\n\n1\n");
+        }).find("RT_Trace_2D_P1") != std::string::npos);
   CHECK(test::error_of([&] { test::read_bytes("alone.gf", "FiniteElementSpace\nFiniteElementCollection: H1_2D_P1\n"); }).size() > 10);
   CHECK(test::error_of([&] { test::read_bytes("q.saved", "quadrature\n" + mesh + "QuadratureSpace\n"); }).find("quadrature") !=
         std::string::npos);
