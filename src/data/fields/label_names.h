@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -24,5 +26,18 @@ class LabelNames {
  private:
   std::pair<std::string, std::string> note_;
 };
+
+/// The names that a note `text` ("number=name" lines) tells.
+inline std::map<double, std::string> names_in_note(std::string_view text) {
+  std::map<double, std::string> names;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size()), equal = text.find('=', begin);
+    double number = 0;
+    if (equal < end && std::from_chars(text.data() + begin, text.data() + equal, number).ec == std::errc())
+      names[number] = text.substr(equal + 1, end - equal - 1);
+    begin = end + 1;
+  }
+  return names;
+}
 
 }  // namespace sg

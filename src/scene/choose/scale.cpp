@@ -4,13 +4,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 
 #include "base/all_ranks.h"
 #include "base/text/text.h"
 #include "color/map_files/colormap_file.h"
 #include "color/parse_color.h"
+#include "data/fields/label_names.h"
 #include "data/lattice.h"
 #include "data/patient/modality.h"
 #include "data/patient/patient_frame.h"
@@ -76,18 +76,11 @@ void take_categories(const FileColormap& file, const Field& field, ColorScale& s
                            field.name, s.map.name, file.map.colors.size()));
 }
 
-// Names of numbers by the dataset's note "labels of FIELD", lines of "number=name".
+// Names of numbers by the dataset's notes.
 void add_noted_names(const Dataset& d, const Field& field, std::map<double, std::string>& known) {
-  for (const auto& [name, text] : d.notes()) {
-    if (name != "labels of " + field.name) continue;
-    for (size_t begin = 0; begin < text.size();) {
-      const size_t end = std::min(text.find('\n', begin), text.size()), equal = text.find('=', begin);
-      double number = 0;
-      if (equal < end && std::from_chars(text.data() + begin, text.data() + equal, number).ec == std::errc())
-        known[number] = text.substr(equal + 1, end - equal - 1);
-      begin = end + 1;
-    }
-  }
+  for (const auto& [name, text] : d.notes())
+    if (name == "labels of " + field.name)
+      for (auto& [number, word] : names_in_note(text)) known[number] = word;
 }
 
 // What may name things: small integers of one component.

@@ -159,3 +159,27 @@ TEST_CASE("threshold: a lattice by bits keeps the cells that a list of them keep
       }
   }
 }
+
+TEST_CASE("threshold: labels by their names") {
+  Context ctx;
+  std::vector<std::string> notes;
+  ctx.on_log = [&](LogLevel, std::string_view t) { notes.emplace_back(t); };
+  DatasetParts parts = uniform_box(10, 1, 1)->parts();
+  parts.fields.add(make_field("other", Association::cell, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
+  parts.fields.add(make_field("material", Association::cell, {3, 3, 1, 1, 1, 7, 7, 7, 7, 2}));
+  parts.notes.emplace_back("labels of material", "1=Steel\n3=air gap\n7=copper");
+  const DatasetPtr bar = make_dataset(parts);
+  ThresholdParams p;
+  p.names = {"steel", "air gap"};
+  CHECK(threshold(bar, p, ctx)->cell_count() == 5);  // the field that has names
+  p.field = {"material"}, p.invert = true;
+  CHECK(threshold(bar, p, ctx)->cell_count() == 5);
+  p.invert = false, p.names = {"copper", "gold"};
+  CHECK(threshold(bar, p, ctx)->cell_count() == 4);
+  REQUIRE(notes.size() == 1);
+  CHECK(notes[0] == "threshold: no label of 'material' is named 'gold'; there are Steel, air gap, copper");
+  p.max = 3;
+  CHECK(error_of([&] { threshold(bar, p, ctx); }).find("either names or numbers") != std::string::npos);
+  p = {.field = {"other"}, .names = {"steel"}};
+  CHECK(error_of([&] { threshold(bar, p, ctx); }).find("have no names") != std::string::npos);
+}

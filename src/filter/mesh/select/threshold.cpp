@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/text/text.h"
 #include "data/field_ops.h"
+#include "data/fields/label_names.h"
 #include "data/lattice.h"
 #include "filter/mesh/clip/corner_bits.h"
 #include "filter/mesh/select/extract.h"
@@ -23,6 +24,29 @@ namespace {
 constexpr size_t values_per_chunk = 1 << 14;
 
 using Ranges = std::vector<std::pair<double, double>>;
+
+// The labels of `names` that the field's values stand for; not finding one is told, as another part may have it.
+Ranges labels_of_names(const Dataset& in, const Field& field, const ThresholdParams& p, Context& ctx) {
+  if (p.min || p.max || !p.ranges.empty())
+    fail_usage("names is given together with min, max or ranges", "threshold", "give either names or numbers");
+  const auto note = std::find_if(in.notes().begin(), in.notes().end(), [&](const auto& n) { return n.first == "labels of " + field.name; });
+  if (note == in.notes().end())
+    fail_usage(fmt::format("the values of '{}' have no names", field.name), "threshold names", "give numbers with min, max or ranges");
+  const std::map<double, std::string> known = names_in_note(note->second);
+  Ranges labels;
+  for (const std::string& name : p.names) {
+    const size_t before = labels.size();
+    for (const auto& [number, word] : known)
+      if (to_lower(word) == to_lower(name)) labels.emplace_back(number, number);
+    if (labels.size() > before) continue;
+    std::string all;
+    size_t count = 0;
+    for (const auto& [number, word] : known)
+      if (++count <= 20) all += (all.empty() ? "" : ", ") + word;
+    ctx.warn(fmt::format("threshold: no label of '{}' is named '{}'; there are {}{}", field.name, name, all, count > 20 ? ", ..." : ""));
+  }
+  return labels;
+}
 
 Ranges ranges_of(const ThresholdParams& p) {
   if (p.ranges.empty()) return {{p.min.value_or(-HUGE_VAL), p.max.value_or(HUGE_VAL)}};
@@ -138,6 +162,11 @@ std::vector<const Field*> chosen_fields(const Dataset& in, const ThresholdParams
     return r;
   }
   if (!p.field.empty()) return {&usable(with_context("threshold", [&]() -> const Field& { return in.fields().require(p.field.name); }))};
+  const auto named = [&](const Field& f) {
+    return f.components() == 1 && f.association != Association::whole &&
+           std::any_of(in.notes().begin(), in.notes().end(), [&](const auto& n) { return n.first == "labels of " + f.name; });
+  };
+  if (const auto f = std::find_if(in.fields().begin(), in.fields().end(), named); !p.names.empty() && f != in.fields().end()) return {&*f};
   const Field* field = in.fields().active(1);
   if (!field) fail_usage("the mesh has no scalar field", "threshold", "name one: field=NAME");
   return {&usable(*field)};
@@ -197,9 +226,9 @@ DatasetPtr threshold(const DatasetPtr& in, const ThresholdParams& p, Context& ct
   if (p.min && p.max && *p.min > *p.max)
     fail_usage(fmt::format("min {} is above max {}", short_number(*p.min), short_number(*p.max)), "threshold",
                "swap them, or use invert=true");
-  const Ranges ranges = ranges_of(p);
   const std::vector<const Field*> fields = chosen_fields(*in, p);
   const Field& field = *fields[0];
+  const Ranges ranges = p.names.empty() ? ranges_of(p) : labels_of_names(*in, field, p, ctx);
   auto tell = [&](const DatasetPtr& out) {
     if (out->cell_count() == 0 && (!out->as<PointCloud>() || out->point_count() == 0))
       ctx.info(fmt::format("threshold: nothing is left; '{}' ranges from {} to {}", field.name, short_number(in->range(field).lo),

@@ -14,6 +14,7 @@ struct ThresholdParams {
   bool all_points = true;
   bool invert = false;
   std::vector<double> ranges = {};
+  std::vector<std::string> names = {};
   std::vector<std::string> fields = {};
 };
 
@@ -25,13 +26,16 @@ inline void describe(Schema& s, ThresholdParams& p) {
   s("all_points", p.all_points, "With a point field: keep a cell only if all its points are in range, not just one.");
   s("invert", p.invert, "Keep the cells that would be removed instead.");
   s("ranges", p.ranges, "Several ranges instead of min and max: lo,hi,lo,hi,...; values in any of them are kept.").unit("@field");
+  s("names", p.names, "Names of labels to keep instead of numbers, as info lists them; upper and lower case are the same.");
   s("fields", p.fields, "Several fields instead of one, of points, cells or both: a cell is kept if it passes for each of them.");
 }
 
-/// Keeps the cells (of a PointCloud: the points) whose value lies in [min, max], or in one of several ranges, for each of the fields. NaN
+/// Keeps the cells (of a PointCloud: the points) whose value lies in [min, max], or in one of several ranges, or is a label of one of the
+/// `names` (of the field's note "labels of FIELD"), for each of the fields. NaN
 /// is in no range; hidden, refined and duplicate cells never stay, inverted or not. A SurfaceMesh stays one, a PointCloud stays one, every
 /// other kind becomes an UnstructuredMesh. Only used points are kept; all fields are carried, polyhedra keep their faces. Throws
-/// Error(usage) for unknown fields, fields of the whole, an empty range (min > max), ranges that are not pairs. O(cells), parallel.
+/// Error(usage) for unknown fields, fields of the whole, an empty range (min > max), ranges that are not pairs,
+/// names of a field without names. O(cells), parallel.
 DatasetPtr threshold(const DatasetPtr& in, const ThresholdParams& p, Context& ctx);
 
 }  // namespace sg
