@@ -91,8 +91,9 @@ class Chains {
       if (!on.empty() || !with.empty()) step.from.push_back(on.empty() ? before : step_named(on, "-f " + words.first + " on"));
       for (const std::string& name : inputs_in(with)) step.from.push_back(further_input(name, "-f " + words.first + " with"));
       step.words = std::move(words.rest);
-      before = names_[words.first] = step.name;
-      if (!words.label.empty()) names_[words.label] = step.name;
+      before = step.name;
+      if (words.label.empty()) names_[words.first] = step.name;
+      else names_[words.label] = step.name, names_.try_emplace(words.first, step.name);  // the operation's name is for steps without
       chain.push_back(std::move(step));
     }
     // What chains begin with comes first; a step without `from` takes the one before it.

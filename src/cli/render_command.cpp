@@ -164,8 +164,10 @@ int render_into(PipelineFile file, const FilmParams& film, const PictureOptions&
   if (is_film(film.output) && !o.explain) {
     const FilmWritten written = write_film(std::move(file), film, options, context);
     if (!o.quiet)
-      say(fmt::format("{}: {} pictures, times {} to {}\n", printable(written.what), written.times.size(),
-                      short_number(written.times.front()), short_number(written.times.back())));
+      say(fmt::format("{}: {} pictures, {}\n", printable(written.what), written.times.size(),
+                      film.turntable > 0
+                          ? "once around"
+                          : fmt::format("times {} to {}", short_number(written.times.front()), short_number(written.times.back()))));
     return 0;
   }
   if ((word_value(o.film, "times") || film.turntable > 0) && !o.explain)

@@ -62,7 +62,8 @@ double ColorScale::position(double v) const {
     const size_t i = label_place(labels, v);
     return i < labels.size() ? (double(i) + 0.5) / double(labels.size()) : no_value;
   }
-  if (kind == ScaleKind::log && !(v > 0 && lo > 0 && hi > 0)) return no_value;
+  if (kind == ScaleKind::log && !(lo > 0 && hi > 0)) return no_value;
+  if (kind == ScaleKind::log && !(v > 0)) return lo <= hi ? -1 : 2;  // below every decade
   if (lo == hi) return flat_position(v, lo);
   double t;
   if (kind == ScaleKind::log) {

@@ -8,8 +8,10 @@
 #include "data/lattice.h"
 #include "data/patient/patient_frame.h"
 #include "io/y_up.h"
+#include "scene/choose/plane.h"
 #include "scene/choose/scale.h"
 #include "scene/choose/shown_range.h"
+#include "scene/choose/signed_distance.h"
 #include "scene/choose/telling_field.h"
 #include "scene/choose/volume_look.h"
 #include "scene/show/labels.h"
@@ -33,34 +35,6 @@ std::string field_reason(const Dataset& d, const std::string& field) {
   if (!f) return d.fields().empty() ? "one colour (there is no field)" : "one colour (no field varies over it)";
   if (f->role == Role::colors) return fmt::format("its own colours '{}'", f->name);
   return fmt::format("coloured by '{}'{}", f->name, f->components() > 1 ? " (magnitude)" : "");
-}
-
-// The normal of a surface whose points all lie in one plane, or of a grid of one layer, towards the usual viewer; nothing for others.
-std::optional<Vec3> plane_normal(const Dataset& d, Vec3 towards) {
-  if (const auto* g = d.as<UniformGrid>()) {
-    for (int a = 0; a < 3; ++a) {
-      const Vec3 normal = normalize(cross(g->direction.column((a + 1) % 3), g->direction.column((a + 2) % 3)));
-      if (g->dims[size_t(a)] == 1) return dot(normal, towards) < 0 ? -normal : normal;
-    }
-    return {};
-  }
-  const auto* m = d.as<SurfaceMesh>();
-  if (!m || m->polygons.size() == 0) return {};
-  const CellsView c = cells_view(m->polygons);
-  const double size = d.bounds().diagonal();
-  Vec3 normal;
-  for (size_t cell = 0; cell < c.count && !(length(normal) > 0); ++cell) {
-    Vec3 sum;  // Newell: twice the area vector
-    const Vec3 first = m->points.at(size_t(c.point(cell, 0)));
-    for (size_t k = 1; k + 1 < c.size(cell); ++k)
-      sum += cross(m->points.at(size_t(c.point(cell, k))) - first, m->points.at(size_t(c.point(cell, k + 1))) - first);
-    if (length(sum) > 1e-9 * size * size) normal = normalize(sum);
-  }
-  if (!(length(normal) > 0)) return {};
-  const Vec3 origin = m->points.at(size_t(c.point(0, 0)));
-  for (size_t i = 0; i < m->points.count(); ++i)
-    if (std::abs(dot(m->points.at(i) - origin, normal)) > 1e-4 * size) return {};
-  return dot(normal, towards) < 0 ? -normal : normal;
 }
 
 // A slice of a scan that lies across the frame, as the nearest of the three usual ones is seen.
@@ -145,7 +119,8 @@ void look_at_grid(const Dataset& d, const Field& f, Look& look) {
 
 // A signed distance, or another function whose zeros alone mean something: their surface.
 bool look_at_level_set(const Dataset& d, const Field& f, Look& look) {
-  if (f.look.shows != FieldLook::Shows::zero || f.components() != 1 || mesh_dimension(d) != 3) return false;
+  const bool known = f.look.shows == FieldLook::Shows::zero || (f.look.shows == FieldLook::Shows::any && is_signed_distance(d, f));
+  if (!known || f.components() != 1 || mesh_dimension(d) != 3) return false;
   const Range r = d.range(f, 0);
   if (!(r.lo < 0 && r.hi > 0)) return false;
   look.filter = {"contour", "field=" + f.name, "values=0"};
@@ -239,8 +214,6 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
   const bool bare_map = look.camera.parallel && d.fields().empty() && d.as<SurfaceMesh>();  // only edges distinguish its parts
   const bool show_edges = (simulation && d.cell_count() <= 100000) || (bare_map && d.cell_count() <= 2000);
   surface.edges = show_edges;
-  const Field* colored = field.empty() ? automatic_field(d) : d.fields().find(field);
-  surface.lit = !((look.camera.parallel && box_grid) || (flat && colored));  // an image: its colours as they are
   add_show(look, surface, true);
   if (is_lattice(d.mesh()) && !box_grid) add_show(look, OutlineShow(), true);
   look.reason = fmt::format("{} mesh: its outer surface{}, {}", d.kind(), show_edges ? " with cell edges" : "", field_reason(d, field));

@@ -120,6 +120,11 @@ TEST_CASE("colour scale: the table holds linear light") {
 
 TEST_CASE("colour scale: a log scale needs a positive range") {
   CHECK(test::error_of([] { color_table(red_to_blue(0, 1, ScaleKind::log)); }).find("symlog") != std::string::npos);
+  ColorScale s = red_to_blue(1, 100, ScaleKind::log);
+  for (const double v : {0.0, -3.0, -HUGE_VAL}) CHECK(s.color(v) == s.color(0.5));  // below every decade
+  CHECK(s.color(nan_value) == Vec4f{s.nan.x, s.nan.y, s.nan.z, 1});
+  std::swap(s.lo, s.hi);
+  CHECK(s.color(0) == s.color(0.5));
 }
 
 TEST_CASE("opacity curve: linear between points, constant beyond, steps, largest over an interval") {

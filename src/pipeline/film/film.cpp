@@ -66,8 +66,7 @@ void fix_ranges(PipelineFile& first, const std::vector<PipelineFile>& some, cons
     Range all;
     std::optional<Field> one;
     for (const PipelineFile& file : some) {
-      const std::vector<Data> data =
-          results_of(file, options.results, some.size() > 1 ? std::make_shared<Cache>(0) : options.cache, context);
+      const std::vector<Data> data = results_of(file, options.results, std::make_shared<Cache>(0), context);
       for_each_dataset(data[std::min(i, data.size() - 1)], [&](const std::string&, const DatasetPtr& d) {
         const Field* f = shown_field(kind, params, *d);
         if (!f || f->association == Association::whole || f->role == Role::colors) return;
@@ -78,7 +77,6 @@ void fix_ranges(PipelineFile& first, const std::vector<PipelineFile>& some, cons
     if (!one || !share_range(*one, all, coloring)) continue;
     const Range range{coloring.range[0], coloring.range[1]};
     show.words.push_back(fmt::format("range={},{}", exact_number(range.lo), exact_number(range.hi)));
-    if (some.size() == 1) continue;
     context.info(fmt::format("one range for all pictures: {} to {}, that of {} steps spread over the series", short_number(range.lo),
                              short_number(range.hi), some.size()));
   }
@@ -132,7 +130,7 @@ std::vector<double> make_film(PipelineFile plain, const FilmParams& params, cons
     PipelineFile file = at_time(base, film, count == 1 ? 0 : i * (count - 1) / (std::min<size_t>(5, count) - 1));
     if (some.empty() || some.back().steps != file.steps) some.push_back(std::move(file));
   }
-  fix_ranges(base, some, each, silent);
+  if (some.size() > 1) fix_ranges(base, some, each, silent);  // else the data are the same: so is all that is chosen from them
 
   const bool prefetch = outer.memory_limit == 0 || 2 * one_step < outer.memory_limit;
   if (!prefetch) context.info("two steps do not fit into the allowed memory: each is read when it is drawn");

@@ -18,6 +18,7 @@
 #include <tuple>
 #include <type_traits>
 
+#include "data/fields/place_notes.h"
 #include "pipeline/operation/operation.h"
 
 namespace sg {
@@ -43,6 +44,14 @@ constexpr bool takes_series = takes_series_alone<P, F> || takes_series_and<P, F>
 /// Data at hand as a series of one step.
 Series one_step(const Data& data);
 
+/// Parameters of operations that take data elsewhere say `static constexpr bool moves_space = true;`; what others make lies where their
+/// first input does, in the same units.
+template <class P>
+Data placed(const auto& from, Data result) {
+  if constexpr (requires { P::moves_space; }) return result;
+  else return with_place_of(from, std::move(result));
+}
+
 template <class P, class F>
 Data run_series_filter(F f, const Series& series, const std::vector<Data>& others, const ParamSet& params, Context& context) {
   const P& p = params.as<P>();
@@ -55,14 +64,15 @@ Data run_filter(F f, std::string_view name, const std::vector<Data>& inputs, con
   const P& p = params.as<P>();
   if constexpr (takes_series<P, F>)
     return run_series_filter<P>(f, one_step(inputs[0]), std::vector<Data>(inputs.begin() + 1, inputs.end()), params, context);
-  else if constexpr (takes_list<P, F>) return f(inputs, p, context);
-  else if constexpr (takes_whole<P, F>) return f(inputs[0], p, context);
+  else if constexpr (takes_list<P, F>) return placed<P>(inputs[0], f(inputs, p, context));
+  else if constexpr (takes_whole<P, F>) return placed<P>(inputs[0], f(inputs[0], p, context));
   else if constexpr (takes_two<P, F>) {
     const DatasetPtr second = single_dataset(inputs[1], name);
-    return map_parts(inputs[0], name, context, [&](const DatasetPtr& d, Context& part) -> Data { return f(d, second, p, part); });
+    return map_parts(inputs[0], name, context,
+                     [&](const DatasetPtr& d, Context& part) -> Data { return placed<P>(*d, f(d, second, p, part)); });
   } else {
     static_assert(takes_part<P, F>, "see the shapes in pipeline/operation/operation_table.h");
-    return map_parts(inputs[0], name, context, [&](const DatasetPtr& d, Context& part) -> Data { return f(d, p, part); });
+    return map_parts(inputs[0], name, context, [&](const DatasetPtr& d, Context& part) -> Data { return placed<P>(*d, f(d, p, part)); });
   }
 }
 

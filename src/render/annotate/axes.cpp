@@ -147,6 +147,16 @@ void draw_box_axes(Overlay& o, const Annotation& annotation, const Projection& p
         for (const PlacedTick& t : other.ticks) others.push_back(t.rect.grown(1));
     const TextExtent e = o.measure(name, name_style);
     std::optional<Rect> place = name_place(o, d.axis, p, font, d.ticks, e, others);
+    const Vec3 from = p.to_pixel(d.axis.from), to = p.to_pixel(d.axis.to);
+    if (!place && std::abs(to.y - from.y) > 3 * std::abs(to.x - from.x)) {  // a long name beside an upright axis: read from below
+      TextExtent turned = e;
+      std::swap(turned.width, turned.height);
+      if (const auto upright = name_place(o, d.axis, p, font, d.ticks, turned, others)) {
+        o.text_turned(name, {upright->x + 0.5 * upright->width, upright->y + 0.5 * upright->height}, 0.5 * M_PI, name_style);
+        taken.push_back(*upright);
+        continue;
+      }
+    }
     if (!place) place = name_place(o, d.axis, p, font, {}, e, taken);
     if (!place) continue;
     o.text(name, place->x, place->y, name_style, true);

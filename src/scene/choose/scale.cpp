@@ -83,6 +83,15 @@ void add_noted_names(const Dataset& d, const Field& field, std::map<double, std:
       for (auto& [number, word] : names_in_note(text)) known[number] = word;
 }
 
+// Where values lie outside a stated range its legend ends in triangles, of the colours of its ends unless others are stated.
+void show_what_lies_beyond(const Range& values, ColorScale& s) {
+  if (!s.clamp || !s.labels.empty() || values.empty()) return;
+  const double lo = std::min(s.lo, s.hi), hi = std::max(s.lo, s.hi), slack = 1e-6 * (hi - lo);
+  const bool under = values.lo<lo - slack, over = values.hi> hi + slack;
+  if (!s.below && (s.lo <= s.hi ? under : over)) s.below = s.map.at(0);
+  if (!s.above && (s.lo <= s.hi ? over : under)) s.above = s.map.at(1);
+}
+
 // What may name things: small integers of one component.
 bool may_be_labels(const Field& field, const Range& r) {
   return !is_float(field.array.type()) && field.components() == 1 && field.role != Role::global_ids && field.role != Role::colors &&
@@ -298,6 +307,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   if (!p.above.empty()) s.above = parse_color(p.above, "above");
   if (!p.nan.empty()) s.nan = parse_color(p.nan, "nan");
   s.clamp = p.clamp;
+  if (!p.range.empty()) show_what_lies_beyond(data.range(field, p.component), s);
   name_legend(p, s);
   return s;
 }

@@ -6,6 +6,7 @@
 #include "filter/field/sampling/point_cell.h"
 #include "filter/mesh/faces/faces.h"
 #include "filter/mesh/surface.h"
+#include "scene/choose/plane.h"
 #include "scene/show/field_color.h"
 #include "scene/show/texture_color.h"
 
@@ -17,7 +18,7 @@ void describe(Schema& s, SurfaceShow& p) {
   s("opacity", p.opacity, "Opacity: 1 is opaque, 0 invisible.").range(0, 1);
   s("edges", p.edges, "Draw the edges of the cells, where those are wider than a few pixels; below eight they fade.");
   s("flat", p.flat, "Shade with one normal per polygon instead of smoothly.");
-  s("lit", p.lit, "Light the surface; false shows unlit colours.");
+  s("lit", p.lit, "Light the surface; default: yes, but not a flat one that a field colours: its colours are those of the legend.");
   s("feature_angle", p.feature_angle, "Edges with a larger angle stay sharp when normals are computed.").unit("deg").range(0, 180);
   describe(s, p.lic);
   s("texture", p.texture, "Point field in [0, 1] that darkens and brightens the colours; default: 'lic' or 'spot noise'; 'none' for none.")
@@ -103,7 +104,7 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceSh
   item.opacity = p.opacity;
   item.edges = p.edges;
   item.flat = p.flat;
-  item.material.lit = p.lit;
+  item.material.lit = p.lit.value_or(!(item.color_by && plane_normal(*item.data)));
   item.feature_angle = p.feature_angle;
   item.lic = surface_texture_of(*item.data, p.lic);
   const SurfaceMesh& mesh = *item.data->as<SurfaceMesh>();

@@ -18,7 +18,8 @@ struct SurfaceShow {
   ColoringParams coloring;
   SurfaceStyle style = SurfaceStyle::solid;
   double opacity = 1;
-  bool edges = false, flat = false, lit = true;
+  bool edges = false, flat = false;
+  std::optional<bool> lit;
   double feature_angle = 40;
   LicShow lic;
   FieldName texture;

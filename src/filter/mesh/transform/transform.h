@@ -9,6 +9,7 @@
 namespace sg {
 
 struct TransformParams {
+  static constexpr bool moves_space = true;
   Vec3 scale{1, 1, 1};
   Vec3 axis{0, 0, 1};
   double angle = 0;
