@@ -17,6 +17,7 @@ Modality modality_of(const Dataset& data, const Field& field) {
     if (v == "ct") return Modality::ct;
     if (!v.empty() && v != "unknown" && v != "ot" && v != "other") return Modality::other;
   }
+  if (data.fields().find("bval", Association::whole)) return Modality::other;  // diffusion is measured by magnetic resonance
   return Modality::unstated;
 }
 

@@ -6,6 +6,7 @@
 #include "base/file/file.h"
 #include "filter/mesh/select/extract_ids.h"
 #include "pipeline/picture/picture_parts.h"
+#include "scene/choose/hidden_inside.h"
 #include "scene/choose/scale.h"
 #include "scene/show/surface.h"
 
@@ -126,7 +127,8 @@ Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file,
   const std::string field = !stated.empty() ? stated : !made ? field_telling_parts(data, context) : made->look.result ? made->name : "";
   std::vector<std::string> coloring = wanted.words;
   if (field != stated) coloring.push_back("field=" + field);
-  const Look look = choose_look(*largest, field, extension_of(origin));
+  const bool hidden = std::holds_alternative<DatasetPtr>(data) && is_hidden_inside(largest, field, context);
+  const Look look = choose_look(*largest, field, extension_of(origin), hidden);
   const std::string result = look.filter.empty() ? end : add_step(look.filter[0], {look.filter.begin() + 1, look.filter.end()});
   for (const Look::Show& s : look.shows) {
     const ShowKind& kind = *s.kind;

@@ -260,7 +260,8 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
     r = positive;
     context.info(fmt::format("values of '{}' at or below 0 have no place on a log scale; they are drawn as below it", field.name));
   }
-  const bool is_signed = two_sided(field, r);
+  const bool ct = is_scanned(data, field) && modality_of(data, field) == Modality::ct;
+  const bool is_signed = two_sided(field, r) && !ct;  // Hounsfield's zero, water, is no middle
   if (automatic)
     s.map = find_colormap(labels ? "labels" : is_signed && s.kind != ScaleKind::log ? "coolwarm" : sequential_map(data, field));
   else s.map = asked;
@@ -281,8 +282,11 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
       if (const ShownRange shown = shown_range({&one, 1}, p.component, centred, context); !shown.range.empty())
         take_shown_range(shown, r, field.name, s, context);
     if (const Range window = stated_window(data);
-        automatic && !labels && !is_signed && is_scanned(data, field) && window.lo < s.hi && window.hi > s.lo)
+        automatic && !labels && !is_signed && is_scanned(data, field) && window.lo < s.hi && window.hi > s.lo) {
       s.lo = std::max(s.lo, window.lo), s.hi = std::min(s.hi, window.hi);
+    } else if (automatic && !labels && ct && window.empty() && s.lo < -1024 && s.hi > -500) {
+      s.lo = -1024, s.hi = std::min(s.hi, 2000.0);  // from air to bone; what lies below was never measured
+    }
   }
   if (s.lo == s.hi) {  // a constant field: any range around it will do
     const double d = s.lo == 0 ? 1 : std::abs(s.lo) * 0.01;
@@ -307,7 +311,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   if (!p.above.empty()) s.above = parse_color(p.above, "above");
   if (!p.nan.empty()) s.nan = parse_color(p.nan, "nan");
   s.clamp = p.clamp;
-  if (!p.range.empty()) show_what_lies_beyond(data.range(field, p.component), s);
+  if (!p.range.empty() || ct) show_what_lies_beyond(data.range(field, p.component), s);
   name_legend(p, s);
   return s;
 }

@@ -138,7 +138,10 @@ void ct_look(const Range& r, double offset, bool choose_colors, VolumeItem& item
   if (item.color.title == "MetaImage" || item.color.title.empty()) item.color.title = "CT value";
 }
 
-// Whatever is no air, in grey and lit, so that the skin can be read; the window is the file's own or that of the foreground.
+// From a soft grey to white: what is dark in an image must still show its shape in the light.
+Colormap soft_grey() { return {"soft grey", MapKind::sequential, "A warm grey to white.", {{0.46f, 0.42f, 0.40f}, {1, 0.98f, 0.95f}}, {}}; }
+
+// Whatever is no air, in soft grey and lit, so that the skin can be read; the window is the file's own or that of the foreground.
 void scan_look(const Dataset& data, const Field& field, int component, const Range& r, VolumeItem& item) {
   const Range f = foreground(field, component, r.lo, r.hi), stated = stated_window(data);
   const bool window = !stated.empty() && stated.hi > r.lo && stated.lo < r.hi;
@@ -146,7 +149,7 @@ void scan_look(const Dataset& data, const Field& field, int component, const Ran
   item.opacity.points = {{r.lo, 0}, {f.lo, 0}, {f.lo + 0.06 * width, 0.25}, {f.hi, 0.5}, {r.hi, 0.5}};
   if (f.hi >= r.hi) item.opacity.points.pop_back();
   item.shaded = true;
-  item.color.map = find_colormap("gray");
+  item.color.map = soft_grey();
   item.color.lo = window ? std::max(stated.lo, r.lo) : r.lo, item.color.hi = window ? std::min(stated.hi, r.hi) : f.hi;
 }
 
