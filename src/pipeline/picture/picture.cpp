@@ -197,7 +197,8 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   const PipelineGraph built = build_graph(file, graph_options, options.results);
   std::vector<Target> targets;
   for (NodeId node : built.show) targets.push_back({node, {}});
-  const std::vector<Data> results = built.graph.evaluate(targets, computing);
+  std::vector<Data> results = built.graph.evaluate(targets, computing);
+  leave_out_sets(file, shows, results, picture.notes, computing);
   held.clear();
   for (std::string* text : {&stated.picture.title, &stated.picture.caption}) *text = title_of(*text, results, context);
 
