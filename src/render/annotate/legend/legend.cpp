@@ -96,8 +96,9 @@ std::vector<LegendLayout> layout_legends(const Overlay& overlay, const std::vect
       if (const double height = layout_bands(overlay, scales, side, rest, area.width, f, nan, legends); height > 0)
         down += height + 2 * margin;
     const bool legible = std::all_of(legends.begin(), legends.end(), [&](const LegendLayout& l) { return is_legible(l, area); });
-    const auto within = [&](double share) { return across <= share * area.width && down <= share * area.height; };
-    if (legible && (within(0.6) || (f < 5.5 && within(0.95)))) return legends;
+    // Of the height less than half, so that they need not go over the picture.
+    const auto within = [&](double share, double high) { return across <= share * area.width && down <= high * area.height; };
+    if (legible && (within(0.6, 0.45) || (f < 5.5 && within(0.95, 0.95)))) return legends;
     if (f < 3) return {};
   }
 }
