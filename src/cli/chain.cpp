@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/chain.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
@@ -60,6 +60,7 @@ void add_picture_words(const Options& o, PipelineFile& file) {
     if (!value.empty()) file.picture.push_back(fmt::format("{}={}", key, value));
   };
   add("size", o.size), add("title", o.title), add("background", o.background), add("layout", o.layout), add("views", o.views);
+  add("note", fmt::format("{}", fmt::join(o.notes, ";")));
   for (const std::string& group : o.picture)
     for (const std::string& w : quoted_words(group)) file.picture.push_back(w);
   for (const std::string& w : quoted_words(o.camera)) {

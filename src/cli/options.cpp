@@ -161,12 +161,17 @@ void add_picture(CLI::App& a, Options& o, RawText& raw) {
   a.add_option("--field", o.field, doc_of<ColoringParams>("field"));
   a.add_option("--map", o.map, doc_of<ColoringParams>("map"));
   a.add_option("--scale", o.scale, doc_of<ColoringParams>("scale"));
-  a.add_option("--legend", o.legend,
-               "'false' draws none; else words of the legend: \"title='Wall temperature' unit=K ticks=0,50,100 format=.1f\"");
+  a.add_option(
+      "--legend", o.legend,
+      "'false' draws none; else words of the legend: \"title='Wall temperature' unit=K ticks=0,50,100 format=.1f place=bottom bar=0.5\"");
   a.add_option("--camera", o.camera,
                "A named view ('top', 'front', 'iso', ...) or key=value words, e.g. 'azimuth=30 elevation=10 zoom=1.5'");
   add_size(a, o);
   a.add_option("--title", o.title, doc_of<PictureParams>("title"));
+  a.add_option("--note", o.notes,
+               "A text in the picture with its place: 'Inlet @ 0.1,0.9' or 'Outlet @ top-right size=1.5'; may be repeated (see: "
+               "sightglass ops picture)")
+      ->allow_extra_args(false);
   a.add_option("--layout", o.layout, doc_of<PictureParams>("layout"));
   a.add_option("--views", o.views, doc_of<PictureParams>("views"));
   a.add_option("--background", o.background, doc_of<PictureParams>("background"));

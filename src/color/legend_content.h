@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Legend: what a legend shows: a colour scale and, for volumes, how much each value hides.
+// Legend: what a legend shows: a colour scale and, for volumes, how much each value hides; and where it stands.
 #pragma once
 #include <optional>
 #include <utility>
@@ -27,6 +27,13 @@ struct GlyphLegend {
   friend bool operator==(const GlyphLegend&, const GlyphLegend&) = default;
 };
 
+/// The side of the picture where a legend stands; at the top and the bottom its bar lies.
+enum class LegendPlace { right, left, top, bottom };
+constexpr auto enum_words(LegendPlace) {
+  using enum LegendPlace;
+  return std::array{Word{"right", right}, Word{"left", left}, Word{"top", top}, Word{"bottom", bottom}};
+}
+
 /// A colour scale is a legend without opacity.
 struct Legend : ColorScale {
   Legend() = default;
@@ -34,6 +41,8 @@ struct Legend : ColorScale {
   Legend(ColorScale scale, VolumeLegend v) : ColorScale(std::move(scale)), volume(std::move(v)) {}
   std::optional<VolumeLegend> volume;
   std::optional<GlyphLegend> glyph;
+  LegendPlace place = LegendPlace::right;
+  std::optional<double> bar;  ///< length of the bar, or of a list of names, as a share of the picture's height or, where it lies, width
 };
 
 }  // namespace sg

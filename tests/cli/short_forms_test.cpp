@@ -48,9 +48,20 @@ TEST_CASE("command line: words of the legend, and none") {
   CHECK(named != usual);
   CHECK(named == drawn({"--show", "surface lit=false legend_title='Wall heat' legend_unit=K legend_ticks=0,1 legend_format=.2f"}));
   CHECK(none == drawn({"--show", "surface lit=false legend=false"}));
+  const auto below = drawn({"--legend", "place=bottom bar=0.4"});
+  CHECK(below != usual);
+  CHECK(below == drawn({"--show", "surface lit=false legend_place=bottom legend_bar=0.4"}));
+  CHECK(usual == drawn({"--legend", "place=right"}));
   std::vector<std::string> wrong = head;
   wrong.insert(wrong.end(), {"--legend", "format=2f", "-o", "l.png"});
   CHECK(sightglass(wrong).err.find("'2f' is not a format of numbers") != std::string::npos);
+  wrong[wrong.size() - 3] = "place=below";
+  CHECK(sightglass(wrong).err.find("'below' is not one of the choices") != std::string::npos);
+  wrong[wrong.size() - 3] = "bar=1.5";
+  CHECK(sightglass(wrong).err.find("from 0.05 to 1") != std::string::npos);
+  // Texts in the picture, one flag each or all in one word.
+  CHECK(drawn({"--note", "Inlet @ 0.3,0.5", "--note", "Outlet @ top-left"}) ==
+        drawn({"--picture", "note='Inlet @ 0.3,0.5; Outlet @ top-left'"}));
 }
 
 TEST_CASE("command line: what other programs call a thing leads to what it is called here") {

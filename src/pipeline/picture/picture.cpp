@@ -12,6 +12,7 @@
 #include "data/ranks/over_all.h"
 #include "pipeline/file/transfer_file.h"
 #include "pipeline/film/film_params.h"
+#include "pipeline/picture/picture_notes.h"
 #include "pipeline/picture/picture_parts.h"
 #include "scene/show/show.h"
 
@@ -33,6 +34,10 @@ void describe(Schema& s, PictureParams& p) {
   s("views", p.views, "Named views of the same data side by side, e.g. front,left,top,iso; layout 'auto' where none is stated.");
   s("scale_bar", p.scale_bar, "Draw a bar of a round length, as long as it is at the middle of the data.");
   s("caption", p.caption, "Text at the lower edge of the picture; {t} as in the title.");
+  s("note", p.note,
+    "Texts in the picture with their places, apart by semicolons: 'Inlet @ 0.1,0.9; Outlet @ top-right size=1.5 color=red'. A place is the "
+    "middle of the text in shares of the picture's width and height from the top left, or top-left, top, top-right, left, center, right, "
+    "bottom-left, bottom or bottom-right; {t} as in the title.");
   s("triad", p.triad, "Draw the orientation axes.");
   s("letters", p.letters,
     "Draw at the edges of a scan's picture where they lie in the patient: right, left, anterior, posterior, inferior, superior.");
@@ -79,6 +84,7 @@ StatedPicture stated_in(const PipelineFile& file) {
   if (const auto whole = word_value(file.picture, "camera")) camera_list = quoted_words(*whole);
   set_params(camera, camera_words(camera_list), "camera");
   parse_size(s.picture.size, s.width, s.height);
+  s.notes = parse_notes(s.picture.note);
   if (s.picture.background == "transparent") {
     s.transparent = true;
   } else {
@@ -119,7 +125,7 @@ std::string title_of(std::string title, const std::vector<Data>& results, const 
       if (!time) time = d->time();
     });
   if (!time) {
-    context.warn("the title asks for the time {t}, but the data has none");
+    context.warn("a text of the picture asks for the time {t}, but the data has none");
     return title;
   }
   replace_all(title, "{t}", short_number(*time));
@@ -147,7 +153,7 @@ bool has_nan(const Scene& scene) {
 Annotation annotation_of(const StatedPicture& stated, const Shown& shown, const Look& look) {
   Annotation a;
   a.legends = shown.legends;
-  a.title = stated.picture.title, a.caption = stated.picture.caption;
+  a.title = stated.picture.title, a.caption = stated.picture.caption, a.notes = stated.notes;
   a.scale_bar = stated.picture.scale_bar;
   a.triad = stated.picture.triad && shown.any_points && !look.camera.parallel;  // a map needs none: its axes are named
   a.scale = stated.picture.text;
@@ -170,7 +176,8 @@ Panel panel_of(const Shown& shown, const Look& look, const StatedPicture& stated
   p.scene.background = stated.bottom, p.scene.background_top = stated.top, p.scene.transparent = stated.transparent;
   p.annotation = annotation_of(stated, shown, look);
   if (in_panels(stated.picture)) p.annotation.legends.clear();  // they stand beside the panels
-  const double aspect = double(std::max(1, width_beside_legends(p.annotation, stated))) / stated.height;
+  const Rect area = picture_beside_legends(p.annotation, stated);
+  const double aspect = std::max(1.0, area.width) / std::max(1.0, area.height);
   p.camera = make_camera(camera, shown.box, aspect, look.camera, stated.picture.axes ? 0.11 : 0.05);
   Box3 all = scene_bounds(p.scene);  // glyphs reach beyond the data
   all.add(shown.box);
@@ -197,9 +204,11 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   const PipelineGraph built = build_graph(file, graph_options, options.results);
   std::vector<Target> targets;
   for (NodeId node : built.show) targets.push_back({node, {}});
-  const std::vector<Data> results = built.graph.evaluate(targets, computing);
+  std::vector<Data> results = built.graph.evaluate(targets, computing);
+  leave_out_sets(file, shows, results, picture.notes, computing);
   held.clear();
   for (std::string* text : {&stated.picture.title, &stated.picture.caption}) *text = title_of(*text, results, context);
+  for (PictureNote& n : stated.notes) n.text = title_of(n.text, results, context);
 
   // What the notes already say, or several parts say alike, is given once.
   Context once(context, 0, 1);
@@ -230,7 +239,9 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   }
   const std::vector<std::string>& views = stated.picture.views;
   const size_t count = views.empty() ? shown.size() : views.size();
-  const Annotation around = annotation_of(stated, shown[0], look);
+  Annotation around = annotation_of(stated, shown[0], look);
+  // The panels share the legends: one with places without a value has them tell of it.
+  around.show_nan_in_legend = std::any_of(shown.begin(), shown.end(), [](const Shown& s) { return has_nan(s.scene); });
   const StatedPicture inside = inside_layout(stated, around, count);
   std::vector<NamedPanel> panels;
   for (size_t i = 0; i < count; ++i) {

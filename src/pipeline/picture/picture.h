@@ -23,7 +23,7 @@ struct PictureParams {
   bool legend = true, axes = true, triad = true, letters = true;
   std::optional<Vec3> stretch;
   bool scale_bar = false;
-  std::string caption;
+  std::string caption, note;
   std::string layout;
   std::vector<std::string> views;
   int samples = 0;

@@ -82,7 +82,8 @@ void compare(const Image& a, const Image& b, PictureDraft& draft) {
 void draw_drafts(const Scene& scene, const Camera& camera, const StatedPicture& stated, const Annotation& annotation,
                  const PictureOptions& options, Picture& picture, Context& context) {
   PictureDraft draft;
-  const Projection p = make_projection(camera, width_beside_legends(annotation, stated), stated.height);
+  const Rect area = picture_beside_legends(annotation, stated);
+  const Projection p = make_projection(camera, int(area.width), int(area.height));
   const double coarsest = options.on_draft ? pixels_in_memory(scene, p, draft.made_of) : 0;
   const auto draw = [&](double coarser, Context& c) { return draw_picture(scene, camera, stated, annotation, coarser, c); };
   if (!(coarsest > 1)) {  // all is in memory, or fine enough there

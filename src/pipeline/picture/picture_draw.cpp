@@ -7,15 +7,30 @@ namespace sg {
 
 namespace {
 
-// Where a picture narrowed by its legends lies in the whole one: at the left, the rest is background.
-void place_left(const Frame& part, Frame& whole) {
-  for (int y = 0; y < part.height; ++y) {
-    const size_t from = size_t(y) * size_t(part.width), to = size_t(y) * size_t(whole.width);
-    std::copy_n(&part.rgba[4 * from], 4 * size_t(part.width), &whole.rgba[4 * to]);
-    // The background continues to the right.
-    for (int x = part.width; x < whole.width; ++x)
-      std::copy_n(&part.rgba[4 * (from + size_t(part.width) - 1)], 4, &whole.rgba[4 * (to + size_t(x))]);
-  }
+// The background behind some rows of the picture as that of a scene drawn there alone: even in sRGB from the lowest row to the highest.
+void take_background_of(int first, int rows, int of, Scene& scene) {
+  if (!scene.background_top || rows >= of || of < 2) return;
+  const Vec3f bottom = scene.background, top = *scene.background_top;
+  const auto at = [&](int row) { return lerp(top, bottom, float(row) / float(of - 1)); };
+  scene.background = at(first + rows - 1), scene.background_top = at(first);
+}
+
+// A picture beside its legends in the whole one, all of the rest background.
+Frame placed(const Frame& part, const Scene& scene, const Camera& camera, const RenderOptions& options, const Rect& at, int width,
+             int height, Context& context) {
+  Frame whole(width, height);
+  Scene empty;
+  empty.background = scene.background, empty.background_top = scene.background_top, empty.transparent = scene.transparent;
+  RenderOptions column = options;
+  column.width = 1, column.height = height, column.samples = 1;
+  const Frame background = render(empty, camera, column, context);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      std::copy_n(&background.rgba[4 * size_t(y)], 4, &whole.rgba[4 * (size_t(y) * size_t(width) + size_t(x))]);
+  for (int y = 0; y < part.height; ++y)
+    std::copy_n(&part.rgba[4 * size_t(y) * size_t(part.width)], 4 * size_t(part.width),
+                &whole.rgba[4 * ((size_t(y) + size_t(at.y)) * size_t(width) + size_t(at.x))]);
+  return whole;
 }
 
 // The texts whose places are seen: nothing lies before them by more than a hair of the scene's size.
@@ -63,19 +78,31 @@ LinesItem back_edges(const Box3& box, const Camera& camera) {
   return item;
 }
 
-int width_beside_legends(const Annotation& annotation, const StatedPicture& s) {
-  const int legends = legend_width(annotation, s.width, s.height);
-  return legends * 2 > s.width ? s.width : s.width - legends;  // too narrow a picture: legends go over it
+Rect picture_beside_legends(const Annotation& annotation, const StatedPicture& s) {
+  // In too small a picture legends go over it.
+  LegendRoom room = legend_room(annotation, s.width, s.height);
+  if ((room.left + room.right) * 2 > s.width) room.left = room.right = 0;
+  if ((room.top + room.bottom) * 2 > s.height) room.top = room.bottom = 0;
+  return {double(room.left), double(room.top), double(s.width - room.left - room.right), double(s.height - room.top - room.bottom)};
 }
 
 Image draw_picture(const Scene& scene, const Camera& camera, const StatedPicture& s, const Annotation& annotation, double coarser,
                    Context& context) {
+  const Rect area = picture_beside_legends(annotation, s);
   RenderOptions options;
-  options.width = width_beside_legends(annotation, s), options.height = s.height, options.samples = s.picture.samples;
+  options.width = int(area.width), options.height = int(area.height), options.samples = s.picture.samples;
   options.adaptive = s.picture.adaptive, options.coarser = coarser;
-  // The frame, one of single samples, and one of all columns if a legend is next to it.
-  check_picture_memory(s.width, s.height, 1 + (options.width < s.width || options.adaptive > 0 ? 1 : 0));
-  Frame frame = render(scene, camera, options, context);
+  const bool beside = options.width < s.width || options.height < s.height;
+  // The frame, one of single samples, and one of all pixels if a legend is next to it.
+  check_picture_memory(s.width, s.height, 1 + (beside || options.adaptive > 0 ? 1 : 0));
+  Frame frame;
+  if (scene.background_top && options.height < s.height) {
+    Scene part = scene;
+    take_background_of(int(area.y), options.height, s.height, part);
+    frame = render(part, camera, options, context);
+  } else {
+    frame = render(scene, camera, options, context);
+  }
   const Projection projection = make_projection(camera, options.width, options.height);
   Annotation with_texts = annotation;
   with_texts.texts = seen_texts(scene, projection, frame);
@@ -87,22 +114,9 @@ Image draw_picture(const Scene& scene, const Camera& camera, const StatedPicture
                         : depth > 0           ? l.glyph->length * projection.scale / depth
                                               : 0;
     }
-  if (options.width < s.width) {
-    Frame whole(s.width, s.height);
-    // The last column may hold data; take the background's own colour there.
-    Scene empty;
-    empty.background = scene.background, empty.background_top = scene.background_top, empty.transparent = scene.transparent;
-    RenderOptions column = options;
-    column.width = 1, column.samples = 1;
-    const Frame background = render(empty, camera, column, context);
-    place_left(frame, whole);
-    for (int y = 0; y < s.height; ++y)
-      for (int x = options.width; x < s.width; ++x)
-        std::copy_n(&background.rgba[4 * size_t(y)], 4, &whole.rgba[4 * (size_t(y) * size_t(s.width) + size_t(x))]);
-    frame = std::move(whole);
-  }
+  if (beside) frame = placed(frame, scene, camera, options, area, s.width, s.height, context);
   Image image = to_image(frame, scene.transparent);
-  annotate(image, with_texts, projection);
+  annotate(image, with_texts, projection, int(area.x), int(area.y));
   return image;
 }
 

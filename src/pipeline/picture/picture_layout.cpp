@@ -95,7 +95,7 @@ StatedPicture inside_layout(const StatedPicture& stated, const Annotation& aroun
   const Layout layout = layout_of(stated.picture, count, area);
   StatedPicture s = stated;
   s.width = std::max(1, int(area.width) / layout.columns), s.height = std::max(1, int(area.height) / layout.rows);
-  s.picture.title.clear(), s.picture.caption.clear();
+  s.picture.title.clear(), s.picture.caption.clear(), s.notes.clear();
   return s;
 }
 
@@ -118,7 +118,7 @@ Image draw_layout(const std::vector<NamedPanel>& panels, const StatedPicture& st
     paste(image, whole, int(area.x) + int(i) % columns * inside.width, int(area.y) + int(i) / columns * inside.height);
   }
   Annotation rest;
-  rest.title = around.title, rest.caption = around.caption, rest.legends = around.legends,
+  rest.title = around.title, rest.caption = around.caption, rest.notes = around.notes, rest.legends = around.legends,
   rest.show_nan_in_legend = around.show_nan_in_legend;
   rest.dark_background = around.dark_background, rest.scale = around.scale, rest.triad = false;
   annotate(whole, rest, make_projection(panels[0].panel.camera, stated.width, stated.height));

@@ -4,7 +4,6 @@
 
 #include "base/error.h"
 #include "base/file/file.h"
-#include "filter/mesh/select/extract_ids.h"
 #include "pipeline/picture/picture_parts.h"
 #include "scene/choose/hidden_inside.h"
 #include "scene/choose/scale.h"
@@ -39,6 +38,12 @@ std::string free_name(const PipelineFile& file, const std::string& wanted) {
 
 }  // namespace
 
+std::string added_step(PipelineFile& file, const std::string& operation, std::vector<std::string> words, const std::string& from) {
+  const std::string name = free_name(file, operation);
+  file.steps.push_back({name, operation, std::move(words), {from}, 0});
+  return name;
+}
+
 void fail_no_mesh(const Data& data, const std::string& where) {
   const Table* table = nullptr;
   std::string parts;
@@ -60,25 +65,6 @@ void fail_no_mesh(const Data& data, const std::string& where) {
 
 namespace {
 
-// The top parts of a collection that hold the blocks of a mesh, where others hold sets of their sides and nodes, named as Exodus files and
-// what is made of them name them. Such sets lie upon the blocks: drawn together both would flicker. Empty where there are no sets.
-std::vector<std::string> blocks_beside_sets(const Data& data) {
-  std::vector<std::string> blocks;
-  bool sets = false;
-  if (const auto* c = std::get_if<CollectionPtr>(&data))
-    for (const Collection::Part& part : (*c)->parts) {
-      if (part.name.ends_with(" Blocks")) blocks.push_back(part.name);
-      sets = sets || part.name.ends_with(" Sets");
-    }
-  return sets ? blocks : std::vector<std::string>();
-}
-
-bool has_field(const Data& data, const std::string& name) {
-  bool found = false;
-  for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { found = found || d->fields().find(name); });
-  return found;
-}
-
 // A number that tells parts apart in which nothing else varies; "" for none.
 std::string field_telling_parts(const Data& data, const Context& context) {
   std::vector<DatasetPtr> parts;
@@ -98,24 +84,13 @@ Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file,
                 std::vector<std::string>& notes, Context& context) {
   std::string end = wanted.of;
   const std::string origin = origin_of(file, end), stated = word_value(wanted.words, "field").value_or("");
-  const auto add_step = [&](const std::string& operation, std::vector<std::string> words) {
-    const std::string name = free_name(file, operation);
-    file.steps.push_back({name, operation, std::move(words), {end}, 0});
-    return name;
-  };
-  if (const std::vector<std::string> blocks = blocks_beside_sets(data); !blocks.empty()) {
-    ExtractParams p;
-    p.blocks = blocks;
-    if (const Data kept = extract_blocks(data, p, context); stated.empty() || has_field(kept, stated)) {
-      data = kept;
-      end = add_step("extract", {fmt::format("blocks={}", fmt::join(blocks, ","))});
-      notes.push_back("sets of sides and nodes lie upon the blocks and are left out: -f 'extract blocks=\"Side Sets\"' shows them");
-    }
-  }
+  leave_out_sets(file, end, data, stated.empty() ? std::vector<std::string>() : std::vector{stated}, notes, context);
   // The largest part speaks for all; one with values before one with a mask or a numbering alone.
   DatasetPtr largest;
   bool has_values = false;
+  size_t parts = 0;
   for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
+    ++parts;
     const Field* f = automatic_field(*d);
     const bool values = f && f->role != Role::labels;
     if (!largest || (values && !has_values) || (values == has_values && d->point_count() > largest->point_count()))
@@ -127,9 +102,10 @@ Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file,
   const std::string field = !stated.empty() ? stated : !made ? field_telling_parts(data, context) : made->look.result ? made->name : "";
   std::vector<std::string> coloring = wanted.words;
   if (field != stated) coloring.push_back("field=" + field);
-  const bool hidden = std::holds_alternative<DatasetPtr>(data) && is_hidden_inside(largest, field, context);
+  const bool hidden = parts == 1 && is_hidden_inside(largest, field, context);
   const Look look = choose_look(*largest, field, extension_of(origin), hidden);
-  const std::string result = look.filter.empty() ? end : add_step(look.filter[0], {look.filter.begin() + 1, look.filter.end()});
+  const std::string result =
+      look.filter.empty() ? end : added_step(file, look.filter[0], {look.filter.begin() + 1, look.filter.end()}, end);
   for (const Look::Show& s : look.shows) {
     const ShowKind& kind = *s.kind;
     std::vector<std::string> words = changed_words(s.params);

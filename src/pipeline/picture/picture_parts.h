@@ -21,6 +21,7 @@ struct StatedPicture {
   Vec3f bottom{1, 1, 1};
   std::optional<Vec3f> top;
   bool transparent = false;
+  std::vector<PictureNote> notes;
 };
 
 /// Throws Error(usage).
@@ -76,6 +77,17 @@ struct StatedShow {
   ParamSet params;
 };
 
+/// Puts a filter at the end of the steps, under a name that is free; returns that.
+std::string added_step(PipelineFile& file, const std::string& operation, std::vector<std::string> words, const std::string& from);
+/// Of data in blocks with sets of sides and nodes the blocks alone, unless parts were chosen by name on the way to `step` or one of
+/// `fields` is in none of the blocks: `data` and `step` become those after a step that extracts them (in `file`), and a note tells of it.
+/// False where nothing changes.
+bool leave_out_sets(PipelineFile& file, std::string& step, Data& data, const std::vector<std::string>& fields,
+                    std::vector<std::string>& notes, Context& context);
+/// The same for all that is shown; `results` are those of the shows.
+void leave_out_sets(PipelineFile& file, const std::vector<StatedShow>& shows, std::vector<Data>& results, std::vector<std::string>& notes,
+                    Context& context);
+
 /// The combined results of the shows of a panel.
 struct Shown {
   Scene scene;
@@ -93,9 +105,9 @@ std::vector<Shown> collect(const PipelineFile& file, const std::vector<StatedSho
 
 /// The edges of the box that do not lie in front of the data: those with a face turned away from the camera.
 LinesItem back_edges(const Box3& box, const Camera& camera);
-/// Width of the picture itself, without its legends.
-int width_beside_legends(const Annotation& annotation, const StatedPicture& stated);
-/// Renders to the left of the legends, continues the background to the right, and annotates.
+/// Where the picture itself lies, without its legends; whole pixels.
+Rect picture_beside_legends(const Annotation& annotation, const StatedPicture& stated);
+/// Renders beside the legends, continues the background behind them, and annotates.
 /// `coarser` as in RenderOptions.
 Image draw_picture(const Scene& scene, const Camera& camera, const StatedPicture& stated, const Annotation& annotation, double coarser,
                    Context& context);

@@ -188,7 +188,7 @@ Rect triad_place(int, int height, double font) {
 }
 
 void draw_triad(Overlay& o, const Annotation& annotation, const Projection& p, double font) {
-  const Rect place = triad_place(o.width(), o.height(), font);
+  const Rect place = triad_place(p.width, p.height, font);
   const Vec2 center{place.x + 0.5 * place.width, place.y + 0.5 * place.height};
   const Vec3f light[3] = {{1.0f, 0.42f, 0.38f}, {0.45f, 0.85f, 0.40f}, {0.45f, 0.62f, 1.0f}};
   const Vec3f deep[3] = {{0.80f, 0.15f, 0.15f}, {0.10f, 0.52f, 0.15f}, {0.12f, 0.32f, 0.80f}};

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "render/annotate/annotate.h"
-#include "render/annotate/overlay.h"
+#include "render/annotate/overlay/overlay.h"
 
 namespace sg {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "render/annotate/overlay.h"
+#include "render/annotate/overlay/overlay.h"
 
 namespace sg {
 

@@ -12,6 +12,7 @@ namespace sg {
 namespace {
 
 constexpr double margin = 0.9, longest = 0.22;  // font sizes; share of the picture's width
+constexpr double caption_margin = 0.6;
 
 void draw_bar(Overlay& o, const Annotation& a, const Projection& p, double font, std::vector<Rect>& taken) {
   const auto bar = scale_bar(p, a.box->center(), longest * p.width);
@@ -28,12 +29,11 @@ void draw_bar(Overlay& o, const Annotation& a, const Projection& p, double font,
   taken.push_back(r.grown(0.3 * font));
 }
 
-void draw_caption(Overlay& o, const std::string& text, const Projection& p, double font, std::vector<Rect>& taken) {
-  TextStyle style;
-  style.size = font, style.centred = true, style.wrap = std::max(1.0, 0.55 * p.width);
-  const TextExtent e = o.measure(text, style);
-  const Rect r{0.5 * (p.width - e.width), p.height - 0.6 * font - e.height, e.width, e.height};
-  o.text(text, r.x, r.y, style, true);
+void draw_caption(Overlay& o, const Annotation& a, const Projection& p, double font, double width, std::vector<Rect>& taken) {
+  const TextStyle style = caption_style(font, width);
+  const TextExtent e = o.measure(a.caption, style);
+  const Rect r{0.5 * (p.width - e.width), o.height() - caption_margin * font - e.height, e.width, e.height};
+  o.text(a.caption, r.x, r.y, style, true);
   taken.push_back(r.grown(0.3 * font));
 }
 
@@ -46,8 +46,18 @@ std::optional<ScaleBar> scale_bar(const Projection& p, Vec3 at, double most) {
   return ScaleBar{length, length * unit};
 }
 
-void draw_foot(Overlay& overlay, const Annotation& a, const Projection& p, double font, std::vector<Rect>& taken) {
-  if (!a.caption.empty()) draw_caption(overlay, a.caption, p, font, taken);
+TextStyle caption_style(double font, double width) {
+  TextStyle style;
+  style.size = font, style.centred = true, style.wrap = std::max(1.0, 0.55 * width);
+  return style;
+}
+
+double caption_height(const Overlay& overlay, const Annotation& a, double font, double width) {
+  return a.caption.empty() ? 0 : overlay.measure(a.caption, caption_style(font, width)).height + caption_margin * font;
+}
+
+void draw_foot(Overlay& overlay, const Annotation& a, const Projection& p, double font, double width, std::vector<Rect>& taken) {
+  if (!a.caption.empty()) draw_caption(overlay, a, p, font, width, taken);
   if (a.scale_bar && a.box) draw_bar(overlay, a, p, font, taken);
 }
 

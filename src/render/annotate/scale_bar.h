@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/annotate/annotate.h"
-#include "render/annotate/overlay.h"
+#include "render/annotate/overlay/overlay.h"
 
 namespace sg {
 
@@ -17,7 +17,14 @@ struct ScaleBar {
 /// The longest one of at most `most` pixels at the depth of a place; nothing where that is behind the viewer.
 std::optional<ScaleBar> scale_bar(const Projection& projection, Vec3 at, double most);
 
-/// Draws bar (lower right) and caption (lower middle) as the annotation asks for them; adds what it drew to `taken`.
-void draw_foot(Overlay& overlay, const Annotation& annotation, const Projection& projection, double font, std::vector<Rect>& taken);
+/// How a caption is set that may take a part of `width` pixels.
+TextStyle caption_style(double font, double width);
+/// Pixels at the lower edge of a picture that its caption takes; 0 without one.
+double caption_height(const Overlay& overlay, const Annotation& annotation, double font, double width);
+
+/// Draws the bar, in the lower right corner of what the projection shows, and the caption, in the middle of the overlay's lower edge, as
+/// the annotation asks for them; adds what it drew to `taken`. `width`: as for caption_style().
+void draw_foot(Overlay& overlay, const Annotation& annotation, const Projection& projection, double font, double width,
+               std::vector<Rect>& taken);
 
 }  // namespace sg

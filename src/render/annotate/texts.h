@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 
-#include "render/annotate/overlay.h"
+#include "render/annotate/overlay/overlay.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 

@@ -28,6 +28,11 @@ void describe(Schema& s, ColoringParams& p) {
   s("legend_ticks", p.legend_ticks, "Numbers beside the legend's bar; default: round ones.").unit("@field");
   s("legend_format", p.legend_format,
     "Numbers of the legend as printf formats them: .2f, .3g, .1e; default: as short as they can be told apart.");
+  s("legend_place", p.legend_place, "Side of the picture where the legend stands; at the top and the bottom its bar lies.");
+  s("legend_bar", p.legend_bar,
+    "Length of the legend's bar as a share of the picture's height, or of its width where the bar lies; of names, the room for their list. "
+    "Default: what suits the other side of the picture.")
+      .range(0.05, 1);
 }
 
 const Field* automatic_field(const Dataset& d) {

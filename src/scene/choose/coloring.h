@@ -7,7 +7,7 @@
 
 #include "base/context.h"
 #include "base/schema/schema.h"
-#include "color/color_scale.h"
+#include "color/legend_content.h"
 #include "data/dataset.h"
 
 namespace sg {
@@ -32,6 +32,8 @@ struct ColoringParams {
   std::optional<std::string> legend_title, legend_unit;
   std::vector<double> legend_ticks;
   std::string legend_format;
+  LegendPlace legend_place = LegendPlace::right;
+  std::optional<double> legend_bar;
   Labels labels;  ///< of all datasets that are coloured alike (shared_scale.h); no word states them
 };
 void describe(Schema& s, ColoringParams& p);

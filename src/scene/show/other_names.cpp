@@ -67,7 +67,8 @@ constexpr OtherName names[] = {
     {"colormap colourmap lut palette cmap", "--map NAME"},
     {"colorbar colourbar scalarbar legend", "--legend \"title='...' unit=...\""},
     {"title background size axes", "--picture"},
-    {"caption textannotation", "--picture \"caption='...'\""},
+    {"caption", "--picture \"caption='...'\""},
+    {"textannotation", "--note 'Inlet @ 0.1,0.9'"},
     {"scalebar ruler", "--picture scale_bar=true"},
     {"view zoom orbit azimuth", "--camera"},
 };

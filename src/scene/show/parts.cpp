@@ -71,8 +71,10 @@ std::vector<ParamSet> params_of_parts(const std::vector<DatasetPtr>& parts, cons
   return params;
 }
 
-std::vector<Legend> show_parts(Scene& scene, const ShownParts& shown, const std::vector<DatasetPtr>& beside, uint32_t group,
-                               Context& context) {
+namespace {
+
+std::vector<Legend> add_parts(Scene& scene, const ShownParts& shown, const std::vector<DatasetPtr>& beside, uint32_t group,
+                              Context& context) {
   const std::vector<DatasetPtr>& parts = shown.parts;
   const ShowKind& kind = *shown.kind;
   const std::vector<ParamSet> params = params_of_parts(parts, kind, *shown.stated, beside);
@@ -97,6 +99,16 @@ std::vector<Legend> show_parts(Scene& scene, const ShownParts& shown, const std:
   join_volumes(std::span(scene.items).subspan(first), model, group);
   for (Legend& l : legends)
     if (!l.volume) static_cast<ColorScale&>(l) = std::get<VolumeItem>(scene.items[largest]).color;
+  return legends;
+}
+
+}  // namespace
+
+std::vector<Legend> show_parts(Scene& scene, const ShownParts& shown, const std::vector<DatasetPtr>& beside, uint32_t group,
+                               Context& context) {
+  std::vector<Legend> legends = add_parts(scene, shown, beside, group, context);
+  if (const ColoringParams* c = shown.kind->coloring ? shown.kind->coloring(*shown.stated) : nullptr)
+    for (Legend& l : legends) l.place = c->legend_place, l.bar = c->legend_bar;
   return legends;
 }
 

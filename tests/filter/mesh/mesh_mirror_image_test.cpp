@@ -64,6 +64,45 @@ TEST_CASE("mirror: a straight grid whose mirror stands at its end stays a grid w
     }
 }
 
+TEST_CASE("mirror: a rectilinear grid stays one, whichever of its axes descend") {
+  const std::vector<double> along[] = {{0, 0.2, 1}, {0, 0.5, 0.75, 1}, {0, 0.1, 0.3, 0.6, 1}};
+  for (int down = 0; down < 8; ++down)
+    for (int axis = 0; axis < 3; ++axis)
+      for (const bool high : {false, true}) {
+        CAPTURE(down);
+        CAPTURE(axis);
+        CAPTURE(high);
+        std::vector<double> x[3];
+        for (int a = 0; a < 3; ++a) {
+          x[a] = along[a];
+          if (down >> a & 1) std::reverse(x[a].begin(), x[a].end());
+        }
+        std::vector<Vec3> at;
+        for (const double z : x[2])
+          for (const double y : x[1])
+            for (const double u : x[0]) at.emplace_back(u, y, z);
+        RectilinearGrid g;
+        g.x = Array::from_vector(x[0]), g.y = Array::from_vector(x[1]), g.z = Array::from_vector(x[2]);
+        MirrorParams p;
+        p.axis = CutAxis(axis + 1), p.position = high ? 1 : 0;
+        Context context;
+        const DatasetPtr out = mirror(with_fields(g, at), p, context);
+        const auto* r = out->as<RectilinearGrid>();
+        REQUIRE(r);
+        const size_t n = 2 * x[axis].size() - 1;
+        CHECK((axis == 0 ? r->x : axis == 1 ? r->y : r->z).count() == n);
+        check_values(*out, axis, *p.position, high);
+        for (int a = 0; a < 3; ++a) {
+          const Array& c = a == 0 ? r->x : a == 1 ? r->y : r->z;
+          CHECK((c.get(1) < c.get(0)) == bool(down >> a & 1));
+        }
+        // Cells along the mirror's axis: the same backwards as forwards.
+        const Field& c = out->fields().require("c");
+        const size_t cells = n - 1, stride = axis == 0 ? 1 : axis == 1 ? 2 : 6;
+        for (size_t i = 0; i < cells; ++i) CHECK(c.array.get(i * stride) == c.array.get((cells - 1 - i) * stride));
+      }
+}
+
 TEST_CASE("mirror: cells share the points in the mirror, so that no face remains there") {
   for (const CellType type :
        {CellType::tetra, CellType::hexahedron, CellType::wedge, CellType::polyhedron, CellType::quadratic_hexahedron}) {

@@ -26,7 +26,7 @@ TEST_CASE("other names: each leads to something that exists, and none leads to t
     }
     if (flag == "-f") CHECK_NOTHROW(make_params(find_operation(what), params));
     else if (flag == "--show") CHECK_NOTHROW(find_show(what));
-    else CHECK((flag == "--map" || flag == "--legend" || flag == "--picture" || flag == "--camera"));
+    else CHECK((flag == "--map" || flag == "--legend" || flag == "--picture" || flag == "--camera" || flag == "--note"));
     for (const std::string_view word : words(n.words)) {
       const auto [it, fresh] = seen.emplace(std::string(word), std::string(n.here));
       INFO(word);

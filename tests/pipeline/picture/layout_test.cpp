@@ -51,6 +51,38 @@ TEST_CASE("layout: views of the same data side by side, with one legend beside t
   CHECK(part(views, 20, 30, 60, 60).pixels != part(views, 20 + panel, 30, 60, 60).pixels);
 }
 
+TEST_CASE("layout: the legend stands at its side of all panels, and tells of a panel without values") {
+  const auto picture = [&](const std::string& formula, const std::string& legend) {
+    // Two planes with the same range of values; the second one may have places without a value.
+    return drawn(
+        "sightglass: 1\nsteps:\n"
+        "  a: {tangle: {size: 8}}\n  as: {slice: {axis: z}}\n  ac: {calc: {expr: x, name: v}}\n"
+        "  b: {tangle: {size: 8}}\n  bs: {slice: {axis: z}}\n  bc: {calc: {expr: \"" +
+        formula + "\", name: v}}\nshow: [{surface: {field: v" + legend + "}, of: ac}, {surface: {field: v" + legend +
+        "}, of: bc}]\npicture: {size: 400x200, layout: 2x1, axes: false");
+  };
+  const Image right = picture("x", ""), bottom = picture("x", ", legend_place: bottom");
+  // Ink in the lowest rows is that of the numbers below the bar.
+  const auto ink = [](const Image& i, int x0, int y0, int x1, int y1) {
+    int n = 0;
+    for (int y = y0; y < y1; ++y)
+      for (int x = x0; x < x1; ++x) n += i.at(x, y)[0] + i.at(x, y)[1] + i.at(x, y)[2] < 700;
+    return n;
+  };
+  CHECK(ink(bottom, 0, 180, 400, 196) > 60);
+  CHECK(ink(right, 0, 180, 340, 196) == 0);
+  CHECK(ink(right, 340, 60, 400, 140) > 300);
+  // NaN in the second panel alone: a swatch of its colour.
+  const auto grey = [](const Image& i, int from) {
+    int n = 0;
+    for (int y = 0; y < i.height; ++y)
+      for (int x = from; x < i.width; ++x) n += i.at(x, y)[0] == 153 && i.at(x, y)[1] == 153 && i.at(x, y)[2] == 153;
+    return n;
+  };
+  CHECK(grey(right, 340) == 0);
+  CHECK(grey(picture("abs(y) < 0.5 ? 0/0 : x", ""), 340) > 30);
+}
+
 TEST_CASE("layout: what cannot be is told") {
   const auto told = [](const std::string& words) { return error_of([&] { drawn(std::string(two) + "size: 240x100, " + words); }); };
   CHECK(told("layout: 1x1").find("1x1 has no place for 2 panels") != std::string::npos);

@@ -33,9 +33,10 @@ struct Shown {
   Picture picture;
 };
 
-Shown shown(const Data& data) {
+Shown shown(const Data& data, const std::string& show = "", const std::string& step = "") {
   Shown r;
-  r.file = parse_pipeline("sightglass: 1\nsteps:\n  in: {read: given.exo}\npicture: {size: 80x60}\n", "", picture_vocabulary());
+  r.file = parse_pipeline("sightglass: 1\nsteps:\n  in: {read: given.exo}\n" + step + show + "picture: {size: 80x60}\n", "",
+                          picture_vocabulary());
   PictureOptions options;
   options.results["in"] = data;
   Context context;
@@ -65,6 +66,39 @@ TEST_CASE("pictures of parts: sets of sides lie upon their blocks and are left o
   // The same number everywhere tells nothing.
   const Shown same = shown(Data(collection({{"a", square(0, 1, "")}, {"b", square(2, 1, "")}})));
   CHECK(!word_value(same.file.show[0].words, "field"));
+}
+
+TEST_CASE("pictures of parts: sets are left out of what is shown by name, too, unless they were chosen or coloured by") {
+  const CollectionPtr blocks = collection({{"rim", square(0, 1, "1=rim")}, {"tyre", square(2, 2, "2=tyre")}});
+  DatasetParts wall = square(2, 1, "1=outer")->parts();
+  wall.fields.add({"flux", Association::cell, Array::from_vector<float>({3}), "", Role::none});
+  const Data all(
+      collection({{"Element Blocks", Data(blocks)}, {"Side Sets", Data(collection({{"outer", make_dataset(std::move(wall))}}))}}));
+  const auto told = [](const Shown& s) {
+    return std::count_if(s.picture.notes.begin(), s.picture.notes.end(), [](const std::string& n) { return n.find("lie upon") != n.npos; });
+  };
+  const Shown two = shown(all, "show: [{surface: {}}, {outline: {}}]\n");
+  REQUIRE(two.file.steps.size() == 2);
+  CHECK(two.file.steps[1].words == std::vector<std::string>{"blocks=Element Blocks"});
+  CHECK(two.file.steps[1].from == std::vector<std::string>{"in"});
+  CHECK(two.file.show[0].of == "extract");
+  CHECK(two.file.show[1].of == "extract");
+  CHECK(told(two) == 1);
+  // The recipe makes the same picture.
+  PipelineFile again = two.file;
+  PictureOptions options;
+  options.results["in"] = all;
+  Context context;
+  CHECK(make_picture(again, options, context).image.pixels == two.picture.image.pixels);
+  CHECK(again == two.file);
+
+  const std::string chosen = "  some: {extract: {blocks: [Element Blocks, Side Sets]}}\n";
+  for (const Shown& s :
+       {shown(all, "show: [{surface: {}}]\n", chosen), shown(all, "", chosen), shown(all, "show: [{surface: {field: flux}}]\n")}) {
+    CHECK(told(s) == 0);
+    CHECK(std::none_of(s.file.steps.begin(), s.file.steps.end(),
+                       [](const auto& t) { return t.words == std::vector<std::string>{"blocks=Element Blocks"}; }));
+  }
 }
 
 TEST_CASE("pictures: an input that surrounds another does not hide it") {

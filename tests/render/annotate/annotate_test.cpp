@@ -12,8 +12,8 @@
 #include "base/file/file.h"
 #include "image/codec.h"
 #include "render/annotate/axes.h"
-#include "render/annotate/legend.h"
-#include "render/annotate/overlay.h"
+#include "render/annotate/legend/legend.h"
+#include "render/annotate/overlay/overlay.h"
 #include "render/annotate/patient_sides.h"
 #include "render/annotate/scale_bar.h"
 #include "render/annotate/texts.h"
@@ -152,7 +152,7 @@ TEST_CASE("annotate: swatches of labels, of NaN, and triangles show exactly thei
   for (size_t i = 0; i < 6; ++i)
     CHECK(same(image.at(int(l[0].bar.x + 5), int(l[0].bar.y + (double(i) + 0.5) * l[0].row_height)),
                a.legends[0].color(a.legends[0].labels[i])));
-  CHECK(same(image.at(int(l[0].bar.x + 5), int(l[0].nan_y + 5)), a.legends[0].color(std::nan(""))));
+  CHECK(same(image.at(int(l[0].bar.x + 5), int(l[0].nan_at.y + 5)), a.legends[0].color(std::nan(""))));
   CHECK(l[1].above);
   CHECK(!l[1].below);
   CHECK(same(image.at(int(l[1].bar.x + 0.5 * l[1].bar.width), int(l[1].bar.y - 7)), {1, 0, 1, 1}));
@@ -180,7 +180,7 @@ TEST_CASE("annotate: nothing reaches the border of the picture, at any size, fro
     }
 }
 
-TEST_CASE("annotate: legends stand side by side within the width that legend_width tells") {
+TEST_CASE("annotate: legends stand side by side within the width that legend_room tells") {
   Annotation a = full();
   a.box.reset();
   a.triad = false;
@@ -193,7 +193,7 @@ TEST_CASE("annotate: legends stand side by side within the width that legend_wid
       CHECK(each.bar.y >= each.column.y);
       CHECK(each.bar.bottom() <= each.column.bottom());
     }
-    const int width = legend_width(a, w, h);
+    const int width = legend_room(a, w, h).right;
     CHECK(width > 0);
     CHECK(width <= w * 6 / 10);
     const Image before = blank(w, h);
@@ -203,7 +203,7 @@ TEST_CASE("annotate: legends stand side by side within the width that legend_wid
     CHECK(changed(before, after, {double(w - width), 0, double(width), double(h)}) > 1000);
   }
   a.legends.clear();
-  CHECK(legend_width(a, 1280, 720) == 0);
+  CHECK(legend_room(a, 1280, 720).right == 0);
 }
 
 TEST_CASE("annotate: numbers on a legend do not touch, and read differently far from zero") {
@@ -337,10 +337,10 @@ TEST_CASE("annotate: axes keep clear of legends") {
 TEST_CASE("annotate: text grows with the picture and with the scale") {
   Annotation a;
   a.legends = {temperature()};
-  const int at720 = legend_width(a, 1280, 720), at1440 = legend_width(a, 2560, 1440);
+  const int at720 = legend_room(a, 1280, 720).right, at1440 = legend_room(a, 2560, 1440).right;
   CHECK(at1440 == doctest::Approx(2 * at720).epsilon(0.03));
   a.scale = 2;
-  CHECK(legend_width(a, 1280, 720) == doctest::Approx(at1440).epsilon(0.03));
+  CHECK(legend_room(a, 1280, 720).right == doctest::Approx(at1440).epsilon(0.03));
 }
 
 TEST_CASE("annotate: transparent pictures become opaque where there is ink and stay clear elsewhere") {
@@ -498,7 +498,7 @@ TEST_CASE("annotate: names of any length are laid out in no time, with their beg
   TextStyle wrapped;
   wrapped.size = 12, wrapped.wrap = 300;
   const auto begin = std::chrono::steady_clock::now();
-  const int width = legend_width(a, image.width, image.height);
+  const int width = legend_room(a, image.width, image.height).right;
   CHECK(width > 0);
   CHECK(width < image.width / 2);
   CHECK(Overlay(640, 400, false).measure(std::string(20000, 'y'), wrapped).lines > 10);

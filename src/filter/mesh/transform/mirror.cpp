@@ -12,6 +12,7 @@
 #include "data/lattice.h"
 #include "data/ranks/over_all.h"
 #include "filter/mesh/append.h"
+#include "filter/mesh/transform/mirror_lattice.h"
 #include "filter/mesh/transform/transform.h"
 
 namespace sg {
@@ -101,15 +102,30 @@ class JoinedLattice {
 
 bool along_axes(const UniformGrid& g) { return g.direction == Mat3(); }
 
+const Array& coordinates(const RectilinearGrid& r, int axis) { return axis == 0 ? r.x : axis == 1 ? r.y : r.z; }
+
 // The place of the first or the last layer across the axis; nothing for other meshes, and for grids that are turned.
 std::optional<double> end_of(const Mesh& mesh, int axis, bool last) {
-  if (auto* u = std::get_if<UniformGrid>(&mesh); u && along_axes(*u) && u->spacing[axis] > 0 && u->dims[size_t(axis)] > 1)
+  if (auto* u = std::get_if<UniformGrid>(&mesh); u && along_axes(*u) && u->dims[size_t(axis)] > 1)
     return u->origin[axis] + (last ? double(u->dims[size_t(axis)] - 1) * u->spacing[axis] : 0);
-  if (auto* r = std::get_if<RectilinearGrid>(&mesh)) {
-    const Array& x = axis == 0 ? r->x : axis == 1 ? r->y : r->z;
-    if (x.count() > 1 && x.get(0) < x.get(x.count() - 1)) return x.get(last ? x.count() - 1 : 0);
-  }
+  if (auto* r = std::get_if<RectilinearGrid>(&mesh))
+    if (const Array& x = coordinates(*r, axis); x.count() > 1) return x.get(last ? x.count() - 1 : 0);
   return {};
+}
+
+bool runs_down(const Mesh& mesh, int axis) {
+  const auto first = end_of(mesh, axis, false), last = end_of(mesh, axis, true);
+  return first && last && *last < *first;
+}
+
+// transform() renumbers what it mirrors so that cells keep their sense; here both halves must run the same way along each axis.
+DatasetPtr numbered_as(const Dataset& wanted, const DatasetPtr& image) {
+  std::array<bool, 3> axes;
+  for (int a = 0; a < 3; ++a) axes[size_t(a)] = runs_down(wanted.mesh(), a) != runs_down(image->mesh(), a);
+  if (!axes[0] && !axes[1] && !axes[2]) return image;
+  DatasetParts parts = image->parts();
+  number_backwards(parts, axes);
+  return make_dataset(std::move(parts));
 }
 
 // The second half of the points is the image of the first: those in the mirror are used twice.
@@ -140,8 +156,10 @@ DatasetPtr mirror(const DatasetPtr& in, const MirrorParams& p, Context& ctx) {
   (*flip.center)[axis] = position;
   const DatasetPtr image = transform(in, flip, ctx);
   for (const bool last : {true, false})
-    if (const auto end = end_of(in->mesh(), axis, last); end && std::abs(*end - position) <= hair && end_of(image->mesh(), axis, !last))
-      return last ? JoinedLattice(*in, *image, axis).dataset() : JoinedLattice(*image, *in, axis).dataset();
+    if (const auto end = end_of(in->mesh(), axis, last); end && std::abs(*end - position) <= hair && end_of(image->mesh(), axis, last)) {
+      const DatasetPtr other = numbered_as(*in, image);
+      return last ? JoinedLattice(*in, *other, axis).dataset() : JoinedLattice(*other, *in, axis).dataset();
+    }
   AppendParams together;
   together.part = false;
   const DatasetPtr both = append({in, image}, together, ctx);

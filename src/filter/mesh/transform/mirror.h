@@ -18,9 +18,9 @@ inline void describe(Schema& s, MirrorParams& p) {
 }
 
 /// The mesh together with its image, fields as transform() changes them (vectors, normals and tensors are mirrored). A uniform or
-/// rectilinear grid whose mirror stands at one of its ends stays one, twice as long less a layer; else the two are put together as append()
-/// does, but meshes of cells and surfaces share the points that lie in the mirror, so that no face remains there. Throws Error(usage) for
-/// axis 'none'. O(points + cells).
+/// rectilinear grid whose mirror stands at one of its ends stays one, twice as long less a layer, numbered the way it was; else the two are
+/// put together as append() does, but meshes of cells and surfaces share the points that lie in the mirror, so that no face remains there.
+/// Throws Error(usage) for axis 'none'. O(points + cells).
 DatasetPtr mirror(const DatasetPtr& in, const MirrorParams& p, Context& ctx);
 
 }  // namespace sg

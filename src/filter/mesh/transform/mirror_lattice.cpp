@@ -130,7 +130,36 @@ void reverse_extent(Grid& g, Dims dims, Axes axes) {
     if (axes[a]) g.extent_start[a] = -(g.extent_start[a] + static_cast<long long>(dims[a]) - 1);
 }
 
+// The fields of a lattice of `dims` points, backwards along some axes.
+void carry_backwards(DatasetParts& parts, Dims dims, Axes axes, std::vector<int64_t>& points) {
+  points.resize(dims[0] * dims[1] * dims[2]);
+  reversed_ids(dims, axes, 0, points);
+  const Dims of_cells{std::max<size_t>(dims[0] - 1, 1), std::max<size_t>(dims[1] - 1, 1), std::max<size_t>(dims[2] - 1, 1)};
+  std::vector<int64_t> cells(of_cells[0] * of_cells[1] * of_cells[2]);
+  reversed_ids(of_cells, axes, 0, cells);
+  carry(parts, points, cells);
+}
+
 }  // namespace
+
+void number_backwards(DatasetParts& parts, Axes axes) {
+  auto* u = std::get_if<UniformGrid>(&parts.mesh);
+  auto* r = std::get_if<RectilinearGrid>(&parts.mesh);
+  if ((!u && !r) || (!axes[0] && !axes[1] && !axes[2])) return;
+  const Dims dims = lattice_dims(parts.mesh);
+  std::vector<int64_t> points;
+  carry_backwards(parts, dims, axes, points);
+  if (r) {
+    reverse(*r, axes), r->extent_start = {};
+    return;
+  }
+  for (int a = 0; a < 3; ++a)
+    if (axes[size_t(a)]) {
+      u->origin += u->direction.column(a) * (u->spacing[a] * double(dims[size_t(a)] - 1));
+      u->spacing[a] = -u->spacing[a];
+    }
+  u->extent_start = {};
+}
 
 void turn_mirrored_lattice(DatasetParts& parts) {
   if (std::holds_alternative<AmrGrid>(parts.mesh)) return ascend_amr(parts);
@@ -138,11 +167,8 @@ void turn_mirrored_lattice(DatasetParts& parts) {
   const Axes axes = axes_to_reverse(parts.mesh);
   if (!axes[0] && !axes[1] && !axes[2]) return;
   const Dims dims = lattice_dims(parts.mesh);
-  std::vector<int64_t> points(dims[0] * dims[1] * dims[2]);
-  reversed_ids(dims, axes, 0, points);
-  const Dims of_cells{std::max<size_t>(dims[0] - 1, 1), std::max<size_t>(dims[1] - 1, 1), std::max<size_t>(dims[2] - 1, 1)};
-  std::vector<int64_t> cells(of_cells[0] * of_cells[1] * of_cells[2]);
-  reversed_ids(of_cells, axes, 0, cells);
+  std::vector<int64_t> points;
+  carry_backwards(parts, dims, axes, points);
   if (auto* u = std::get_if<UniformGrid>(&parts.mesh)) reverse(*u, axes), reverse_extent(*u, dims, axes);
   else if (auto* r = std::get_if<RectilinearGrid>(&parts.mesh)) reverse(*r, axes), reverse_extent(*r, dims, axes);
   else {
@@ -150,7 +176,6 @@ void turn_mirrored_lattice(DatasetParts& parts) {
     c.points.xyz = gather(c.points.xyz, points);
     reverse_extent(c, dims, axes);
   }
-  carry(parts, points, cells);
 }
 
 void ascend_amr(DatasetParts& parts) {

@@ -47,8 +47,11 @@ class Overlay {
   Overlay(const Overlay&) = delete;
   Overlay& operator=(const Overlay&) = delete;
 
-  int width() const { return width_; }
-  int height() const { return height_; }
+  /// All that follows is drawn, and width() and height() count, from this pixel of the picture on.
+  void set_origin(int x, int y);
+
+  int width() const { return width_ - x_; }
+  int height() const { return height_ - y_; }
   bool dark() const { return dark_; }
 
   // Texts are any bytes: what would act on a terminal or is not UTF-8 is spelled out (printable()), and after U+200B a line may break.
@@ -78,7 +81,7 @@ class Overlay {
   void show(const std::string& text, const TextStyle& style, bool halo, Vec3f color);
   Vec3f ink() const { return dark_ ? Vec3f{0.93f, 0.93f, 0.95f} : Vec3f{0.09f, 0.09f, 0.11f}; }
   Vec3f rim() const { return dark_ ? Vec3f{0.05f, 0.05f, 0.07f} : Vec3f{1, 1, 1}; }
-  int width_, height_;
+  int width_, height_, x_ = 0, y_ = 0;
   bool dark_;
   std::unique_ptr<Parts> parts_;
 };

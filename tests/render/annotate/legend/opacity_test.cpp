@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The panel of opacity beside a volume's colour bar.
-#include "render/annotate/legend_opacity.h"
+#include "render/annotate/legend/opacity.h"
 
 #include "color/cie.h"
 #include "render/annotate/annotate.h"

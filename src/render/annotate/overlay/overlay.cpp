@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/annotate/overlay.h"
+#include "render/annotate/overlay/overlay.h"
 
 #include <fmt/core.h>
 #include <pango/pangocairo.h>
@@ -168,12 +168,18 @@ void Overlay::colored_text(const std::string& text, double x, double y, const Te
   show(text, style, true, color);
 }
 
+void Overlay::set_origin(int x, int y) {
+  cairo_identity_matrix(parts_->cr.get());
+  cairo_translate(parts_->cr.get(), x, y);
+  x_ = x, y_ = y;
+}
+
 void Overlay::keep_clear(const std::vector<Rect>& rects) {
   cairo_t* cr = parts_->cr.get();
   cairo_reset_clip(cr);
   for (const Rect& r : rects) {
     cairo_set_fill_rule(cr, CAIRO_FILL_RULE_EVEN_ODD);
-    cairo_rectangle(cr, 0, 0, width_, height_);
+    cairo_rectangle(cr, -x_, -y_, width_, height_);
     cairo_rectangle(cr, r.x, r.y, r.width, r.height);
     cairo_clip(cr);
   }
