@@ -155,8 +155,10 @@ void add_output(CLI::App& a, Options& o) {
 }
 
 void add_picture(CLI::App& a, Options& o, RawText& raw) {
-  a.add_option("--show", o.shows,
-               "How to show the data: 'surface|volume|lines|points|labels|glyphs|outline key=value ...'; may be repeated")
+  a.add_option(
+       "--show", o.shows,
+       "How to show the data: 'surface|volume|lines|points|labels|glyphs|outline key=value ...'; may be repeated. of=STEP shows that step "
+       "of the chain, by its operation or its name, instead of the last one: 'lines of=isolines'")
       ->allow_extra_args(false);
   a.add_option("--field", o.field, doc_of<ColoringParams>("field"));
   a.add_option("--map", o.map, doc_of<ColoringParams>("map"));

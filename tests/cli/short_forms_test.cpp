@@ -81,3 +81,18 @@ TEST_CASE("command line: what other programs call a thing leads to what it is ca
   CHECK(told({"render", "--source", "gyroid size=8", "-f", "contour", "values=0.2"}).find("-f 'contour values=0.2'") != std::string::npos);
   CHECK(told({"ops", "mip"}).find("mode=maximum") != std::string::npos);
 }
+
+TEST_CASE("command line: of=OPERATION is the step without a name, where one with a name is of the same operation") {
+  const auto drawn = [](const std::vector<std::string>& more) {
+    std::vector<std::string> args{
+        "render", "--source", "sphere size=12", "-f", "contour values=0", "-f", "big: contour on=input values=0.3"};
+    args.insert(args.end(), more.begin(), more.end());
+    args.insert(args.end(), {"--size", "80x60", "--camera", "position=0,-6,0 target=0,0,0", "-o", "step.png"});
+    must(args);
+    const std::string png = bytes_of("step.png");
+    return decode_png(std::as_bytes(std::span(png)), "step.png").pixels;
+  };
+  const auto small = drawn({"--show", "surface of=contour"}), big = drawn({"--show", "surface of=big"});
+  CHECK(small != big);
+  CHECK(big == drawn({"--show", "surface"}));
+}

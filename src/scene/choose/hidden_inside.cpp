@@ -33,7 +33,16 @@ bool is_hidden_inside(const DatasetPtr& data, const std::string& field, Context&
     std::nth_element(values.begin(), place, values.end());
     return *place;
   };
-  return at(0.99) - at(0.01) < 0.02 * (all.hi - all.lo);
+  const double width = all.hi - all.lo, lo = at(0.01), hi = at(0.99);
+  if (hi - lo >= 0.05 * width) return false;
+  size_t other = 0;  // inside: a few spikes would be no more to see than the faces
+  dispatch(f->array, [&](auto v) {
+    for (size_t i = 0; i < v.count; ++i) {
+      const double x = double(v(i, 0));
+      other += x < lo - 0.1 * width || x > hi + 0.1 * width;
+    }
+  });
+  return 50 * other > f->array.count();
 }
 
 }  // namespace sg

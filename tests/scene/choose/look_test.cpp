@@ -10,6 +10,7 @@
 #include "color/parse_color.h"
 #include "filter/scalar/bands.h"
 #include "scene/choose/chosen_scale.h"
+#include "scene/choose/hidden_inside.h"
 #include "scene/choose/volume_look.h"
 #include "support/test.h"
 
@@ -373,7 +374,8 @@ TEST_CASE("volume looks: a scan that is no CT is grey, in its own window; CT is 
   VolumeItem item;
   const auto scan = mr({{"space", "left-posterior-superior"}, {"Modality", "MR"}});
   CHECK(look_of(scan, item).find("in grey") != std::string::npos);
-  CHECK(item.color.map.name == "gray");
+  CHECK(item.color.map.name == "soft grey");
+  for (const Vec3f& c : item.color.map.colors) CHECK(std::abs(c.x - c.z) < 0.1f);
   CHECK(item.shaded);
   CHECK(item.opacity.points[1].x > 15);
   CHECK(item.opacity.points[1].x < 200);
@@ -399,4 +401,89 @@ TEST_CASE("volume looks: a scan that is no CT is grey, in its own window; CT is 
   double offset = 0;
   CHECK(!looks_like_ct(*body("MR"), body("MR")->fields()[0], &offset));
   CHECK(looks_like_ct(*body("CT"), body("CT")->fields()[0], &offset));
+}
+
+TEST_CASE("choose_look: distances to a surface are known by their slope") {
+  const auto filter_of = [](double factor, const std::function<double(Vec3)>& f) {
+    return choose_look(
+               *image<float>(16, [&](size_t i, size_t j, size_t k) { return float(factor * f(Vec3(i, j, k) - Vec3(7.5, 7.5, 7.5))); }), "",
+               "")
+        .filter;
+  };
+  const auto ball = [](Vec3 x) { return length(x) - 5; };
+  const std::vector<std::string> zero{"contour", "field=v", "values=0"};
+  CHECK(filter_of(1, ball) == zero);
+  CHECK(filter_of(-1, ball) == zero);
+  CHECK(filter_of(2, ball).empty());                                    // no distance
+  CHECK(filter_of(1, [](Vec3 x) { return x.x; }).empty());              // a coordinate
+  CHECK(filter_of(1, [](Vec3 x) { return length(x) + 0.1; }).empty());  // no zero
+  // A narrow band: held at three cells on both sides.
+  CHECK(filter_of(1, [&](Vec3 x) { return std::clamp(ball(x), -3.0, 3.0); }) == zero);
+}
+
+TEST_CASE("is_hidden_inside: solids whose faces are all of one value, but not for a spike and not for surfaces") {
+  Context context;
+  const auto cells = [](const std::function<double(Vec3)>& f) {
+    CurvilinearGrid g;
+    g.dims = {17, 17, 17};
+    std::vector<double> xyz, v;
+    for (int k = 0; k < 17; ++k)
+      for (int j = 0; j < 17; ++j)
+        for (int i = 0; i < 17; ++i) {
+          const Vec3 x = Vec3(i - 8, j - 8, k - 8) / 8;
+          xyz.insert(xyz.end(), {x.x, x.y, x.z}), v.push_back(f(x));
+        }
+    g.points.xyz = Array::from_vector(std::move(xyz), 3);
+    FieldSet fields;
+    fields.add({"t", Association::point, Array::from_vector(std::move(v)), "K", Role::scalars});
+    return make_dataset(Mesh(std::move(g)), std::move(fields));
+  };
+  const auto hot = cells([](Vec3 x) { return std::max(0.0, 1 - 1.2 * length(x)); });
+  CHECK(is_hidden_inside(hot, "", context));
+  const Look look = choose_look(*hot, "", "", true);
+  CHECK(look.shows[0].kind->is<VolumeShow>());
+  CHECK_FALSE(is_hidden_inside(cells([](Vec3 x) { return x.x; }), "", context));
+  CHECK_FALSE(is_hidden_inside(cells([](Vec3 x) { return length(x) < 0.2 ? 1.0 : 0.0; }), "", context));
+}
+
+TEST_CASE("choose_scale: Hounsfield units of a scan are grey from air on, though they are of both signs") {
+  DatasetParts parts = image<int16_t>(12, [](size_t i, size_t j, size_t) {
+                         return int16_t(i == 0 ? -3000 : i < 4 ? -1000 : 40 * int(j));
+                       })->parts();
+  parts.notes = {{"space", "left-posterior-superior"}};
+  Field f = parts.fields[0];
+  f.unit = "HU";
+  parts.fields = {};
+  parts.fields.add(f);
+  const DatasetPtr d = make_dataset(parts);
+  Context quiet;
+  const ColorScale s = choose_scale(*d, d->fields()[0], {}, quiet);
+  CHECK(s.map.name == "gray");
+  CHECK(s.lo == -1024);
+  CHECK(s.below);
+  // Diffusion images are of magnetic resonance, whatever their values look like.
+  parts.fields.add({"bval", Association::whole, Array::from_vector(std::vector<double>{0, 1000}), "", Role::none});
+  f.unit = "";
+  parts.fields.remove(f.name, f.association), parts.fields.add(f);
+  double offset = 0;
+  const DatasetPtr diffusion = make_dataset(parts);
+  CHECK_FALSE(looks_like_ct(*diffusion, diffusion->fields().require("v"), &offset));
+}
+
+TEST_CASE("choose_scale: a stated range ends in triangles where values lie beyond it") {
+  const auto d = image<float>(4, [](size_t i, size_t, size_t) { return float(i); });
+  Context quiet;
+  ColoringParams p;
+  p.range = {0, 3};
+  CHECK_FALSE(choose_scale(*d, d->fields()[0], p, quiet).below);
+  CHECK_FALSE(choose_scale(*d, d->fields()[0], p, quiet).above);
+  p.range = {1, 2};
+  const ColorScale s = choose_scale(*d, d->fields()[0], p, quiet);
+  CHECK(s.color(0) == s.color(1));
+  CHECK(s.below);
+  CHECK(s.above);
+  p.above = "red";
+  CHECK(choose_scale(*d, d->fields()[0], p, quiet).color(3) == Vec4f{1, 0, 0, 1});
+  p.clamp = false;
+  CHECK_FALSE(choose_scale(*d, d->fields()[0], p, quiet).below);
 }
