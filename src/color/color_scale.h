@@ -32,7 +32,7 @@ struct ColorScale {
   std::vector<double> ticks;  ///< numbers beside the legend's bar; none: round ones
   std::string number_format;  ///< of these numbers, as formatted_number() takes it; "": the shortest that tells them apart
 
-  /// Position on the map, may lie outside [0,1] (below, above), NaN for NaN. On a log scale values <= 0 lie beyond the end of the smaller one.
+  /// Position on the map, may lie outside [0,1] (below, above), NaN for NaN; on a log scale values <= 0 lie beyond the smaller end.
   /// With labels: the middle of the label's band, NaN for any other value (up to rounding to float).
   double position(double value) const;
   /// The value drawn at a position (inverse of position).

@@ -5,10 +5,10 @@
 
 #include "base/text/text.h"
 #include "data/cells/mesh_dimension.h"
+#include "data/cells/plane_normal.h"
 #include "data/lattice.h"
 #include "data/patient/patient_frame.h"
 #include "io/y_up.h"
-#include "scene/choose/plane.h"
 #include "scene/choose/scale.h"
 #include "scene/choose/shown_range.h"
 #include "scene/choose/signed_distance.h"

@@ -2,11 +2,11 @@
 #include "scene/show/surface.h"
 
 #include "color/parse_color.h"
+#include "data/cells/plane_normal.h"
 #include "data/field_ops.h"
 #include "filter/field/sampling/point_cell.h"
 #include "filter/mesh/faces/faces.h"
 #include "filter/mesh/surface.h"
-#include "scene/choose/plane.h"
 #include "scene/show/field_color.h"
 #include "scene/show/texture_color.h"
 

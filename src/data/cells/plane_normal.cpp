@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/choose/plane.h"
+#include "data/cells/plane_normal.h"
 
 namespace sg {
 
