@@ -21,7 +21,7 @@ std::optional<double> place(std::string_view text, const ColorScale& axis) {
   const auto v = parse_double(trim(absolute ? text.substr(1) : text));
   if (!v || !std::isfinite(*v)) return {};
   if (!absolute) return *v;
-  if (axis.labels.empty()) return axis.position(*v);
+  if (axis.labels.empty()) return axis.kind == ScaleKind::log && !(*v > 0) ? NAN : axis.position(*v);
   return (*v - axis.lo) / (axis.hi - axis.lo);  // labels: between them, too
 }
 // The value there, exactly the one written after an @.

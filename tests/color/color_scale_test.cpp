@@ -75,8 +75,8 @@ TEST_CASE("colour scale: below, above and NaN") {
   CHECK(table.linear.size() == 256);
   CHECK(table.at(s.position(-1)).w == 0);
   CHECK(table.at(s.position(nan_value)).y == doctest::Approx(srgb_to_linear(0.25)));
-  CHECK(std::isnan(red_to_blue(1, 10, ScaleKind::log).position(0)));
-  CHECK(std::isnan(red_to_blue(1, 10, ScaleKind::log).position(-1)));
+  CHECK(red_to_blue(1, 10, ScaleKind::log).position(0) < 0);
+  CHECK(red_to_blue(1, 10, ScaleKind::log).position(-1) < 0);
 }
 
 TEST_CASE("colour scale: a range of one value puts it in the middle") {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/choose/signed_distance.h"
 
+#include <algorithm>
+
 namespace sg {
 
 bool is_signed_distance(const Dataset& data, const Field& field) {
@@ -17,9 +19,11 @@ bool is_signed_distance(const Dataset& data, const Field& field) {
   for (size_t k = 1; k + 1 < n[2]; k += step(n[2]))
     for (size_t j = 1; j + 1 < n[1]; j += step(n[1]))
       for (size_t i = 1; i + 1 < n[0]; i += step(n[0])) {
-        if (const double v = at(i, j, k); v == range.lo || v == range.hi) continue;
-        const Vec3 slope((at(i + 1, j, k) - at(i - 1, j, k)) / (2 * g->spacing.x), (at(i, j + 1, k) - at(i, j - 1, k)) / (2 * g->spacing.y),
-                         (at(i, j, k + 1) - at(i, j, k - 1)) / (2 * g->spacing.z));
+        const double near[] = {at(i, j, k),     at(i - 1, j, k), at(i + 1, j, k), at(i, j - 1, k),
+                               at(i, j + 1, k), at(i, j, k - 1), at(i, j, k + 1)};
+        if (std::any_of(std::begin(near), std::end(near), [&](double v) { return v == range.lo || v == range.hi; })) continue;
+        const Vec3 slope((near[2] - near[1]) / (2 * g->spacing.x), (near[4] - near[3]) / (2 * g->spacing.y),
+                         (near[6] - near[5]) / (2 * g->spacing.z));
         const Vec3 gradient = to_world * slope;
         ++asked, unit += std::abs(length(gradient) - 1) < 0.1;
         sum += gradient;
