@@ -84,6 +84,9 @@ std::vector<double> times_of_nek5000(const std::string& path, const ReadOptions&
 bool sniff_ensight(std::span<const std::byte> head);
 Data read_ensight(const std::string& path, const ReadOptions& options, Context& context);
 std::vector<double> times_ensight(const std::string& path, const ReadOptions& options, Context& context);
+bool sniff_ensight_servers(std::span<const std::byte> head);
+Data read_ensight_servers(const std::string& path, const ReadOptions& options, Context& context);
+std::vector<double> times_ensight_servers(const std::string& path, const ReadOptions& options, Context& context);
 
 bool sniff_plot3d(std::span<const std::byte> whole);
 Data read_plot3d(const std::string& path, const ReadOptions& options, Context& context);
