@@ -35,6 +35,10 @@ void write_obj(const std::string& path, const Data& data, const WriteOptions& op
 Data read_csv(const std::string& path, const ReadOptions& options, Context& context);
 void write_csv(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
 
+bool sniff_geojson(std::span<const std::byte> head);
+bool sniff_whole_geojson(std::span<const std::byte> whole);
+Data read_geojson(const std::string& path, const ReadOptions& options, Context& context);
+
 Data read_json(const std::string& path, const ReadOptions& options, Context& context);
 bool sniff_nifti(std::span<const std::byte> head);
 Data read_nifti(const std::string& path, const ReadOptions& options, Context& context);
@@ -84,6 +88,9 @@ std::vector<double> times_of_nek5000(const std::string& path, const ReadOptions&
 bool sniff_ensight(std::span<const std::byte> head);
 Data read_ensight(const std::string& path, const ReadOptions& options, Context& context);
 std::vector<double> times_ensight(const std::string& path, const ReadOptions& options, Context& context);
+bool sniff_ensight_servers(std::span<const std::byte> head);
+Data read_ensight_servers(const std::string& path, const ReadOptions& options, Context& context);
+std::vector<double> times_ensight_servers(const std::string& path, const ReadOptions& options, Context& context);
 
 bool sniff_plot3d(std::span<const std::byte> whole);
 Data read_plot3d(const std::string& path, const ReadOptions& options, Context& context);

@@ -7,9 +7,9 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "data/cells/triangulate_loops.h"
 #include "data/field_ops.h"
 #include "filter/surface/polygons.h"
-#include "filter/surface/triangulate_loops.h"
 
 namespace sg {
 

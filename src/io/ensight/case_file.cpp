@@ -271,15 +271,6 @@ class Parser {
   int64_t index_ = -1;
 };
 
-// The asterisks become the number, with leading zeros up to their count.
-std::string with_number(const std::string& pattern, int64_t number) {
-  const size_t a = pattern.find('*');
-  if (a == std::string::npos) return pattern;
-  size_t b = a;
-  while (b < pattern.size() && pattern[b] == '*') ++b;
-  return pattern.substr(0, a) + fmt::format("{:0{}}", number, std::min<size_t>(b - a, 30)) + pattern.substr(b);
-}
-
 }  // namespace
 
 int Variable::components() const {
@@ -297,6 +288,14 @@ std::vector<double> CaseFile::times() const {
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
+}
+
+std::string with_number(const std::string& pattern, int64_t number) {
+  const size_t a = pattern.find('*');
+  if (a == std::string::npos) return pattern;
+  size_t b = a;
+  while (b < pattern.size() && pattern[b] == '*') ++b;
+  return pattern.substr(0, a) + fmt::format("{:0{}}", number, std::min<size_t>(b - a, 30)) + pattern.substr(b);
 }
 
 CaseFile parse_case(const std::string& path) { return Parser(path).run(); }

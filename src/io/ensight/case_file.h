@@ -55,6 +55,9 @@ struct CaseFile {
   std::vector<double> times() const;
 };
 
+/// "p.***" for 7 is "p.007": the asterisks become the number, with leading zeros up to their count.
+std::string with_number(const std::string& pattern, int64_t number);
+
 /// Throws Error(data) that names the line.
 CaseFile parse_case(const std::string& path);
 

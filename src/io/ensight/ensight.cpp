@@ -101,7 +101,7 @@ bool sniff_ensight(std::span<const std::byte> head) {
       format = true;
     } else {
       const std::string l = to_lower(line);
-      return l.starts_with("type") && l.find("ensight") != std::string::npos;
+      return l.starts_with("type") && l.find("ensight") != std::string::npos && l.find("master_server") == std::string::npos;
     }
   }
   return false;

@@ -8,6 +8,7 @@
 #include "base/bytes.h"
 #include "base/text/text.h"
 #include "io/formats.h"
+#include "io/text/word_categories.h"
 #include "io/vtk/vtk_cells.h"
 #include "io/vtk/vtk_legacy_text.h"
 
@@ -76,6 +77,7 @@ class LegacyReader {
   bool is_wanted(const std::string& name) const;
   void add(std::string name, Association association, const std::string& type, size_t tuples, size_t components, std::string_view keyword,
            Role role);
+  void add_strings(std::string name, Association association, size_t tuples, size_t components);
   size_t tuples();
   Mesh mesh();
 
@@ -259,6 +261,8 @@ static bool shapes_mesh(const std::string& name) {
   return is_ghost_name(name) || name == "RationalWeights" || name == "HigherOrderDegrees";
 }
 
+static bool is_string(std::string_view type) { return equal_ignoring_case(type, "string") || equal_ignoring_case(type, "utf8_string"); }
+
 bool LegacyReader::is_wanted(const std::string& name) const {
   return shapes_mesh(name) || options_.fields.empty() ||
          std::find(options_.fields.begin(), options_.fields.end(), name) != options_.fields.end();
@@ -266,6 +270,7 @@ bool LegacyReader::is_wanted(const std::string& name) const {
 
 void LegacyReader::add(std::string name, Association association, const std::string& type, size_t tuples, size_t components,
                        std::string_view keyword, Role role) {
+  if (is_string(type)) return add_strings(std::move(name), association, tuples, components);
   const std::string what = fmt::format("{} '{}'", keyword, name);
   if (!is_wanted(name)) {
     text_.skip_array(type, tuples, components, what);
@@ -275,6 +280,30 @@ void LegacyReader::add(std::string name, Association association, const std::str
   Array a = hollow_one ? hollow(text_.skip_array(type, tuples, components, what), tuples, int(components))
                        : text_.array(type, tuples, components, what);
   parts_.fields.add({std::move(name), association, std::move(a), {}, role});
+}
+
+// Words of points and cells become categories, lines of the whole dataset a note, as in the XML forms.
+void LegacyReader::add_strings(std::string name, Association association, size_t tuples, size_t components) {
+  constexpr size_t most_lines = 100;
+  const std::string what = fmt::format("array '{}'", name);
+  uint64_t n = 0;
+  if (!multiply(tuples, components, n)) text_.fail(fmt::format("{} has more strings than the file can hold", what));
+  const std::vector<std::string> all = text_.strings(n, what);
+  if (association == Association::whole) {
+    if (all.empty() || all.size() > most_lines) return;
+    std::string text;
+    for (const std::string& line : all) text += (&line == &all[0] ? "" : "\n") + line;
+    parts_.notes.emplace_back(std::move(name), std::move(text));
+    return;
+  }
+  if (components != 1 || !is_wanted(name)) return;
+  if (options_.header_only) return parts_.fields.add({std::move(name), association, hollow(ElementType::i32, tuples, 1), {}, Role::labels});
+  auto categories = word_categories(name, all);
+  if (!categories)
+    return context_.info(
+        fmt::format("the strings '{}' are left out: more than {} different ones are no categories", name, most_categories));
+  parts_.notes.push_back(std::move(categories->note));
+  parts_.fields.add({std::move(name), association, Array::from_vector(std::move(categories->numbers)), {}, Role::labels});
 }
 
 size_t LegacyReader::tuples() {
@@ -334,13 +363,7 @@ void LegacyReader::field() {
     if (name == "NULL_ARRAY") continue;
     const size_t components = text_.count("the number of components"), n = text_.count("the number of tuples");
     const std::string type(text_.need_word("the type of the array"));
-    if (equal_ignoring_case(type, "string") || equal_ignoring_case(type, "utf8_string")) {
-      uint64_t strings = 0;
-      if (__builtin_mul_overflow(components, n, &strings)) text_.fail("has more strings than the file can hold");
-      text_.skip_strings(strings);
-      continue;
-    }
-    if (association_ == Association::whole && n == 1 && components == 1 && (name == "TimeValue" || name == "TIME")) {
+    if (association_ == Association::whole && n == 1 && components == 1 && (name == "TimeValue" || name == "TIME") && !is_string(type)) {
       parts_.time = text_.array(type, n, components, fmt::format("array '{}'", name)).get(0);
       continue;
     }

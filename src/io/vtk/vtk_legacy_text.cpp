@@ -179,12 +179,16 @@ void LegacyText::skip_metadata() {
   }
 }
 
-void LegacyText::skip_strings(size_t n) {
+std::vector<std::string> LegacyText::strings(size_t n, std::string_view what) {
   line();
+  if (n > all_.size() - at_)  // each takes a byte at least
+    fail(fmt::format("{} has {} strings but the file has only {} more bytes", what, n, all_.size() - at_),
+         "the file is truncated or the count is wrong");
+  std::vector<std::string> all;
   for (size_t i = 0; i < n; ++i) {
-    if (at_end()) fail(fmt::format("the file ends after {} of {} strings", i, n), "the file is truncated");
+    if (at_end()) fail(fmt::format("{}: the file ends after {} of {} strings", what, i, n), "the file is truncated");
     if (!binary) {
-      line();
+      all.push_back(decode_name(line()));
       continue;
     }
     // The two high bits of the first byte give the number of bytes of the length: 8, 4, 2 or 1.
@@ -193,9 +197,11 @@ void LegacyText::skip_strings(size_t n) {
     const std::byte* p = take(width, "the length of a string");
     uint64_t length = uint64_t(p[0]) & 63;
     for (size_t k = 1; k < width; ++k) length = length << 8 | uint64_t(p[k]);
-    take(length, "a string");
+    const std::byte* from = take(length, "a string");
+    all.emplace_back(reinterpret_cast<const char*>(from), length);
   }
   if (equal_ignoring_case(peek(), "METADATA")) word(), skip_metadata();
+  return all;
 }
 
 std::string decode_name(std::string_view name) {

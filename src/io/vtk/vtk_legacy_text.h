@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/file/file.h"
 #include "data/array.h"
@@ -37,8 +38,8 @@ class LegacyText {
   /// Where `n` binary big-endian numbers of that type would begin that array() reads next, and their type; null when they are text
   /// or too few. The position stays.
   const std::byte* in_place(std::string_view type, size_t n, ElementType& number_type) const;
-  /// Skips an array of strings.
-  void skip_strings(size_t n);
+  /// `n` strings, which begin on the next line: a line each, or each behind its length.
+  std::vector<std::string> strings(size_t n, std::string_view what);
   /// Behind the word METADATA: its lines up to an empty one.
   void skip_metadata();
 

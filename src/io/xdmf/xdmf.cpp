@@ -15,8 +15,9 @@ namespace sg {
 
 bool sniff_xdmf(std::span<const std::byte> head) {
   const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
-  const size_t root = text.find("<Xdmf");
-  return root != text.npos && text.find('<') <= root && root + 5 < text.size() && (is_space(text[root + 5]) || text[root + 5] == '>');
+  for (size_t root = text.find('<'); root != text.npos && root + 5 < text.size(); root = text.find('<', root + 1))
+    if (equal_ignoring_case(text.substr(root + 1, 4), "Xdmf")) return is_space(text[root + 5]) || text[root + 5] == '>';
+  return false;
 }
 
 namespace xdmf {
@@ -28,33 +29,50 @@ std::string grid_type(pugi::xml_node grid) {
   return type.empty() ? "uniform" : type;
 }
 bool is_temporal(pugi::xml_node grid) {
-  return grid_type(grid) == "collection" && equal_ignoring_case(grid.attribute("CollectionType").value(), "Temporal");
+  return grid_type(grid) == "collection" && equal_ignoring_case(attribute(grid, "CollectionType"), "Temporal");
 }
 
+std::string time_kind(pugi::xml_node time) { return to_lower(attribute(time, "TimeType", "Type")); }
+
+// The numbers of a Time: those of its DataItem, else those that its Value lists.
+std::vector<double> time_numbers(const Document& doc, pugi::xml_node time) {
+  std::vector<double> numbers;
+  if (const pugi::xml_node data = doc.child(time, "DataItem")) {
+    const Array a = doc.item(data).values;
+    for (size_t i = 0; i < a.count(); ++i) numbers.push_back(a.get(i));
+    return numbers;
+  }
+  const std::string_view text = attribute(time, "Value");
+  for (const std::string_view w : words(text)) {
+    const auto v = parse_double(w);
+    if (!v) doc.fail(fmt::format("has Value=\"{}\"", text), time, "a number");
+    numbers.push_back(*v);
+  }
+  return numbers;
+}
+
+// Of a range its beginning.
 std::optional<double> own_time(const Document& doc, pugi::xml_node grid) {
   const pugi::xml_node time = doc.child(grid, "Time");
   if (!time) return {};
-  const std::string_view text = trim(time.attribute("Value").value());
-  if (text.empty()) return {};
-  const auto v = parse_double(text);
-  if (!v) doc.fail(fmt::format("has Value=\"{}\"", text), time, "a number");
-  return v;
+  const std::vector<double> numbers = time_numbers(doc, time);
+  return numbers.empty() ? std::nullopt : std::optional(numbers[0]);
 }
 
-/// Times of the grids of a temporal collection: their own, else the collection's list, else their places.
+/// Times of the grids of a temporal collection: their own, else those of the collection (a list; start, step and count; the ends of a range
+/// between which the steps are even), else their places.
 std::vector<double> times_of(const Document& doc, pugi::xml_node collection, const std::vector<pugi::xml_node>& grids) {
   std::vector<double> listed, times;
   if (const pugi::xml_node time = doc.child(collection, "Time")) {
-    const std::string kind = to_lower(time.attribute("TimeType").value());
-    const pugi::xml_node data = doc.child(time, "DataItem");
-    if ((kind == "list" || kind == "hyperslab") && !data) doc.fail("has no DataItem", time);
-    if (data) {
-      const Array a = doc.item(data).values;
-      if (kind == "hyperslab" && a.count() == 3)  // start, stride, count
-        for (size_t i = 0; i < grids.size(); ++i) listed.push_back(a.get(0) + double(i) * a.get(1));
-      else
-        for (size_t i = 0; i < a.count(); ++i) listed.push_back(a.get(i));
-    }
+    const std::string kind = time_kind(time);
+    listed = time_numbers(doc, time);
+    if (listed.empty() && (kind == "list" || kind == "hyperslab" || kind == "range"))
+      doc.fail("has no DataItem", time, "the times, or start, step and count");
+    const std::vector<double> given = listed;
+    const bool slab = kind == "hyperslab" && given.size() == 3, range = kind == "range" && given.size() == 2 && grids.size() > 1;
+    if (slab || range) listed.resize(grids.size());
+    for (size_t i = 0; i < listed.size() && slab; ++i) listed[i] = given[0] + double(i) * given[1];
+    for (size_t i = 0; i < listed.size() && range; ++i) listed[i] = given[0] + (given[1] - given[0]) * double(i) / double(grids.size() - 1);
   }
   for (size_t i = 0; i < grids.size(); ++i) {
     const auto own = own_time(doc, grids[i]);
@@ -127,10 +145,10 @@ struct Reader {
   }
 
   void add_attribute(pugi::xml_node a, size_t points, size_t cells, DatasetParts& parts) const {
-    const std::string name = a.attribute("Name") ? a.attribute("Name").value() : fmt::format("unnamed {}", parts.fields.size());
+    const std::string name = find_attribute(a, "Name") ? find_attribute(a, "Name").value() : fmt::format("unnamed {}", parts.fields.size());
     const auto& wanted = options.fields;
     if (!wanted.empty() && !vtk::is_ghost_name(name) && std::find(wanted.begin(), wanted.end(), name) == wanted.end()) return;
-    const std::string center = to_lower(a.attribute("Center").value()), type = to_lower(attribute(a, "AttributeType", "Type"));
+    const std::string center = to_lower(attribute(a, "Center")), type = to_lower(attribute(a, "AttributeType", "Type"));
     Association on = Association::point;
     if (center == "cell") on = Association::cell;
     else if (center == "grid") on = Association::whole;
@@ -138,7 +156,7 @@ struct Reader {
       doc.context().warn(fmt::format("{}: attributes on '{}' are ignored", doc.where(a), center));
       return;
     }
-    if (attribute(a, "ItemType", "ItemType") == "FiniteElementFunction") {
+    if (attribute(a, "ItemType") == "FiniteElementFunction") {
       doc.context().warn(fmt::format("{}: finite element functions are ignored", doc.where(a)));
       return;
     }
@@ -193,7 +211,7 @@ struct Reader {
   }
 
   static std::string name_of(pugi::xml_node grid, size_t i) {
-    const std::string name = grid.attribute("Name").value();
+    const std::string name = find_attribute(grid, "Name").value();
     return name.empty() ? fmt::format("grid {}", i) : name;
   }
 };

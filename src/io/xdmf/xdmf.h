@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// XDMF files, versions 2 and 3: what their parts share. Light data is XML; arrays are inline, in binary files, or in HDF5 files that
-// the plug-in hdf5 reads. Format: XDMF model and format documentation, xdmf.org.
+// XDMF files, versions 1 to 3: what their parts share. Light data is XML; arrays are inline, in binary files, or in HDF5 files that
+// the plug-in hdf5 reads. Format: XDMF model and format documentation, xdmf.org, and its archive for version 2. Names of elements and
+// attributes are found in any letter case; version 1 calls a DataItem DataStructure or DataTransform.
 #pragma once
 #include <map>
+#include <optional>
 #include <pugixml.hpp>
 
 #include "base/file/file.h"
@@ -34,7 +36,7 @@ class Document {
   std::string where(pugi::xml_node node) const;
   [[noreturn]] void fail(std::string problem, pugi::xml_node node, std::string hint = {}) const;
 
-  /// The elements of that name below `parent`, includes and references followed.
+  /// The elements of that name below `parent`, includes and references followed; "DataItem" finds its older names, too.
   std::vector<pugi::xml_node> children(pugi::xml_node parent, std::string_view name) const;
   /// The first of them, or an empty node.
   pugi::xml_node child(pugi::xml_node parent, std::string_view name) const;
@@ -43,17 +45,23 @@ class Document {
   /// Notes which grids others borrow from; by reading all grids once.
   void note_references();
 
+  /// The text with the entities of the document type ("&HeavyData;") replaced.
+  std::string with_entities(std::string text) const;
+
   /// The values of a DataItem. Throws Error(data), or Error(usage) for kinds that are not read.
   Item item(pugi::xml_node data_item, int depth = 0) const;
 
  private:
   pugi::xml_node resolve(pugi::xml_node node) const;
   std::vector<pugi::xml_node> select(const std::string& xpath, pugi::xml_node from) const;
-  std::string with_entities(std::string text) const;
-  Item inline_item(pugi::xml_node n, const std::vector<size_t>& dims) const;
+  Item inline_item(pugi::xml_node n, const std::vector<size_t>& dims, std::optional<ElementType> type = {}) const;
   Item binary_item(pugi::xml_node n, const std::vector<size_t>& dims) const;
   Item hdf_item(pugi::xml_node n, const std::vector<size_t>& dims, const Item* slab) const;
   Item hyperslab(pugi::xml_node n, int depth) const;
+  Item coordinates(pugi::xml_node n, int depth) const;
+  Item selection(pugi::xml_node n, int depth) const;
+  std::vector<pugi::xml_node> parts_of(pugi::xml_node n, size_t count) const;
+  Item with_dimensions(Item found, pugi::xml_node n) const;
   Item function(pugi::xml_node n, int depth) const;
 
   std::string path_;
@@ -71,8 +79,12 @@ size_t product(const std::vector<size_t>& dims, const std::string& where);
 std::vector<size_t> dimensions(const Document& doc, pugi::xml_node node, const char* attribute);
 /// The element type that NumberType (or DataType) and Precision name.
 ElementType number_type(const Document& doc, pugi::xml_node node);
-/// The value of the first of two attributes that is there.
-std::string_view attribute(pugi::xml_node node, const char* name, const char* older);
+/// The attribute of that name in any letter case; an empty one where there is none.
+pugi::xml_attribute find_attribute(pugi::xml_node node, std::string_view name);
+/// The value of the first of two attributes that is there, without blanks around it.
+std::string_view attribute(pugi::xml_node node, std::string_view name, std::string_view older = {});
+/// Whether the element has that name, in any letter case and whatever its namespace.
+bool is_named(pugi::xml_node node, std::string_view name);
 
 /// "$0 + 2 * $1", "JOIN($0, $1)": values of the arguments combined. Throws Error(data) for what it does not know.
 Item evaluate_function(std::string_view text, const std::vector<Item>& arguments, const std::string& where);

@@ -18,7 +18,10 @@ std::string_view local_name(const char* name) {
   return colon == n.npos ? n : n.substr(colon + 1);
 }
 
-bool named(pugi::xml_node n, std::string_view name) { return equal_ignoring_case(local_name(n.name()), name); }
+// Whether children(.., name) means it.
+bool named(pugi::xml_node n, std::string_view name) {
+  return is_named(n, name) || (name == "DataItem" && (is_named(n, "DataStructure") || is_named(n, "DataTransform")));
+}
 
 // <!ENTITY name "text"> of the document type; files of version 2 name their heavy data so.
 std::map<std::string, std::string> entities_of(std::string_view text) {
@@ -35,6 +38,19 @@ std::map<std::string, std::string> entities_of(std::string_view text) {
 
 }  // namespace
 
+bool is_named(pugi::xml_node n, std::string_view name) { return equal_ignoring_case(local_name(n.name()), name); }
+
+pugi::xml_attribute find_attribute(pugi::xml_node node, std::string_view name) {
+  for (const pugi::xml_attribute& a : node.attributes())
+    if (equal_ignoring_case(a.name(), name)) return a;
+  return {};
+}
+
+std::string_view attribute(pugi::xml_node node, std::string_view name, std::string_view older) {
+  const pugi::xml_attribute a = find_attribute(node, name);
+  return trim((a || older.empty() ? a : find_attribute(node, older)).value());
+}
+
 Document::Document(const std::string& path, Context& context) : path_(path), context_(context), file_(path) {
   const std::string_view text = file_.text();
   const pugi::xml_parse_result r =
@@ -44,14 +60,15 @@ Document::Document(const std::string& path, Context& context) : path_(path), con
     fail_data(fmt::format("is not well-formed XML: {}", r.description()), fmt::format("{}: line {}", path, line_number(text, at)),
               "the file is truncated or damaged");
   }
-  if (!named(root(), "Xdmf")) fail_data(fmt::format("has the root element <{}>", root().name()), path, "an XDMF file begins with <Xdmf>");
+  if (!is_named(root(), "Xdmf"))
+    fail_data(fmt::format("has the root element <{}>", root().name()), path, "an XDMF file begins with <Xdmf>");
   entities_ = entities_of(text);
 }
 
 std::string Document::where(pugi::xml_node node) const {
   const auto at = size_t(std::max<ptrdiff_t>(node.offset_debug(), 0));
   std::string name = fmt::format("<{}", node.name());
-  if (const auto a = node.attribute("Name")) name += fmt::format(" Name=\"{}\"", a.value());
+  if (const auto a = find_attribute(node, "Name")) name += fmt::format(" Name=\"{}\"", a.value());
   return fmt::format("{}: line {}, {}>", path_, line_number(file_.text(), std::min(at, file_.size())), name);
 }
 
@@ -60,8 +77,12 @@ void Document::fail(std::string problem, pugi::xml_node node, std::string hint) 
 }
 
 std::string Document::with_entities(std::string text) const {
-  for (const auto& [name, value] : entities_)
-    if (const size_t at = text.find("&" + name + ";"); at != text.npos) text.replace(at, name.size() + 2, value);
+  if (text.find('&') == text.npos) return text;
+  for (const auto& [name, value] : entities_) {
+    const std::string reference = "&" + name + ";";
+    for (size_t at = text.find(reference); at != text.npos && text.size() < 1 << 20; at = text.find(reference, at + value.size()))
+      text.replace(at, reference.size(), value);
+  }
   return text;
 }
 
@@ -82,9 +103,9 @@ std::vector<pugi::xml_node> Document::select(const std::string& xpath, pugi::xml
 
 pugi::xml_node Document::resolve(pugi::xml_node node) const {
   for (int depth = 0; depth < deepest; ++depth) {
-    const std::string_view reference = node.attribute("Reference").value();
+    const std::string_view reference = attribute(node, "Reference");
     if (reference.empty()) return node;
-    const std::string path(trim(reference == "XML" ? std::string_view(node.child_value()) : reference));
+    const std::string path(trim(equal_ignoring_case(reference, "XML") ? std::string_view(node.child_value()) : reference));
     const auto found = select(path, node);
     if (found.empty()) fail(fmt::format("refers to '{}', which is not there", path), node);
     node = found[0];
@@ -118,13 +139,15 @@ bool Document::is_borrowed(pugi::xml_node grid) const { return std::find(lenders
 
 void Document::note_references() {
   auto visit = [&](auto&& self, pugi::xml_node parent, int depth) -> void {
-    for (const pugi::xml_node& grid : parent.children("Grid")) {
+    for (const pugi::xml_node& grid : parent.children()) {
+      if (!is_named(grid, "Grid")) continue;
       for (const char* part : {"Topology", "Geometry"})
         if (const pugi::xml_node p = child(grid, part); p && p.parent() != grid && !is_borrowed(p.parent())) lenders_.push_back(p.parent());
       if (depth < deepest) self(self, grid, depth + 1);
     }
   };
-  for (const pugi::xml_node& domain : root().children("Domain")) visit(visit, domain, 0);
+  for (const pugi::xml_node& domain : root().children())
+    if (is_named(domain, "Domain")) visit(visit, domain, 0);
 }
 
 }  // namespace sg::xdmf

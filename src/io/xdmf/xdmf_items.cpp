@@ -20,22 +20,30 @@ size_t product(const std::vector<size_t>& dims, const std::string& where) {
 
 std::vector<size_t> dimensions(const Document& doc, pugi::xml_node node, const char* name) {
   std::vector<size_t> r;
-  for (const std::string_view w : words(node.attribute(name).value())) {
+  const std::string text = doc.with_entities(std::string(attribute(node, name)));
+  for (const std::string_view w : words(text)) {
     const auto v = parse_int(w);
-    if (!v || *v < 0 || r.size() >= 32) doc.fail(fmt::format("has {}=\"{}\"", name, node.attribute(name).value()), node, "whole numbers");
+    if (!v || *v < 0 || r.size() >= 32) doc.fail(fmt::format("has {}=\"{}\"", name, text), node, "whole numbers");
     r.push_back(size_t(*v));
   }
   return r;
 }
 
-std::string_view attribute(pugi::xml_node node, const char* name, const char* older) {
-  const pugi::xml_attribute a = node.attribute(name);
-  return trim((a ? a : node.attribute(older)).value());
+namespace {
+
+// Version 1 names the type of the numbers and the kind of the item by the same attribute.
+bool is_kind_of_item(std::string_view word) {
+  for (const char* kind : {"uniform", "collection", "tree", "hyperslab", "coordinates", "function"})
+    if (equal_ignoring_case(word, kind)) return true;
+  return false;
 }
 
+}  // namespace
+
 ElementType number_type(const Document& doc, pugi::xml_node node) {
-  const std::string type = to_lower(attribute(node, "NumberType", "DataType"));
-  const std::string_view precision_text = node.attribute("Precision").value();
+  std::string type = to_lower(attribute(node, "NumberType", "DataType"));
+  if (const std::string_view oldest = attribute(node, "Type"); type.empty() && !is_kind_of_item(oldest)) type = to_lower(oldest);
+  const std::string_view precision_text = attribute(node, "Precision");
   int64_t size = type == "char" || type == "uchar" ? 1 : type == "short" || type == "ushort" ? 2 : 4;
   if (!precision_text.empty()) size = parse_int(precision_text).value_or(0);
   const bool is_unsigned = type.starts_with('u');
@@ -52,7 +60,7 @@ ElementType number_type(const Document& doc, pugi::xml_node node) {
            "use Float, Int, UInt, Char or UChar of 1, 2, 4 or 8 bytes");
 }
 
-Item Document::inline_item(pugi::xml_node n, const std::vector<size_t>& dims) const {
+Item Document::inline_item(pugi::xml_node n, const std::vector<size_t>& dims, std::optional<ElementType> type) const {
   std::string joined;
   std::string_view text;
   for (const pugi::xml_node& part : n.children()) {
@@ -68,17 +76,17 @@ Item Document::inline_item(pugi::xml_node n, const std::vector<size_t>& dims) co
   if (count > text.size() / 2 + 1) fail(fmt::format("has {} characters for {} numbers", text.size(), count), n, "the file is truncated");
   const auto at = size_t(std::max<ptrdiff_t>(n.offset_debug(), 0));
   const size_t line = line_number(file_.text(), std::min(at, file_.size()));
-  return {parse_numbers(text, number_type(*this, n), count, 1, path_, line - 1), dims};
+  return {parse_numbers(text, type ? *type : number_type(*this, n), count, 1, path_, line - 1), dims};
 }
 
 Item Document::binary_item(pugi::xml_node n, const std::vector<size_t>& dims) const {
-  const std::string_view packing = n.attribute("Compression").value();
+  const std::string_view packing = attribute(n, "Compression");
   if (!packing.empty() && !equal_ignoring_case(packing, "Raw"))
     fail(fmt::format("is packed with '{}', which is not supported", packing), n, "Raw");
   const std::string name = with_entities(std::string(trim(n.child_value())));
   const ElementType type = number_type(*this, n);
   uint64_t bytes = 0, end = 0;
-  const std::string_view seek_text = n.attribute("Seek").value();
+  const std::string_view seek_text = attribute(n, "Seek");
   const auto seek = seek_text.empty() ? std::optional<int64_t>(0) : parse_int(seek_text);
   if (!seek || *seek < 0) fail(fmt::format("has Seek=\"{}\"", seek_text), n, "it must be the byte at which the numbers begin");
   const MappedFile file(named_file(path_, name));
@@ -86,7 +94,7 @@ Item Document::binary_item(pugi::xml_node n, const std::vector<size_t>& dims) co
     fail(fmt::format("needs {} bytes from byte {} on, but '{}' has {}", bytes, *seek, name, file.size()), n, "the file is truncated");
   const std::byte* from = file.data() + *seek;
   const size_t count = bytes / element_size(type);
-  if (equal_ignoring_case(n.attribute("Endian").value(), "Big")) {
+  if (equal_ignoring_case(attribute(n, "Endian"), "Big")) {
     std::byte* out = nullptr;
     Item item{Array::make_raw(type, count, 1, &out), dims};
     if (bytes > 0) swap_bytes_copy(out, from, count, element_size(type));
@@ -162,16 +170,28 @@ Item slice(const Document& doc, pugi::xml_node n, const Item& from, const Item& 
 
 }  // namespace
 
-Item Document::hyperslab(pugi::xml_node n, int depth) const {
-  const auto parts = children(n, "DataItem");
-  if (parts.size() != 2) fail(fmt::format("is a HyperSlab of {} items", parts.size()), n, "expected the selection and the array");
-  Item slab = item(parts[0], depth + 1);
+std::vector<pugi::xml_node> Document::parts_of(pugi::xml_node n, size_t count) const {
+  auto parts = children(n, "DataItem");
+  if (parts.size() != count) fail(fmt::format("has {} items", parts.size()), n, "expected the selection and the array");
+  return parts;
+}
+
+// The numbers that select, as i64. They stand for places also where no type is given, which else means floats.
+Item Document::selection(pugi::xml_node n, int depth) const {
+  Item slab;
+  const std::string_view format = attribute(n, "Format");
+  const bool typed = !attribute(n, "NumberType", "DataType").empty() || !attribute(n, "Type", "ItemType").empty();
+  if (!typed && (format.empty() || equal_ignoring_case(format, "XML")))
+    slab = inline_item(n, dimensions(*this, n, "Dimensions"), ElementType::f64);
+  else slab = item(n, depth);
   slab.values = slab.values.converted(ElementType::i64);
   for (size_t i = 0; i < slab.count(); ++i)
-    if (slab.values.view<int64_t>()(i) < 0) fail("selects negative indices", parts[0]);
-  const bool hdf = equal_ignoring_case(parts[1].attribute("Format").value(), "HDF") && !parts[1].attribute("ItemType");
-  Item r = hdf ? hdf_item(parts[1], {}, &slab) : slice(*this, n, item(parts[1], depth + 1), slab);
-  // The item's own dimensions leave out those of which one index is taken.
+    if (slab.values.view<int64_t>()(i) < 0) fail("selects negative indices", n);
+  return slab;
+}
+
+// An item's own dimensions leave out those of which one index is taken.
+Item Document::with_dimensions(Item r, pugi::xml_node n) const {
   if (std::vector<size_t> dims = dimensions(*this, n, "Dimensions"); !dims.empty()) {
     if (product(dims, where(n)) != r.count())
       fail(fmt::format("announces {} numbers but selects {}", product(dims, where(n)), r.count()), n);
@@ -180,10 +200,40 @@ Item Document::hyperslab(pugi::xml_node n, int depth) const {
   return r;
 }
 
+Item Document::hyperslab(pugi::xml_node n, int depth) const {
+  const auto parts = parts_of(n, 2);
+  const Item slab = selection(parts[0], depth + 1);
+  const bool hdf = equal_ignoring_case(attribute(parts[1], "Format"), "HDF") && !is_kind_of_item(attribute(parts[1], "ItemType", "Type"));
+  return with_dimensions(hdf ? hdf_item(parts[1], {}, &slab) : slice(*this, n, item(parts[1], depth + 1), slab), n);
+}
+
+// Single numbers of an array, by their indices along its dimensions.
+Item Document::coordinates(pugi::xml_node n, int depth) const {
+  const auto parts = parts_of(n, 2);
+  const Item places = selection(parts[0], depth + 1), from = item(parts[1], depth + 1);
+  const size_t rank = from.dims.size(), size = element_size(from.values.type());
+  if (rank == 0 || places.count() % rank != 0) fail(fmt::format("has {} numbers to select from {} dimensions", places.count(), rank), n);
+  const size_t count = places.count() / rank;
+  const Array packed = from.values.made_packed();
+  const auto at = places.values.view<int64_t>();
+  std::byte* out = nullptr;
+  Item r{Array::make_raw(packed.type(), count, 1, &out), {count}};
+  for (size_t i = 0; i < count; ++i) {
+    size_t place = 0;
+    for (size_t a = 0; a < rank; ++a) {
+      const auto k = size_t(at(i * rank + a));
+      if (k >= from.dims[a]) fail(fmt::format("selects index {} of {}", k, from.dims[a]), n);
+      place = place * from.dims[a] + k;
+    }
+    std::memcpy(out + i * size, packed.raw() + place * size, size);
+  }
+  return with_dimensions(std::move(r), n);
+}
+
 Item Document::function(pugi::xml_node n, int depth) const {
   std::vector<Item> arguments;
   for (const pugi::xml_node& part : children(n, "DataItem")) arguments.push_back(item(part, depth + 1));
-  Item r = evaluate_function(n.attribute("Function").value(), arguments, where(n));
+  Item r = evaluate_function(attribute(n, "Function"), arguments, where(n));
   if (std::vector<size_t> dims = dimensions(*this, n, "Dimensions"); !dims.empty()) {
     if (product(dims, where(n)) != r.count()) fail(fmt::format("announces {} numbers but gives {}", product(dims, where(n)), r.count()), n);
     r.dims = std::move(dims);
@@ -194,14 +244,17 @@ Item Document::function(pugi::xml_node n, int depth) const {
 Item Document::item(pugi::xml_node n, int depth) const {
   context_.check();
   if (depth > 8) fail("nests items too deeply", n);
-  const std::string kind = to_lower(attribute(n, "ItemType", "Type"));
+  std::string kind = to_lower(attribute(n, "ItemType", "Type"));
+  if (!is_kind_of_item(kind) && !find_attribute(n, "ItemType")) kind.clear();
+  if (kind.empty() && (is_named(n, "DataTransform") || (is_named(n, "DataItem") && find_attribute(n, "Function")))) kind = "function";
+  if (kind == "coordinates") return coordinates(n, depth);
   if (kind == "hyperslab") return hyperslab(n, depth);
   if (kind == "function") return function(n, depth);
   if (!kind.empty() && kind != "uniform")
-    fail(fmt::format("is an item of type '{}', which is not supported", kind), n, "use Uniform, HyperSlab or Function");
+    fail(fmt::format("is an item of type '{}', which is not supported", kind), n, "use Uniform, HyperSlab, Coordinates or Function");
   const std::vector<size_t> dims = dimensions(*this, n, "Dimensions");
-  const std::string format = to_lower(n.attribute("Format").value());
-  if (format == "hdf" || format == "hdf5") return hdf_item(n, dims, nullptr);
+  const std::string format = to_lower(attribute(n, "Format"));
+  if (format == "hdf" || format == "hdf5" || format == "h5") return hdf_item(n, dims, nullptr);
   if (dims.empty()) fail("has no Dimensions", n);
   if (format.empty() || format == "xml") return inline_item(n, dims);
   if (format == "binary") return binary_item(n, dims);

@@ -50,8 +50,8 @@ std::string topology_name(pugi::xml_node topology) { return to_lower(attribute(t
 // Cell by cell: the number of the kind, for free kinds the number of points, the points; for polyhedra the faces.
 class MixedReader {
  public:
-  MixedReader(const Document& doc, pugi::xml_node topology, IndexView stream, size_t size)
-      : doc_(doc), topology_(topology), stream_(stream), size_(size) {}
+  MixedReader(const Document& doc, pugi::xml_node topology, IndexView stream, size_t size, int64_t base)
+      : doc_(doc), topology_(topology), stream_(stream), size_(size), base_(base) {}
 
   void read(std::optional<size_t> cells, UnstructuredMesh& mesh) {
     while (at_ < size_ && (!cells || types_.size() < *cells)) cell();
@@ -72,6 +72,10 @@ class MixedReader {
     if (at_ >= size_) doc_.fail(fmt::format("ends within cell {}", types_.size()), topology_, "the list of points is too short");
     return stream_[at_++];
   }
+  int64_t take_point() {
+    const int64_t id = take();
+    return id < base_ ? -1 : id - base_;
+  }
   size_t take_count() {
     const int64_t n = take();
     if (n < 0 || size_t(n) > size_ - at_) doc_.fail(fmt::format("gives cell {} a count of {}", types_.size(), n), topology_);
@@ -91,7 +95,7 @@ class MixedReader {
       const size_t n = fixed < 0 ? take_count() : size_t(fixed);
       if (type == CellType::poly_vertex && n == 1) type = CellType::vertex;
       if (type == CellType::poly_line && n == 2) type = CellType::line;
-      for (size_t i = 0; i < n; ++i) ids_.push_back(take());
+      for (size_t i = 0; i < n; ++i) ids_.push_back(take_point());
     }
     types_.push_back(uint8_t(type));
     offsets_.push_back(int64_t(ids_.size()));
@@ -100,7 +104,7 @@ class MixedReader {
   void polyhedron() {
     const auto first = ptrdiff_t(ids_.size());
     for (size_t faces = take_count(); faces > 0; --faces) {
-      for (size_t n = take_count(); n > 0; --n) face_ids_.push_back(take()), ids_.push_back(face_ids_.back());
+      for (size_t n = take_count(); n > 0; --n) face_ids_.push_back(take_point()), ids_.push_back(face_ids_.back());
       face_offsets_.push_back(int64_t(face_ids_.size()));
     }
     std::sort(ids_.begin() + first, ids_.end());  // the distinct points
@@ -111,13 +115,14 @@ class MixedReader {
   pugi::xml_node topology_;
   IndexView stream_;
   size_t size_, at_ = 0;
+  int64_t base_;  // number of the first point; kinds and counts are not shifted
   std::vector<int64_t> ids_, offsets_{0}, face_ids_, face_offsets_{0}, cell_faces_{0};
   std::vector<uint8_t> types_;
 };
 
 std::optional<size_t> element_count(const Document& doc, pugi::xml_node topology) {
   for (const char* name : {"NumberOfElements", "Dimensions"})
-    if (topology.attribute(name)) return product(dimensions(doc, topology, name), doc.where(topology));
+    if (find_attribute(topology, name)) return product(dimensions(doc, topology, name), doc.where(topology));
   return {};
 }
 
@@ -130,15 +135,32 @@ Array shifted(const Array& ids, int64_t base) {
   return a;
 }
 
+// The points of each cell in the order that the attribute Order gives: its k-th number is the place of point k in the list.
+Array in_order(const Document& doc, pugi::xml_node topology, const Array& ids, size_t n) {
+  const std::vector<size_t> order = dimensions(doc, topology, "Order");
+  if (order.empty() || std::is_sorted(order.begin(), order.end())) return ids;
+  std::vector<size_t> sorted = order;
+  std::sort(sorted.begin(), sorted.end());
+  for (size_t k = 0; k < sorted.size(); ++k)
+    if (sorted.size() != n || sorted[k] != k)
+      doc.fail(fmt::format("has Order=\"{}\"", attribute(topology, "Order")), topology, fmt::format("each of 0 to {} once", n - 1));
+  int64_t* out = nullptr;
+  const Array a = Array::make<int64_t>(ids.count(), 1, &out);
+  const IndexView v = index_view(ids);
+  for (size_t cell = 0; cell + n <= a.count(); cell += n)
+    for (size_t k = 0; k < n; ++k) out[cell + k] = v[cell + order[k]];
+  return a;
+}
+
 // Cells of one kind; `width` is the last dimension of the list of points.
 void read_uniform(const Document& doc, pugi::xml_node topology, const Kind& kind, const Array& ids, size_t width,
                   std::optional<size_t> cells, UnstructuredMesh& mesh) {
   const int fixed = cell_type_info(kind.type).points;
   size_t n = size_t(std::max(fixed, 0));
   if (fixed < 0) {
-    const auto said = parse_int(topology.attribute("NodesPerElement").value());
-    if (topology.attribute("NodesPerElement") && (!said || *said < 1 || *said > 1 << 20))
-      doc.fail(fmt::format("has NodesPerElement=\"{}\"", topology.attribute("NodesPerElement").value()), topology);
+    const std::string_view nodes = attribute(topology, "NodesPerElement");
+    const auto said = parse_int(nodes);
+    if (!nodes.empty() && (!said || *said < 1 || *said > 1 << 20)) doc.fail(fmt::format("has NodesPerElement=\"{}\"", nodes), topology);
     n = said ? size_t(*said) : width > 0 ? width : kind.type == CellType::poly_vertex ? 1 : kind.type == CellType::poly_line ? 2 : 0;
     if (n == 0 || n > 1 << 20) doc.fail("does not say how many points a cell has", topology, "NodesPerElement");
   }
@@ -146,7 +168,7 @@ void read_uniform(const Document& doc, pugi::xml_node topology, const Kind& kind
   uint64_t want = 0;
   if (!multiply(count, n, want) || want > ids.count())
     doc.fail(fmt::format("has {} point ids for {} cells of {}", ids.count(), count, n), topology, "the list of points is too short");
-  mesh.cells.connectivity = ids.slice(0, want);
+  mesh.cells.connectivity = in_order(doc, topology, ids.slice(0, want), n);
   mesh.cells.fixed = int(n);
   mesh.single_type = kind.type == CellType::poly_vertex && n == 1 ? CellType::vertex
                      : kind.type == CellType::poly_line && n == 2 ? CellType::line
@@ -162,7 +184,7 @@ bool is_topology(pugi::xml_node topology, std::string_view suffix) {
 
 std::optional<std::array<size_t, 3>> lattice_of(const Document& doc, pugi::xml_node topology) {
   if (!is_topology(topology, "smesh") && !is_topology(topology, "rectmesh") && !is_topology(topology, "corectmesh")) return {};
-  const std::vector<size_t> d = dimensions(doc, topology, topology.attribute("Dimensions") ? "Dimensions" : "NumberOfElements");
+  const std::vector<size_t> d = dimensions(doc, topology, find_attribute(topology, "Dimensions") ? "Dimensions" : "NumberOfElements");
   const size_t rank = topology_name(topology)[0] == '2' ? 2 : 3;
   if (d.size() != rank && !(rank == 2 && d.size() == 3 && d[0] == 1))
     doc.fail(fmt::format("has {} dimensions", d.size()), topology, fmt::format("give {}, slowest first", rank));
@@ -186,6 +208,12 @@ UnstructuredMesh read_topology(const Document& doc, pugi::xml_node topology, Poi
   if (!kind && !mixed) doc.fail(fmt::format("has the type '{}', which is not supported", name), topology);
   const std::optional<size_t> cells = element_count(doc, topology);
   const pugi::xml_node data = doc.child(topology, "DataItem");
+  if (!data && kind && kind->type != CellType::poly_vertex && cell_type_info(kind->type).points > 0) {  // one cell after the other
+    std::vector<int64_t> ids(mesh.points.count());
+    std::iota(ids.begin(), ids.end(), int64_t(0));
+    read_uniform(doc, topology, *kind, Array::from_vector(std::move(ids)), 0, cells, mesh);
+    return mesh;
+  }
   if (!data) {  // vertices without a list are all points
     if (!kind || kind->type != CellType::poly_vertex) doc.fail("has no DataItem", topology, "the point ids of its cells");
     const size_t n = std::min(cells.value_or(mesh.points.count()), mesh.points.count());
@@ -197,12 +225,11 @@ UnstructuredMesh read_topology(const Document& doc, pugi::xml_node topology, Poi
   }
   const Item item = doc.item(data);
   if (is_float(item.values.type())) doc.fail("has point ids that are not whole numbers", data, "NumberType=\"Int\"");
-  const auto base = parse_int(topology.attribute("BaseOffset").value()).value_or(0);
+  const auto base = parse_int(attribute(topology, "BaseOffset")).value_or(0);
   const Array ids = vtk::as_indices(item.values);
   if (mixed || kind->type == CellType::polyhedron) {
-    if (base != 0) doc.fail("has a BaseOffset, which Mixed topologies cannot have", topology);
     if (!mixed) doc.fail("consists of polyhedra only", topology, "TopologyType=\"Mixed\"");
-    MixedReader(doc, topology, index_view(ids), ids.count()).read(cells, mesh);
+    MixedReader(doc, topology, index_view(ids), ids.count(), base).read(cells, mesh);
     const Array types = mesh.types;
     mesh.types = {};
     vtk::set_types(mesh, types);

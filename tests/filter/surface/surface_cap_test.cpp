@@ -3,12 +3,12 @@
 
 #include <random>
 
+#include "data/cells/triangulate_loops.h"
 #include "filter/mesh/append.h"
 #include "filter/mesh/mesh_meshes.h"
 #include "filter/surface/cap.h"
 #include "filter/surface/mass_properties.h"
 #include "filter/surface/normals.h"
-#include "filter/surface/triangulate_loops.h"
 #include "support/test.h"
 #include "surface_shapes.h"
 
@@ -65,7 +65,7 @@ struct Flat {
   // Triangles, their area, and the area of those that run the wrong way.
   std::array<double, 3> run() const {
     std::vector<uint32_t> t;
-    surface::triangulate_loops(at, loops, t);
+    triangulate_loops(at, loops, t);
     double sum = 0, wrong = 0;
     for (size_t i = 0; i < t.size(); i += 3) {
       const double a = area({t[i], t[i + 1], t[i + 2]});

@@ -2,19 +2,14 @@
 // String arrays of VTK XML files: codes of characters, each string ended by 0. Words of points and cells become categories.
 #include <fmt/core.h>
 
-#include <algorithm>
-
 #include "base/text/text.h"
-#include "data/fields/label_names.h"
+#include "io/text/word_categories.h"
 #include "io/vtk/vtk_cells.h"
 #include "io/vtk/xml/vtk_xml_pieces.h"
 
 namespace sg::vtk {
 
 namespace {
-
-/// More different words are no categories.
-constexpr size_t most_words = 4096;
 
 bool is_string(pugi::xml_node n) { return std::string_view(n.attribute("type").value()) == "String"; }
 
@@ -64,23 +59,18 @@ void add_categories(const XmlRead& read, const std::vector<XmlPiece>& pieces, co
                                n);
         all.insert(all.end(), std::make_move_iterator(some.begin()), std::make_move_iterator(some.end()));
       }
-      std::vector<std::string> words = all;
-      std::sort(words.begin(), words.end());
-      words.erase(std::unique(words.begin(), words.end()), words.end());
-      if (words.size() > most_words) {
-        read.context.info(fmt::format("the strings '{}' are left out: {} different ones are no categories", name, words.size()));
-        continue;
-      }
       if (read.options.header_only) {
         parts.fields.add({name, association, hollow(ElementType::i32, total, 1), "", Role::labels});
         continue;
       }
-      std::vector<int32_t> numbers;
-      for (const std::string& s : all) numbers.push_back(int32_t(std::lower_bound(words.begin(), words.end(), s) - words.begin()));
-      parts.fields.add({name, association, Array::from_vector(std::move(numbers)), "", Role::labels});
-      LabelNames names(name);
-      for (size_t k = 0; k < words.size(); ++k) names.add(int64_t(k), words[k]);
-      parts.notes.push_back(names.note());
+      auto categories = word_categories(name, all);
+      if (!categories) {
+        read.context.info(
+            fmt::format("the strings '{}' are left out: more than {} different ones are no categories", name, most_categories));
+        continue;
+      }
+      parts.fields.add({name, association, Array::from_vector(std::move(categories->numbers)), "", Role::labels});
+      parts.notes.push_back(std::move(categories->note));
     }
 }
 

@@ -6,7 +6,7 @@
 
 #include "base/vec.h"
 
-namespace sg::surface {
+namespace sg {
 
 /// Triangulates the area between loops by ear clipping: a loop inside an odd number of others is a hole (even-odd), whatever its
 /// direction. `loops` list places in `at`; loops must not cross, but may touch. Triangles are oriented like the outermost loop around them
@@ -14,4 +14,4 @@ namespace sg::surface {
 /// on a grid of 2^30 steps across the box; loops that cross still end, with triangles that overlap. Near O(n).
 void triangulate_loops(const std::vector<Vec2>& at, const std::vector<std::vector<uint32_t>>& loops, std::vector<uint32_t>& triangles);
 
-}  // namespace sg::surface
+}  // namespace sg

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filter/surface/triangulate_loops.h"
+#include "data/cells/triangulate_loops.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace sg::surface {
+namespace sg {
 
 namespace {
 
@@ -244,4 +244,4 @@ void triangulate_loops(const std::vector<Vec2>& points, const std::vector<std::v
   }
 }
 
-}  // namespace sg::surface
+}  // namespace sg
