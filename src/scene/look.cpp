@@ -93,7 +93,8 @@ bool is_turned(const Dataset& d) {
 
 // A 3D scalar image or box grid: seen through, or for labels its voxel faces.
 void look_at_grid(const Dataset& d, const Field& f, Look& look) {
-  if (d.as<UniformGrid>() && f.association == Association::point && looks_like_labels(d, f)) {
+  const bool image = d.as<UniformGrid>() || (d.as<RectilinearGrid>() && f.role == Role::labels);
+  if (image && f.association == Association::point && looks_like_labels(d, f)) {
     look.filter = {"label_surface", "field=" + f.name};
     SurfaceShow surface;
     surface.coloring.field.name = f.name, surface.coloring.map = "labels";

@@ -94,6 +94,7 @@ DatasetPtr label_surface(const DatasetPtr& input, const LabelSurfaceParams& para
   DatasetParts out;
   out.mesh = std::move(mesh);
   out.time = input->time();
+  out.notes = input->notes();  // names of labels, what the axes measure
   std::vector<int64_t> first(net.faces());
   for (size_t q = 0; q < net.faces(); ++q) first[q] = samples[q * 2];
   // The labels come first, so that they are what is coloured.

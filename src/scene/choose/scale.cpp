@@ -31,7 +31,7 @@ std::vector<double> distinct_values(const Field& field, size_t limit, const Cont
     double last = NAN;
     for (size_t i = 0; i < n && found.size() <= limit; i += step) {
       const double x = double(v[i]);
-      if (x == last) continue;
+      if (x == last || std::isnan(x)) continue;
       last = x;
       const auto at = std::lower_bound(found.begin(), found.end(), x);
       if (at == found.end() || *at != x) found.insert(at, x);
@@ -92,9 +92,17 @@ void show_what_lies_beyond(const Range& values, ColorScale& s) {
   if (!s.above && (s.lo <= s.hi ? over : under)) s.above = s.map.at(1);
 }
 
+// Numbers of a file that says what they stand for are labels also where they are stored as floats, with NaN for none.
+bool holds_whole_numbers(const Field& field) { return !is_float(field.array.type()) || field.role == Role::labels; }
+
+bool names_its_labels(const Dataset& d, const Field& field) {
+  return field.role == Role::labels &&
+         std::any_of(d.notes().begin(), d.notes().end(), [&](const auto& note) { return note.first == "labels of " + field.name; });
+}
+
 // What may name things: small integers of one component.
 bool may_be_labels(const Field& field, const Range& r) {
-  return !is_float(field.array.type()) && field.components() == 1 && field.role != Role::global_ids && field.role != Role::colors &&
+  return holds_whole_numbers(field) && field.components() == 1 && field.role != Role::global_ids && field.role != Role::colors &&
          !r.empty() && r.lo >= 0 && r.hi - r.lo <= 10000;
 }
 
@@ -179,11 +187,13 @@ ColorScale band_scale(const Dataset& d, const Field& band, const ColoringParams&
 }  // namespace
 
 bool looks_like_labels(const Dataset& data, const Field& field, const Context& context) {
-  if (is_float(field.array.type()) || field.components() != 1) return false;  // before anything is read
+  if (!holds_whole_numbers(field) || field.components() != 1) return false;  // before anything is read
   const uint64_t count = all_sum(uint64_t(field.array.count()), context.communicator);
   if (!may_be_labels(field, range_over_all(data, field, -1, context)) || count < 2) return false;
   const auto values = distinct_values(field, most_labels, context);
   if (values.size() > most_labels || values.size() < 2) return false;
+  if (std::any_of(values.begin(), values.end(), [](double v) { return v != std::round(v); })) return false;
+  if (names_its_labels(data, field)) return true;
   // A piece without cells is no grid, whatever the others are.
   const bool grid = is_lattice(data.mesh());
   if (!all_most(int(grid), context.communicator)) return values.size() * 2 <= count + 2;

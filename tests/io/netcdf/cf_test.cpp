@@ -52,6 +52,29 @@ TEST_CASE("netcdf: flags are labels with their meanings as names") {
   CHECK(read_text("masks.nc", file(true))->fields().require("surface").role != Role::labels);
 }
 
+TEST_CASE("netcdf: classes are named line by line from valid_min on, and floats stay floats") {
+  const auto file = [](double last) {
+    NcBytes f(1);
+    const int lat = f.dim("lat", 2), lon = f.dim("lon", 3);
+    f.var<double>("lon", {lon}, {10, 20, 30}).att("units", "degrees_east");
+    f.var<double>("lat", {lat}, {0, 10}).att("units", "degrees_north");
+    f.var<float>("basin", {lat, lon}, {1, 2, 2, 3, -99, 3})
+        .num("missing_value", {-99.})
+        .num("valid_min", {1.})
+        .num("valid_max", {last})
+        .att("CLIST", "Atlantic Ocean\nPacific Ocean \nIndian Ocean");
+    return f.bytes();
+  };
+  const DatasetPtr d = read_text("classes.nc", file(3));
+  const Field& basin = d->fields().require("basin");
+  CHECK(basin.role == Role::labels);
+  CHECK(basin.array.type() == ElementType::f32);
+  CHECK(std::isnan(basin.array.get(4)));
+  const std::pair<std::string, std::string> names("labels of basin", "1=Atlantic Ocean\n2=Pacific Ocean\n3=Indian Ocean");
+  CHECK(std::find(d->notes().begin(), d->notes().end(), names) != d->notes().end());
+  CHECK(read_text("classes.nc", file(4))->fields().require("basin").role != Role::labels);
+}
+
 TEST_CASE("netcdf: a packed variable on a longitude-latitude grid is unpacked, with NaN for the missing value") {
   for (const int version : {1, 2, 5}) {
     CAPTURE(version);

@@ -59,6 +59,44 @@ TEST_CASE("choose_scale: labels in pieces get one colour each, noisy integers do
   CHECK_FALSE(looks_like_labels(*real, real->fields()[0]));
 }
 
+TEST_CASE("choose_scale: floats are labels where the file says so and all are whole, and no value is none") {
+  DatasetParts parts = image<float>(8, [](size_t i, size_t, size_t) { return i < 2 ? NAN : i < 5 ? 1.f : 6.f; })->parts();
+  const auto with_role = [&](Role role) {
+    Field f = parts.fields[0];
+    f.role = role;
+    parts.fields.add(f);
+    return make_dataset(parts);
+  };
+  const DatasetPtr said = with_role(Role::labels);
+  CHECK(looks_like_labels(*said, said->fields()[0]));
+  const ColorScale s = test::chosen_scale(said);
+  CHECK(s.map.categorical());
+  CHECK(s.labels == std::vector<double>{1, 6});
+  const DatasetPtr silent = with_role(Role::scalars);
+  CHECK_FALSE(looks_like_labels(*silent, silent->fields()[0]));
+  DatasetParts halves = image<float>(8, [](size_t i, size_t, size_t) { return i < 4 ? 1.5f : 2.f; })->parts();
+  Field f = halves.fields[0];
+  f.role = Role::labels;
+  halves.fields.add(f);
+  const DatasetPtr half = make_dataset(halves);
+  CHECK_FALSE(looks_like_labels(*half, half->fields()[0]));
+}
+
+TEST_CASE("choose_scale: few cells with named numbers are labels, unnamed ones are not") {
+  SurfaceMesh mesh;
+  mesh.points.xyz = Array::from_vector(std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, 3);
+  mesh.polygons = {Array::from_vector(std::vector<int32_t>{0, 1, 2, 0, 2, 3, 0, 1, 3}), {}, 3};
+  DatasetParts parts;
+  parts.mesh = mesh;
+  parts.fields.add({"kind", Association::cell, Array::from_vector(std::vector<int32_t>{0, 1, 2}), "", Role::labels});
+  const DatasetPtr unnamed = make_dataset(parts);
+  CHECK_FALSE(looks_like_labels(*unnamed, unnamed->fields()[0]));
+  parts.notes.emplace_back("labels of kind", "0=field\n1=lake\n2=wood");
+  const DatasetPtr named = make_dataset(parts);
+  CHECK(looks_like_labels(*named, named->fields()[0]));
+  CHECK(test::chosen_scale(named).label_names == std::vector<std::string>{"field", "lake", "wood"});
+}
+
 TEST_CASE("choose_scale: labels have the names that the dataset notes, when it names all of them") {
   DatasetParts parts = image<int32_t>(8, [](size_t i, size_t, size_t) { return i < 3 ? 1 : 4; })->parts();
   parts.notes.emplace_back("labels of v", "1=saddle\n3=node\n4=focus");

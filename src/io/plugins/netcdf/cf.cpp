@@ -109,8 +109,21 @@ std::vector<int> own_order(const CfGrid& grid, const CfVariable& c, const std::v
   return own;
 }
 
+// The IRI Data Library's CLIST: a line with the name of each whole number from valid_min to valid_max.
+std::optional<LabelNames> classes_of(const NcFile& file, const Variable& v) {
+  const std::string list = file.text(&v, "CLIST");
+  const auto lo = file.number(&v, "valid_min"), hi = file.number(&v, "valid_max");
+  if (list.empty() || !lo || !hi || *lo != std::round(*lo) || std::abs(*lo) > 1e15) return {};
+  const std::vector<std::string_view> lines = split(trim(list), '\n');
+  if (*hi - *lo + 1 != double(lines.size())) return {};
+  LabelNames names(v.name);
+  for (size_t i = 0; i < lines.size(); ++i) names.add(int64_t(*lo) + int64_t(i), std::string(lines[i]));
+  return names;
+}
+
 // CF section 3.5: each of flag_values has a word in flag_meanings. Masks, whose bits mean something one by one, have no names for values.
 std::optional<LabelNames> flags_of(const NcFile& file, const Variable& v) {
+  if (auto classes = classes_of(file, v)) return classes;
   const std::vector<double> values = file.numbers(&v, "flag_values");
   const std::vector<std::string> meanings = file.words(&v, "flag_meanings");
   if (values.empty() || values.size() != meanings.size() || !file.numbers(&v, "flag_masks").empty()) return {};
