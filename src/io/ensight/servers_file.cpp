@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <set>
 
 #include "base/error.h"
@@ -15,6 +16,8 @@ namespace sg::ensight {
 namespace {
 
 constexpr int64_t most_servers = 100'000;
+/// Characters of all names that a pattern stands for: a few bytes could mean gigabytes.
+constexpr uint64_t most_characters = 64 << 20;
 
 class ServersParser {
  public:
@@ -122,6 +125,9 @@ class ServersParser {
     begin();
     if (total_ > 0) {
       cases_.clear();
+      const size_t names = std::max(listed_.size(), pattern_.empty() ? size_t(0) : size_t(total_));
+      if (names * (pattern_.size() + global_.size()) > most_characters)
+        fail(fmt::format("names {} case files of {} characters", names, pattern_.size() + global_.size()));
       for (int64_t i = 0; !pattern_.empty() && i < total_; ++i) listed_.push_back(with_number(pattern_, start_ + i * step_));
       announced_ = total_;
       for (std::string& name : listed_) cases_.push_back({0, std::move(name), global_});

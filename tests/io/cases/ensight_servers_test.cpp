@@ -132,5 +132,8 @@ TEST_CASE("ensight servers: errors say what is wrong and where") {
   CHECK(contains(refused(sos("casefile: ../../a.case\n", 1)), "neither below its own folder"));
   CHECK(contains(refused(sos("data_path: /nowhere\ncasefile: a.case\n", 1)), "absolute path"));
   CHECK(contains(refused("FORMAT\ntype: master_server gold\nMULTIPLE_CASEFILES\ncfiles file: list.txt\n"), "'cfiles file'"));
+  CHECK(contains(refused("FORMAT\ntype: master_server gold\nMULTIPLE_CASEFILES\ntotal number of cfiles: 100000\ncfiles pattern: a*" +
+                         std::string(2000, 'x') + "\n"),
+                 "names 100000 case files of 2002 characters"));
   cut_and_damage_case("sos_damage", two_portions(sos(two)), "m.sos", "m.sos");
 }
