@@ -148,7 +148,7 @@ CameraDefaults choose_view(const Box3& b, const std::string& extension, bool pat
   return c;
 }
 
-Look choose_look(const Dataset& d, const std::string& field, const std::string& extension, bool hidden) {
+Look choose_look(const Dataset& d, const std::string& field, const std::string& extension) {
   Look look;
   const bool patient = in_patient_frame(d);
   look.camera = choose_view(d.bounds(), extension, patient);
@@ -210,13 +210,6 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
       look.reason = fmt::format("'{}' in a solid mesh: shown as a volume", scalar->name);
       return look;
     }
-  if (hidden) {
-    VolumeShow volume;
-    if (const Field* f = field.empty() ? automatic_field(d) : d.fields().find(field)) volume.coloring.field.name = f->name;
-    add_show(look, volume, true);
-    look.reason = fmt::format("'{}' is about the same all over the outer surface: shown as a volume", volume.coloring.field.name);
-    return look;
-  }
   SurfaceShow surface;
   const bool simulation = !d.as<SurfaceMesh>() && !is_lattice(d.mesh());
   const bool bare_map = look.camera.parallel && d.fields().empty() && d.as<SurfaceMesh>();  // only edges distinguish its parts

@@ -23,8 +23,8 @@ struct Look {
 };
 
 /// `field`: what the user wants to see; "" = the data decides. `extension`: of the file the data came from ("obj"); surfaces
-/// made for graphics have y up. `hidden`: is_hidden_inside(), for which a volume is shown.
-Look choose_look(const Dataset& data, const std::string& field, const std::string& extension, bool hidden = false);
+/// made for graphics have y up.
+Look choose_look(const Dataset& data, const std::string& field, const std::string& extension);
 
 /// The view of flat data along its thin axis, of other data the usual one. `patient`: the data is in the patient frame; then slices are
 /// seen as radiologists see them (axial from the feet, coronal from the front, sagittal from the left) and bodies from the front.

@@ -4,7 +4,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
+#include <set>
 
 #include "base/file/file.h"
 #include "base/file/file_fence.h"
@@ -45,8 +47,11 @@ std::string case_path(const std::string& path, const ServerCase& c) {
 std::vector<FoundCase> cases_of(const std::string& path, Context* warn) {
   vtk::MissingFiles missing;
   std::vector<FoundCase> found;
+  std::set<std::filesystem::path> known;  // servers that divide one case among them name it repeatedly, in whatever spelling
   for (const ServerCase& c : parse_servers(path)) {
     std::string file = case_path(path, c);
+    std::error_code error;
+    if (const auto place = std::filesystem::weakly_canonical(file, error); !error && !known.insert(place).second) continue;
     if (missing.lacks(file)) continue;
     missing.found();
     found.push_back({c.number, std::move(file)});

@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <set>
 
 #include "base/error.h"
 #include "base/file/file.h"
@@ -138,11 +137,7 @@ class ServersParser {
     if (cases_.empty() || (int64_t(cases_.size()) < announced_ && !repeats_))
       fail(fmt::format("announces {} case files but names {}", announced_, cases_.size()), "the file is truncated");
     cases_.resize(std::min(cases_.size(), size_t(announced_)));
-    std::set<std::pair<std::string, std::string>> known;
-    std::vector<ServerCase> distinct;
-    for (ServerCase& c : cases_)
-      if (known.emplace(c.data_path, c.case_file).second) distinct.push_back(std::move(c));
-    return distinct;
+    return std::move(cases_);
   }
 
   std::string path_;

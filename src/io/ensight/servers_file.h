@@ -13,8 +13,8 @@ struct ServerCase {
   std::string case_file, data_path;
 };
 
-/// The case files in the order of the file, each once: servers that divide one case among them name it repeatedly. Throws Error(data) that
-/// names the line, for other formats of the servers than EnSight Gold and 6, and when fewer are described than announced.
+/// The case files in the order of the file, repeated ones too. Throws Error(data) that names the line, for other formats of the servers
+/// than EnSight Gold and 6, and when fewer are described than announced.
 std::vector<ServerCase> parse_servers(const std::string& path);
 
 }  // namespace sg::ensight

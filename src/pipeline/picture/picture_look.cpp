@@ -5,7 +5,6 @@
 #include "base/error.h"
 #include "base/file/file.h"
 #include "pipeline/picture/picture_parts.h"
-#include "scene/choose/hidden_inside.h"
 #include "scene/choose/scale.h"
 #include "scene/show/surface.h"
 
@@ -88,9 +87,7 @@ Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file,
   // The largest part speaks for all; one with values before one with a mask or a numbering alone.
   DatasetPtr largest;
   bool has_values = false;
-  size_t parts = 0;
   for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
-    ++parts;
     const Field* f = automatic_field(*d);
     const bool values = f && f->role != Role::labels;
     if (!largest || (values && !has_values) || (values == has_values && d->point_count() > largest->point_count()))
@@ -102,8 +99,7 @@ Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file,
   const std::string field = !stated.empty() ? stated : !made ? field_telling_parts(data, context) : made->look.result ? made->name : "";
   std::vector<std::string> coloring = wanted.words;
   if (field != stated) coloring.push_back("field=" + field);
-  const bool hidden = parts == 1 && is_hidden_inside(largest, field, context);
-  const Look look = choose_look(*largest, field, extension_of(origin), hidden);
+  const Look look = choose_look(*largest, field, extension_of(origin));
   const std::string result =
       look.filter.empty() ? end : added_step(file, look.filter[0], {look.filter.begin() + 1, look.filter.end()}, end);
   for (const Look::Show& s : look.shows) {

@@ -94,6 +94,8 @@ TEST_CASE("ensight servers: other ways to write the file, and case files that we
   // One case that all servers read.
   CHECK(parts(sos("machine id: a\ncasefile: left/a.case\nmachine id: b\ncasefile: left/a.case\n")) == 2);
   CHECK(parts("FORMAT\ntype: master_server gold\nSERVERS\nnumber of servers: 4 repeat\nmachine id: a\ncasefile: \"left/a.case\"\n") == 2);
+  CHECK(parts(sos("casefile: left/a.case\ncasefile: ./left/a.case\ncasefile: right/../left/a.case\n", 3)) ==
+        parts(sos("casefile: left/a.case\n", 1)));
   // More cases than servers.
   const std::string several =
       "FORMAT\ntype: master_server gold\nSERVERS\nnumber of servers: 1\nmachine id: a\nMULTIPLE_CASEFILES\n"

@@ -10,7 +10,6 @@
 #include "color/parse_color.h"
 #include "filter/scalar/bands.h"
 #include "scene/choose/chosen_scale.h"
-#include "scene/choose/hidden_inside.h"
 #include "scene/choose/volume_look.h"
 #include "support/test.h"
 
@@ -457,31 +456,6 @@ TEST_CASE("choose_look: distances to a surface are known by their slope") {
   CHECK(filter_of(1, [](Vec3 x) { return length(x) + 0.1; }).empty());  // no zero
   // A narrow band: held at three cells on both sides.
   CHECK(filter_of(1, [&](Vec3 x) { return std::clamp(ball(x), -3.0, 3.0); }) == zero);
-}
-
-TEST_CASE("is_hidden_inside: solids whose faces are all of one value, but not for a spike and not for surfaces") {
-  Context context;
-  const auto cells = [](const std::function<double(Vec3)>& f) {
-    CurvilinearGrid g;
-    g.dims = {17, 17, 17};
-    std::vector<double> xyz, v;
-    for (int k = 0; k < 17; ++k)
-      for (int j = 0; j < 17; ++j)
-        for (int i = 0; i < 17; ++i) {
-          const Vec3 x = Vec3(i - 8, j - 8, k - 8) / 8;
-          xyz.insert(xyz.end(), {x.x, x.y, x.z}), v.push_back(f(x));
-        }
-    g.points.xyz = Array::from_vector(std::move(xyz), 3);
-    FieldSet fields;
-    fields.add({"t", Association::point, Array::from_vector(std::move(v)), "K", Role::scalars});
-    return make_dataset(Mesh(std::move(g)), std::move(fields));
-  };
-  const auto hot = cells([](Vec3 x) { return std::max(0.0, 1 - 1.2 * length(x)); });
-  CHECK(is_hidden_inside(hot, "", context));
-  const Look look = choose_look(*hot, "", "", true);
-  CHECK(look.shows[0].kind->is<VolumeShow>());
-  CHECK_FALSE(is_hidden_inside(cells([](Vec3 x) { return x.x; }), "", context));
-  CHECK_FALSE(is_hidden_inside(cells([](Vec3 x) { return length(x) < 0.2 ? 1.0 : 0.0; }), "", context));
 }
 
 TEST_CASE("choose_scale: Hounsfield units of a scan are grey from air on, though they are of both signs") {

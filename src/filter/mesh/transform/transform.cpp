@@ -10,6 +10,7 @@
 #include "data/lattice.h"
 #include "filter/mesh/transform/mirror_cells.h"
 #include "filter/mesh/transform/mirror_lattice.h"
+#include "filter/mesh/transform/moved_lattice.h"
 
 namespace sg {
 
@@ -105,24 +106,6 @@ Points moved(const Points& in, const Affine& t) {
   return r;
 }
 
-CurvilinearGrid as_curvilinear(const Mesh& mesh, const Affine& t) {
-  const Lattice lattice(mesh);
-  const LatticeView& v = lattice.view();
-  CurvilinearGrid r;
-  r.dims = v.dims;
-  double* to = nullptr;
-  r.points.xyz = Array::make<double>(v.points(), 3, &to);
-  parallel_for(v.dims[1] * v.dims[2], std::max<size_t>(1, points_per_chunk / std::max<size_t>(v.dims[0], 1)),
-               [&](size_t begin, size_t end) {
-                 for (size_t row = begin; row < end; ++row)
-                   for (size_t i = 0; i < v.dims[0]; ++i) {
-                     const Vec3 p = t(v.position(i, row % v.dims[1], row / v.dims[1]));
-                     for (int c = 0; c < 3; ++c) to[3 * (row * v.dims[0] + i) + size_t(c)] = p[c];
-                   }
-               });
-  return r;
-}
-
 Array moved_axis(const Array& a, double factor, double shift) {
   double* to = nullptr;
   Array r = Array::make<double>(a.count(), 1, &to);
@@ -152,7 +135,7 @@ struct Mover {
     }();
     for (int a = 0; a < 3; ++a)
       if (!was_skew && std::abs(dot(column[a], column[(a + 1) % 3])) > 1e-12 * size[a] * size[(a + 1) % 3]) {
-        CurvilinearGrid c = as_curvilinear(whole, t);
+        CurvilinearGrid c = moved_lattice(whole, [&](size_t, Vec3 p) { return t(p); });
         c.extent_start = g.extent_start;
         return c;
       }
@@ -170,7 +153,7 @@ struct Mover {
   }
   Mesh operator()(const RectilinearGrid& g) const {
     if (!t.diagonal()) {
-      CurvilinearGrid c = as_curvilinear(whole, t);
+      CurvilinearGrid c = moved_lattice(whole, [&](size_t, Vec3 p) { return t(p); });
       c.extent_start = g.extent_start;
       return c;
     }

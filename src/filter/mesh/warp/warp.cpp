@@ -12,6 +12,7 @@
 #include "base/text/text.h"
 #include "data/lattice.h"
 #include "data/ranks/over_all.h"
+#include "filter/mesh/transform/moved_lattice.h"
 
 namespace sg {
 
@@ -126,25 +127,6 @@ Points displaced(const Points& in, const Displacement& u) {
   return r;
 }
 
-CurvilinearGrid displaced(const Mesh& mesh, const Displacement& u) {
-  const Lattice lattice(mesh);
-  const LatticeView& v = lattice.view();
-  CurvilinearGrid r;
-  r.dims = v.dims;
-  double* to = nullptr;
-  r.points.xyz = Array::make<double>(v.points(), 3, &to);
-  const size_t nx = v.dims[0];
-  parallel_for(v.dims[1] * v.dims[2], std::max<size_t>(1, points_per_chunk / std::max<size_t>(nx, 1)), [&](size_t begin, size_t end) {
-    for (size_t row = begin; row < end; ++row)
-      for (size_t i = 0; i < nx; ++i) {
-        const size_t point = row * nx + i;
-        const Vec3 p = v.position(i, row % v.dims[1], row / v.dims[1]) + u(point);
-        for (int c = 0; c < 3; ++c) to[3 * point + size_t(c)] = p[c];
-      }
-  });
-  return r;
-}
-
 Mesh displaced_mesh(const Mesh& mesh, const Displacement& u) {
   return std::visit(
       [&](const auto& m) -> Mesh {
@@ -156,7 +138,7 @@ Mesh displaced_mesh(const Mesh& mesh, const Displacement& u) {
           r.points = displaced(m.points, u);
           return r;
         } else {
-          CurvilinearGrid r = displaced(mesh, u);
+          CurvilinearGrid r = moved_lattice(mesh, [&](size_t i, Vec3 p) { return p + u(i); });
           r.extent_start = m.extent_start;
           return r;
         }
