@@ -284,6 +284,19 @@ void declare_run(CLI::App& a, Options& o, RawText&) {
   a.add_option("input", o.inputs, "Pipeline file (YAML)")->required();
   add_output(a, o), add_size(a, o), add_film(a, o);
   a.add_flag("--explain", o.explain, "Print the plan and its estimated cost without running it");
+  a.footer(
+      "A pipeline file names steps, each from a file, a source or other steps, and what to show of them:\n\n"
+      "  sightglass: 1\n"
+      "  steps:\n"
+      "    wing: {read: wing.vtu}\n"
+      "    shock: {contour: {field: mach, values: 1}, from: wing}\n"
+      "  show:\n"
+      "    - {surface: {field: pressure}, of: wing}\n"
+      "    - {surface: {color: \"#e0e0e0\", opacity: 0.5}, of: shock}\n"
+      "  picture: {size: 1920x1080, title: Wing, camera: {view: front}}\n\n"
+      "The words are those of -f, --show, --picture and --camera: see sightglass ops [NAME]. The pipeline of any picture made here is in "
+      "it:\n"
+      "sightglass open PICTURE.png --recipe");
 }
 
 void declare_open(CLI::App& a, Options& o, RawText&) {

@@ -26,8 +26,10 @@ NearestPlace LocatorCursor::nearest(Vec3 x, double radius) {
       take(s.cell, at, d2);
     }
     index.tree().nearest(x, std::min(limit2, best.distance2), [&](uint32_t c) {
+      const double limit = std::min(limit2, best.distance2);
+      if (int64_t(c) == best.cell) return limit;
       Vec3 at;
-      const double d2 = s.probe.nearest(c, x, at);
+      const double d2 = s.probe.nearest(c, x, at, limit);
       take(int64_t(c), at, d2);
       return std::min(limit2, best.distance2);
     });

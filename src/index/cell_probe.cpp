@@ -222,7 +222,7 @@ void CellProbe::make_triangles() {
   }
 }
 
-double CellProbe::nearest(size_t cell, Vec3 x, Vec3& at) {
+double CellProbe::nearest(size_t cell, Vec3 x, Vec3& at, double limit2) {
   int64_t ids[4];
   Vec3 p[4];
   CellPlace place;
@@ -237,14 +237,21 @@ double CellProbe::nearest(size_t cell, Vec3 x, Vec3& at) {
     test(p[0], p[1], p[2]);
     return best;
   }
-  const bool inside = holds(cell, x, place);
   if (n == 4) {
-    if (inside) return at = x, 0;
+    if (holds(cell, x, place)) return at = x, 0;
     for (const auto& f : tetra_faces) test(p[f[0]], p[f[1]], p[f[2]]);
     return best;
   }
-  if (inside && open(cell).dimension() == 3) return at = x, 0;
-  open(cell).nearest(x, place);
+  CellMap& m = open(cell);
+  const Box3 box = cell_box(m.reader());
+  double apart2 = 0;
+  for (int a = 0; a < 3; ++a) {
+    const double d = std::max({box.lo[a] - x[a], x[a] - box.hi[a], 0.0});
+    apart2 += d * d;
+  }
+  if (apart2 > limit2 * (1 + 1e-9)) return HUGE_VAL;
+  if (m.dimension() == 3 && holds(cell, x, place)) return at = x, 0;
+  m.nearest_outside(x, place);
   return at = place.nearest, place.distance2;
 }
 

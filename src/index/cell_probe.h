@@ -74,8 +74,8 @@ class CellProbe {
   /// Whether the cell contains x, and where.
   bool holds(size_t cell, Vec3 x, CellPlace& place);
   /// The nearest point of the cell and its squared distance: 0 for a solid that holds x, else of its faces; of curves and
-  /// surfaces by their map.
-  double nearest(size_t cell, Vec3 x, Vec3& at);
+  /// surfaces by their map. Infinity where that is more than `limit2` for sure, which spares the look at curved cells far away.
+  double nearest(size_t cell, Vec3 x, Vec3& at, double limit2 = HUGE_VAL);
   /// Smallest t in [t0, t1] where the ray meets a face of a solid or a 2D cell; NaN for none. `normal`: unit; of a solid: outward.
   double hit(size_t cell, Vec3 x, Vec3 d, double t0, double t1, Vec3& normal);
 

@@ -8,14 +8,16 @@
 #include "data/cells/plane_normal.h"
 #include "data/lattice.h"
 #include "data/patient/patient_frame.h"
+#include "filter/tensor/tensor_field.h"
 #include "io/y_up.h"
+#include "scene/choose/open_side.h"
 #include "scene/choose/scale.h"
+#include "scene/choose/seen_outside.h"
 #include "scene/choose/shown_range.h"
 #include "scene/choose/signed_distance.h"
 #include "scene/choose/telling_field.h"
-#include "scene/choose/volume_look.h"
+#include "scene/choose/volume/look.h"
 #include "scene/show/labels.h"
-#include "scene/show/outline.h"
 #include "scene/show/points.h"
 #include "scene/show/surface.h"
 #include "scene/show/volume.h"
@@ -32,7 +34,12 @@ void add_show(Look& look, P params, bool of_input) {
 // What a surface, line or dot will be coloured by.
 std::string field_reason(const Dataset& d, const std::string& field) {
   const Field* f = field.empty() ? automatic_field(d) : d.fields().find(field);
-  if (!f) return d.fields().empty() ? "one colour (there is no field)" : "one colour (no field varies over it)";
+  if (!f && d.fields().empty()) return "one colour (there is no field)";
+  if (!f) {
+    const auto is_id = [&](const Field& any) { return any.association != Association::whole && telling(d, any) == Telling::ids; };
+    const bool ids = std::any_of(d.fields().begin(), d.fields().end(), is_id);
+    return ids ? "one colour (its fields are ids of points or cells)" : "one colour (no field varies over it)";
+  }
   if (f->role == Role::colors) return fmt::format("its own colours '{}'", f->name);
   return fmt::format("coloured by '{}'{}", f->name, f->components() > 1 ? " (magnitude)" : "");
 }
@@ -75,27 +82,23 @@ int axis_of_layer(const Dataset& d) {
   return a;
 }
 
+// Through the opening, unless that is above or below; a little from the side, as before.
+void look_into(Vec3 opening, CameraDefaults& c) {
+  const double upward = dot(opening, c.up);
+  if (std::abs(upward) > 0.7 || dot(opening, c.direction) > 0.7 * length(c.direction)) return;
+  c.direction = normalize(opening - c.up * upward) + c.up * 0.25 + normalize(cross(c.up, opening)) * 0.3;
+}
+
 bool has_polygons(const Dataset& d) {
   if (auto* s = d.as<SurfaceMesh>()) return s->polygons.size() + s->strips.size() > 0;
   return true;
-}
-
-// A grid whose box does not lie along x, y and z: the box with the numbers is not its own.
-bool is_turned(const Dataset& d) {
-  const auto* g = d.as<UniformGrid>();
-  if (!g) return false;
-  for (int a = 0; a < 3; ++a) {
-    const Vec3 axis = g->direction.column(a);
-    if (std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)}) < 0.99999 * length(axis)) return true;
-  }
-  return false;
 }
 
 // A 3D scalar image or box grid: seen through, or for labels its voxel faces.
 void look_at_grid(const Dataset& d, const Field& f, Look& look) {
   const bool image = d.as<UniformGrid>() || (d.as<RectilinearGrid>() && f.role == Role::labels);
   if (image && f.association == Association::point && looks_like_labels(d, f)) {
-    look.filter = {"label_surface", "field=" + f.name};
+    look.filter = {"label_surface", "field=" + f.name, "iterations=100"};  // steps of voxels would catch the light
     SurfaceShow surface;
     surface.coloring.field.name = f.name, surface.coloring.map = "labels";
     add_show(look, surface, false);
@@ -109,13 +112,30 @@ void look_at_grid(const Dataset& d, const Field& f, Look& look) {
     if (const Field* speed = d.fields().find("speed", f.association); speed && speed->components() == 1)
       volume.color_by.name = speed->name, volume.sampling.tolerance = 0.01;  // a single colour would show less
   add_show(look, volume, true);
-  if (is_turned(d)) add_show(look, OutlineShow(), true);
   ColoringParams params;
   Context quiet;
   VolumeItem item;
   item.color = choose_scale(d, f, params, quiet);
   const std::string why = choose_volume_look(d, f, params, item);
   look.reason = fmt::format("scalar field '{}' on a 3D grid: shown as a volume; {}", f.name, why);
+}
+
+// Where nothing but tensors tells something, and they can be told apart: a glyph each, with the edges of the cells that carry them.
+bool look_at_tensors(const Dataset& d, Look& look) {
+  constexpr size_t most = 1000;
+  const Field* tensors = find_tensors(d, {});
+  if (!tensors || tensors->role != Role::tensors || tensors->array.count() > most) return false;
+  if (const Field* f = automatic_field(d); f && telling(d, *f) == Telling::values) return false;
+  look.filter = {"tensor_glyphs", "field=" + tensors->name};
+  add_show(look, SurfaceShow(), false);
+  if (mesh_dimension(d) > 0 && d.cell_count() > 0) {
+    SurfaceShow edges;
+    edges.style = SurfaceStyle::wireframe, edges.coloring.color = "#808080";
+    add_show(look, edges, true);
+  }
+  look.reason =
+      fmt::format("tensors '{}': a glyph for each; --show surface shows the {} mesh and its other fields", tensors->name, d.kind());
+  return true;
 }
 
 // A signed distance, or another function whose zeros alone mean something: their surface.
@@ -158,6 +178,8 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
       look.camera.direction = *normal, flat = true;
       if (patient) face_slice(*normal, look.camera);
     }
+  if (const auto* mesh = d.as<SurfaceMesh>(); mesh && !flat && y_points_up(extension))
+    if (const auto open = open_side(*mesh)) look_into(*open, look.camera);
   if (!flat && !patient)
     if (const int axis = axis_of_layer(d); axis >= 0) face_axis(axis, patient, look.camera);
   if (d.point_count() == 0) {
@@ -177,6 +199,7 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
       if (f.look.shows == FieldLook::Shows::fibres && f.association == Association::point && f.components() == 1) scalar = &f;
   const bool colors = scalar && scalar->role == Role::colors && scalar->components() >= 3;
 
+  if (field.empty() && look_at_tensors(d, look)) return look;
   if (scalar && look_at_level_set(d, *scalar, look)) return look;
   if (grid3 && box_grid && scalar && !colors) {
     look_at_grid(d, *scalar, look);
@@ -213,12 +236,30 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
   SurfaceShow surface;
   const bool simulation = !d.as<SurfaceMesh>() && !is_lattice(d.mesh());
   const bool bare_map = look.camera.parallel && d.fields().empty() && d.as<SurfaceMesh>();  // only edges distinguish its parts
-  const bool show_edges = (simulation && d.cell_count() <= 100000) || (bare_map && d.cell_count() <= 2000);
+  const int dimension = mesh_dimension(d);
+  const bool show_edges = dimension >= 2 && ((simulation && d.cell_count() <= 100000) || (bare_map && d.cell_count() <= 2000));
+  constexpr std::string_view seen[] = {"its points", "its lines", "its faces", "its outer surface"};
   surface.edges = show_edges;
   add_show(look, surface, true);
-  if (is_lattice(d.mesh()) && !box_grid) add_show(look, OutlineShow(), true);
-  look.reason = fmt::format("{} mesh: its outer surface{}, {}", d.kind(), show_edges ? " with cell edges" : "", field_reason(d, field));
+  look.reason =
+      fmt::format("{} mesh: {}{}, {}", d.kind(), seen[size_t(dimension)], show_edges ? " with cell edges" : "", field_reason(d, field));
   return look;
+}
+
+void cut_open(Look& look, const DatasetPtr& data, const std::string& field, Context& context) {
+  if (!look.filter.empty() || look.camera.parallel || look.shows.size() != 1 || !look.shows[0].kind->is<SurfaceShow>()) return;
+  const Field* f = field.empty() ? automatic_field(*data) : data->fields().find(field);
+  if (!f || f->role == Role::colors || !tells_only_inside(data, *f, context)) return;
+  // Across the line of sight, but a long body lengthwise.
+  const Vec3 size = data->bounds().size(), towards = look.camera.direction;
+  const int longest = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const bool is_long = size[longest] > 1.5 * std::max(size[(longest + 1) % 3], size[(longest + 2) % 3]);
+  int axis = -1;
+  for (int a = 0; a < 3; ++a)
+    if (!(is_long && a == longest) && (axis < 0 || std::abs(towards[a]) > std::abs(towards[axis]))) axis = a;
+  look.filter = {"clip", fmt::format("axis={}", "xyz"[axis])};
+  look.shows[0].of_input = false;
+  look.reason += fmt::format("; its outside has nearly one value of '{}', so it is cut open", f->name);
 }
 
 }  // namespace sg

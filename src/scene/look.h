@@ -25,6 +25,9 @@ struct Look {
 /// `field`: what the user wants to see; "" = the data decides. `extension`: of the file the data came from ("obj"); surfaces
 /// made for graphics have y up.
 Look choose_look(const Dataset& data, const std::string& field, const std::string& extension);
+/// A solid whose outer surface tells nothing of what it is coloured by is cut open along the middle, with the half away from the viewer
+/// kept.
+void cut_open(Look& look, const DatasetPtr& data, const std::string& field, Context& context);
 
 /// The view of flat data along its thin axis, of other data the usual one. `patient`: the data is in the patient frame; then slices are
 /// seen as radiologists see them (axial from the feet, coronal from the front, sagittal from the left) and bodies from the front.

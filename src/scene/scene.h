@@ -36,8 +36,10 @@ struct SurfaceItem {
   bool flat = false;          ///< face normals
   double feature_angle = 40;  ///< degrees; edges sharper than this are not smoothed when normals are computed
   bool edges = false;         ///< draw the edges of the polygons
-  DatasetPtr edge_lines;      ///< a SurfaceMesh whose lines are drawn instead (of curved cells: see Skin); null = the polygons' edges
-  Vec3f edge_color{0.1f, 0.1f, 0.1f};
+  /// A SurfaceMesh whose lines are drawn instead (of curved cells: see Skin), or where it has polygons their edges; null = the edges of
+  /// the polygons drawn.
+  DatasetPtr edge_lines;
+  std::optional<Vec3f> edge_color;    ///< sRGB; empty = that of the surface under it, darker, or lighter where it is dark
   std::optional<SurfaceTexture> lic;  ///< directions of a vector field as a texture
 };
 

@@ -220,6 +220,7 @@ struct Parser {
       double c[4];
       if (numbers(o["pbrMetallicRoughness"], "baseColorFactor", c, where))
         for (int i = 0; i < 4; ++i) m.base_color[i] = float(c[i]);
+      m.textured = !o["pbrMetallicRoughness"]["baseColorTexture"].is_null();
       d.materials.push_back(m);
     });
     add_roots(d);

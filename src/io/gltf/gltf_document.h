@@ -54,6 +54,7 @@ struct GltfNode {
 struct GltfMaterial {
   std::string name;
   float base_color[4] = {1, 1, 1, 1};  ///< linear RGB and alpha
+  bool textured = false;               ///< its base colour is a picture's
 };
 
 struct GltfBuffer {

@@ -258,6 +258,8 @@ Data read_gltf(const std::string& path, const ReadOptions& options, Context& con
   else
     for (size_t k = 0; k < doc.meshes.size(); ++k) r.add_mesh(int(k), Mat4(), "");
   if (r.parts.empty()) fail_data("no node of its scene has a mesh", path);
+  if (std::any_of(doc.materials.begin(), doc.materials.end(), [](const GltfMaterial& m) { return m.textured; }))
+    context.warn(path + ": its textures (pictures on the surface) are not drawn, only its plain colours");
   if (r.parts.size() == 1) return r.parts[0].data;
   r.number_names();
   auto all = std::make_shared<Collection>();

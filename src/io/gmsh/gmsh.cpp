@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gmsh .msh: all elements (of every dimension, in file order) as cells; "physical" and "entity" (and "partition") as cell fields, the
-// names of physical groups as notes. Data sections become fields; those of element nodes that differ between elements open the mesh
-// there. Values that a section does not give are NaN.
+// names of physical groups as names of their numbers (of "group" where groups of several dimensions share numbers). Data sections become
+// fields; those of element nodes that differ between elements open the mesh there. Values that a section does not give are NaN.
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <set>
 
 #include "base/file/file.h"
 #include "base/text/text.h"
+#include "data/fields/label_names.h"
 #include "io/formats.h"
 #include "io/gmsh/elements.h"
 #include "io/gmsh/msh_file.h"
@@ -29,6 +31,37 @@ std::vector<double> times_of(const MshFile& f) {
   std::sort(t.begin(), t.end());
   t.erase(std::unique(t.begin(), t.end()), t.end());
   return t.size() > 1 ? t : std::vector<double>();
+}
+
+// The physical groups of the elements with their names. Gmsh numbers the groups of each dimension on their own: where two share a number,
+// "group" numbers all of them.
+void add_groups(const MshFile& f, DatasetParts& parts) {
+  const auto dimension_of = [&](size_t element) { return int64_t(cell_type_info(element_type(f.element_types[element])->cell).dimension); };
+  std::map<std::pair<int64_t, int64_t>, int32_t> groups;
+  for (size_t e = 0; e < f.physical.size(); ++e)
+    if (f.physical[e] != 0) groups[{dimension_of(e), f.physical[e]}] = f.physical[e];
+  std::set<int64_t> numbers;
+  bool shared = false;
+  for (const auto& [group, number] : groups) shared |= !numbers.insert(number).second;
+
+  LabelNames names(shared ? "group" : "physical");
+  int32_t last = 0;
+  for (auto& [group, number] : groups) {
+    constexpr std::string_view kinds[] = {"points", "curves", "surfaces", "volumes"};
+    if (shared) number = ++last;
+    const auto known = f.names.find(group);
+    if (known != f.names.end()) names.add(number, known->second);
+    else if (shared || !f.names.empty()) names.add(number, fmt::format("{} {}", kinds[size_t(group.first)], group.second));
+  }
+  if (!names.empty() && std::find(f.physical.begin(), f.physical.end(), 0) != f.physical.end()) names.add(0, "no group");
+  if (!names.empty()) parts.notes.push_back(names.note());
+  if (shared) {
+    std::vector<int32_t> of(f.physical.size());
+    for (size_t e = 0; e < of.size(); ++e)
+      if (f.physical[e] != 0) of[e] = groups[{dimension_of(e), f.physical[e]}];
+    parts.fields.add(cell_ids("group", std::move(of)));
+  }
+  parts.fields.add(cell_ids("physical", f.physical));
 }
 
 // Of each name and kind the section of that time, else the last one before it, else the first.
@@ -223,10 +256,9 @@ DatasetPtr make(MshInput& in, const MshFile& f, const ReadOptions& options, cons
     field.role = role_of(corners.sections[s]->components);
     parts.fields.add(std::move(field));
   }
-  parts.fields.add(cell_ids("physical", f.physical));
+  add_groups(f, parts);
   parts.fields.add(cell_ids("entity", f.entity));
   if (f.partitioned) parts.fields.add(cell_ids("partition", f.partition));
-  parts.notes = f.names;
   return make_dataset(std::move(parts));
 }
 

@@ -65,7 +65,7 @@ void parse_names(MshInput& in, MshFile& f) {
   const size_t n = in.text.count("the number of physical names", 5);
   for (size_t i = 0; i < n; ++i) {
     const int64_t dimension = in.text.integer("a dimension"), tag = in.text.integer("a tag");
-    f.names.emplace_back(fmt::format("physical {} of dimension {}", tag, dimension), std::string(in.name()));
+    f.names[{dimension, tag}] = in.name();
   }
 }
 

@@ -33,7 +33,7 @@ struct MshFile {
   std::vector<int32_t> physical, entity, partition;
   bool partitioned = false;
   std::map<std::pair<int, int64_t>, Entity> entities;
-  std::vector<std::pair<std::string, std::string>> names;
+  std::map<std::pair<int64_t, int64_t>, std::string> names;  ///< of physical groups by dimension and tag
   std::vector<DataSection> data;
 };
 

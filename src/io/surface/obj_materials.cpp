@@ -46,7 +46,7 @@ std::map<std::string, Vec3f> read_material_colors(const std::string& obj, std::s
       const MappedFile file(named_file(obj, name));
       add_colors(file.text(), colors);
     } catch (const Error& e) {
-      context.info(fmt::format("{}: its materials have no colours: {}", obj, e.what()));
+      context.warn(fmt::format("{}: its materials have no colours: {}", obj, e.what()));
     }
   }
   return colors;

@@ -169,6 +169,19 @@ Annotation annotation_of(const StatedPicture& stated, const Shown& shown, const 
   return a;
 }
 
+// A point, or a line along an axis, tells its place only inside a box that is wider than itself.
+Box3 with_room(Box3 b) {
+  if (b.empty()) return b;
+  const Vec3 size = b.size(), middle = b.center();
+  const double longest = std::max({size.x, size.y, size.z}), far = std::max({std::abs(middle.x), std::abs(middle.y), std::abs(middle.z)});
+  const auto is_flat = [&](int a) { return !(size[a] > 1e-9 * longest); };
+  if (is_flat(0) + is_flat(1) + is_flat(2) < 2) return b;
+  const double room = longest > 0 ? 0.08 * longest : far > 0 ? 0.1 * far : 0.5;
+  for (int a = 0; a < 3; ++a)
+    if (is_flat(a)) b.lo[a] -= room, b.hi[a] += room;
+  return b;
+}
+
 // Ready to be drawn at the size that is stated.
 Panel panel_of(const Shown& shown, const Look& look, const StatedPicture& stated, const CameraParams& camera) {
   Panel p;
@@ -231,6 +244,7 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
     if (look.shows.empty()) look.camera = choose_view(shown[0].box, extension_of(origin_of(file, first)), shown[0].patient);
     face_cut(file, first, look.camera);
   }
+  for (Shown& s : shown) s.box = with_room(s.box);  // after the choice of a view, which tells by the box what is flat
   if (!in_panels(stated.picture)) {
     const Panel panel = panel_of(shown[0], look, stated, stated.camera);
     draw_drafts(panel.scene, panel.camera, stated, panel.annotation, options, picture, drawing);

@@ -99,7 +99,8 @@ Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file,
   const std::string field = !stated.empty() ? stated : !made ? field_telling_parts(data, context) : made->look.result ? made->name : "";
   std::vector<std::string> coloring = wanted.words;
   if (field != stated) coloring.push_back("field=" + field);
-  const Look look = choose_look(*largest, field, extension_of(origin));
+  Look look = choose_look(*largest, field, extension_of(origin));
+  cut_open(look, largest, field, context);
   const std::string result =
       look.filter.empty() ? end : added_step(file, look.filter[0], {look.filter.begin() + 1, look.filter.end()}, end);
   for (const Look::Show& s : look.shows) {

@@ -31,6 +31,13 @@ bool is_free(const Rect& r, const Overlay& o, const std::vector<Rect>& taken) {
   return std::none_of(taken.begin(), taken.end(), [&](const Rect& t) { return t.overlaps(r); });
 }
 
+/// Along an edge from one of its ends towards its middle; zero near the middle itself.
+Vec2 towards_middle(Vec2 at, Vec2 from, Vec2 to) {
+  const Vec2 along = to - from;
+  const double l2 = dot_of(along, along), t = l2 > 0 ? dot_of(at - from, along) / l2 : 0.5;
+  return std::abs(t - 0.5) < 0.25 ? Vec2{} : along * ((t < 0.5 ? 1 : -1) / std::sqrt(l2));
+}
+
 struct PlacedTick {
   Vec2 at;  ///< on the edge
   std::string text;
@@ -71,12 +78,13 @@ std::optional<Rect> name_place(const Overlay& o, const BoxAxis& a, const Project
     // How far this number reaches out of its edge.
     const Vec2 center{t.rect.x + 0.5 * t.rect.width, t.rect.y + 0.5 * t.rect.height};
     const double reach = std::abs(a.outward.x) * 0.5 * t.rect.width + std::abs(a.outward.y) * 0.5 * t.rect.height;
-    beyond = std::max(beyond, dot_of({center.x - t.at.x, center.y - t.at.y}, a.outward) + reach + 0.55 * font);
+    beyond = std::max(beyond, dot_of({center.x - t.at.x, center.y - t.at.y}, a.outward) + reach + 0.85 * font);
   }
   for (double out : {beyond, beyond * 0.75, beyond * 0.5, beyond * 1.4})
     for (double shift : {0.0, 0.1, -0.1, 0.2, -0.2, 0.3, -0.3, 0.42, -0.42, 0.5, -0.5}) {
       const Rect r = beside(middle + along * shift + a.outward * out, a.outward, e);
-      const bool hits = std::any_of(ticks.begin(), ticks.end(), [&](const PlacedTick& t) { return t.rect.grown(0.45 * font).overlaps(r); });
+      const Rect room{r.x - 0.8 * font, r.y - 0.3 * font, r.width + 1.6 * font, r.height + 0.6 * font};
+      const bool hits = std::any_of(ticks.begin(), ticks.end(), [&](const PlacedTick& t) { return t.rect.overlaps(room); });
       if (!hits && is_free(r, o, taken)) return r;
     }
   return {};
@@ -162,23 +170,31 @@ void draw_box_axes(Overlay& o, const Annotation& annotation, const Projection& p
     o.text(name, place->x, place->y, name_style, true);
     taken.push_back(*place);
   }
+  std::vector<Rect> numbers;  // of the other axes: two in a row want more room than other things, or they read as one
+  const auto hits_number = [&](const Rect& r) {
+    return std::any_of(numbers.begin(), numbers.end(), [&](const Rect& other) { return other.overlaps(r); });
+  };
   for (const Drawn& d : drawn) {
     const Vec3 from = p.to_pixel(d.axis.from), to = p.to_pixel(d.axis.to);
     o.line({from.x, from.y}, {to.x, to.y}, line_width, 0.9);
+    std::vector<Rect> own;
     for (const PlacedTick& t : d.ticks) {
       o.line(t.at, t.at + d.axis.outward * (0.5 * font), line_width, 0.9);
-      // A number that meets another axis' at a corner moves a little further out, or aside.
+      // A number that meets another axis' at a corner moves towards the middle of its own, a little further out, or aside.
       const auto write_at = [&](Vec2 move) {
         const Rect rect{t.rect.x + move.x * font, t.rect.y + move.y * font, t.rect.width, t.rect.height};
-        if (!is_free(rect.grown(0.3 * font), o, taken)) return false;
+        const Rect room{rect.x - 0.7 * font, rect.y - 0.15 * font, rect.width + 1.4 * font, rect.height + 0.3 * font};
+        if (!is_free(rect.grown(0.3 * font), o, taken) || hits_number(room)) return false;
         o.text(t.text, rect.x, rect.y, style, true);
-        taken.push_back(rect);
+        taken.push_back(rect), own.push_back(rect);
         return true;
       };
-      const Vec2 n = d.axis.outward;
-      for (Vec2 move : {Vec2{}, n * 0.4, n * 0.8, n * 1.2, Vec2{-0.7, 0.1}, Vec2{0.7, 0.1}, Vec2{-1.4, 0.3}, Vec2{1.4, 0.3}, n * 1.7})
+      const Vec2 n = d.axis.outward, inward = towards_middle(t.at, {from.x, from.y}, {to.x, to.y});
+      for (Vec2 move : {Vec2{}, inward * 0.45, inward * 0.9, n * 0.4 + inward * 0.6, n * 0.8, n * 1.2, Vec2{-0.7, 0.1}, Vec2{0.7, 0.1},
+                        Vec2{-1.4, 0.3}, Vec2{1.4, 0.3}, n * 1.7})
         if (write_at(move)) break;
     }
+    numbers.insert(numbers.end(), own.begin(), own.end());
   }
 }
 

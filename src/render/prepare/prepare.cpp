@@ -168,6 +168,9 @@ const SurfaceMesh& surface_mesh(const DatasetPtr& data, const char* what) {
 /// Lines show little of themselves: brighter in the dark, and glossy, so that their bends are seen.
 constexpr Material line_material{0.18f, 0.82f, 0.30f, 40, true};
 
+/// Edges of cells where there is no surface under them, at its outline.
+constexpr Vec3f outline_color{0.1f, 0.1f, 0.1f};
+
 class Preparation {
  public:
   Preparation(PreparedScene& out, Context& context) : out_(out), context_(context) {}
@@ -194,18 +197,22 @@ class Preparation {
     if (p.triangles.count > 0) push(std::move(p), p.triangles.count);
     if (!s.edges || !any) return;
     PreparedItem e = start(PreparedItem::Kind::lines, s.data, s.opacity);
-    if (s.edge_lines) {
-      const SurfaceMesh& lines = surface_mesh(s.edge_lines, "surface");
-      e.segments = derived(s.edge_lines, "curved edges", [&] { return curved_edges(*s.edge_lines, lines); });
-      e.color = color_source(s.data, std::nullopt, s.edge_color, "surface");
-      const Positions own = packed_positions(s.edge_lines, lines.points);
-      e.positions = own.xyz, e.origin = own.origin, e.width = 1;
-      return push(std::move(e), e.segments->count());
+    e.color = color_source(s.data, std::nullopt, s.edge_color.value_or(outline_color), "surface");
+    e.contrasts = !s.edge_color;
+    e.width = 1;
+    if (const DatasetPtr of = s.edge_lines ? s.edge_lines : s.data; of == s.data) {
+      e.segments = derived(of, "edges", [&] { return polygon_edges(*of, mesh); });
+      e.positions = positions, e.origin = origin;
+    } else {
+      const SurfaceMesh& lines = surface_mesh(of, "surface");
+      const bool curves = lines.polygons.size() + lines.strips.size() == 0;
+      e.segments = curves ? derived(of, "curved edges", [&] { return curved_edges(*of, lines); })
+                          : derived(of, "edges", [&] { return polygon_edges(*of, lines); });
+      const Positions own = packed_positions(of, lines.points);
+      e.positions = own.xyz, e.origin = own.origin;
     }
-    e.segments = derived(s.data, "edges", [&] { return polygon_edges(*s.data, mesh); });
-    e.color = color_source(s.data, std::nullopt, s.edge_color, "surface");
-    e.positions = positions, e.origin = origin, e.width = 1;
-    push(std::move(e), e.segments->count());
+    const size_t count = e.segments->count();
+    push(std::move(e), count);
   }
 
   void operator()(const LinesItem& s) {

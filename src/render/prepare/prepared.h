@@ -85,10 +85,11 @@ struct PreparedItem {
   float lic_least = 0;  ///< vectors whose largest component is not above this have no direction
   // lines
   std::shared_ptr<const SegmentSet> segments;
-  double width = 1;     ///< pixels; also the points' size
-  bool shaded = false;  ///< points as little spheres, lines by their tangents
-  double halo = 0;      ///< pixels
-  Vec3f halo_color;     ///< linear
+  double width = 1;        ///< pixels; also the points' size
+  bool shaded = false;     ///< points as little spheres, lines by their tangents
+  bool contrasts = false;  ///< lines take the colour of the surface under them, darker or lighter
+  double halo = 0;         ///< pixels
+  Vec3f halo_color;        ///< linear
   // lines and points
   std::shared_ptr<const std::vector<uint32_t>> points;  ///< numbers of the dots that are drawn; null (discs only): all
   Array positions;                                      ///< f32 x 3 packed

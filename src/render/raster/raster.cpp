@@ -176,7 +176,8 @@ class Drawing {
     MarkTile marks(box, projection_, keys_.data());
     mark_bins_.each(tile, [&](uint32_t i) { marks.draw(marks_[i], covers); });
     for (Cover& c : covers)
-      if (scene_.items[c.item].kind != PreparedItem::Kind::surface) color_mark(scene_.items[c.item], lights_, projection_, c);
+      if (const PreparedItem& item = scene_.items[c.item]; item.kind != PreparedItem::Kind::surface)
+        color_mark(item, lights_, projection_, &frame_.rgba[4 * pixel_in_frame(box, c.pixel, frame_.width)], c);
     fragments_[tile] = resolve(scene_, box, covers, frame_);
   }
 

@@ -34,7 +34,9 @@ struct ColoringParams {
   std::string legend_format;
   LegendPlace legend_place = LegendPlace::right;
   std::optional<double> legend_bar;
-  Labels labels;  ///< of all datasets that are coloured alike (shared_scale.h); no word states them
+  // Of all datasets that are coloured alike (shared_scale.h); no word states them.
+  Labels labels;
+  Range range_of;  ///< of their values, where `range` was chosen for them
 };
 void describe(Schema& s, ColoringParams& p);
 

@@ -44,20 +44,42 @@ std::vector<double> distinct_values(const Field& field, size_t limit, const Cont
   return found;
 }
 
-// Of neighbours along x of which one at least is not background, the share that is equal.
-double share_of_equal_neighbours(const Field& field, size_t nx, double background, const Context& context) {
+// Of neighbours along an axis of which one at least is not background, the share that is equal; 1 where there are none.
+double share_of_equal_neighbours(const Field& field, std::array<size_t, 3> dims, size_t axis, double background, const Context& context) {
   uint64_t counts[2] = {0, 0};  // equal, all
+  size_t ahead = 1;
+  for (size_t a = 0; a < axis; ++a) ahead *= dims[a];
   dispatch(field.array, [&](auto v) {
-    const size_t n = v.count, rows = n / std::max<size_t>(nx, 1), step = std::max<size_t>(1, rows / 2000);
+    const size_t nx = dims[0], rows = v.count / std::max<size_t>(nx, 1), step = std::max<size_t>(1, rows / 2000);
     for (size_t r = 0; r < rows; r += step)
-      for (size_t i = 1; i < nx; ++i) {
-        const double a = double(v[r * nx + i - 1]), b = double(v[r * nx + i]);
+      for (size_t i = 0; i < nx; ++i) {
+        const size_t at = r * nx + i;
+        if (at / ahead % dims[axis] + 1 == dims[axis]) continue;
+        const double a = double(v[at]), b = double(v[at + ahead]);
         if (a == background && b == background) continue;
         counts[0] += a == b, ++counts[1];
       }
   });
   all_sum(std::span<uint64_t>(counts), context.communicator);
-  return counts[1] ? double(counts[0]) / double(counts[1]) : 0.0;
+  return counts[1] ? double(counts[0]) / double(counts[1]) : 1.0;
+}
+
+// Label 1 takes the first colour, 2 the second, whichever others are there, so that a selection keeps its colours.
+void color_by_number(ColorScale& s) {
+  const std::vector<Vec3f> palette = s.map.colors;
+  const auto n = double(palette.size());
+  if (!std::all_of(s.labels.begin(), s.labels.end(), [&](double v) { return v == std::round(v) && v >= 0 && v < n; })) return;
+  s.map.colors.clear();
+  for (const double v : s.labels) s.map.colors.push_back(palette[size_t(v + n - 1) % palette.size()]);
+}
+
+// The colours of a map between two of its places.
+Colormap part_of(const Colormap& map, double from, double to) {
+  constexpr size_t samples = 257;
+  Colormap part = map;
+  part.colors.clear(), part.positions.clear();
+  for (size_t i = 0; i < samples; ++i) part.colors.push_back(map.at(from + (to - from) * double(i) / (samples - 1)));
+  return part;
 }
 
 double nice_symmetric(const Range& r) { return std::max(std::abs(r.lo), std::abs(r.hi)); }
@@ -198,9 +220,12 @@ bool looks_like_labels(const Dataset& data, const Field& field, const Context& c
   const bool grid = is_lattice(data.mesh());
   if (!all_most(int(grid), context.communicator)) return values.size() * 2 <= count + 2;
   if (values.size() == 2 || field.role == Role::labels) return true;
-  const auto d = grid ? lattice_dims(data.mesh()) : std::array<size_t, 3>{};
-  const size_t nx = !grid ? 0 : field.association == Association::point ? d[0] : std::max<size_t>(d[0], 2) - 1;
-  return share_of_equal_neighbours(field, nx, values[0], context) > 0.7;
+  auto dims = grid ? lattice_dims(data.mesh()) : std::array<size_t, 3>{1, 1, 1};
+  if (field.association == Association::cell)
+    for (size_t& n : dims) n = std::max<size_t>(n, 2) - 1;
+  // Along x alone a ramp along y would do; across thin slices things change faster.
+  return share_of_equal_neighbours(field, dims, 0, values[0], context) > 0.7 &&
+         share_of_equal_neighbours(field, dims, 1, values[0], context) > 0.5;
 }
 
 Labels labels_of(std::span<const FieldOf> fields, bool categorical, const Context& context) {
@@ -254,6 +279,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   const bool shared = !p.labels.values.empty();
   const bool labels = shared || (automatic ? p.range.empty() && looks_like_labels(data, field, context) : asked.categorical());
   s.kind = p.scale;
+  const FieldOf itself{&data, &field};
   if (s.kind == ScaleKind::log && p.range.empty() && r.lo <= 0) {
     // Zeros and negative values have no place on a log scale: start at the smallest positive value.
     Range positive;
@@ -287,9 +313,8 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
     s.lo = r.lo, s.hi = r.hi;
     const bool centred = s.map.kind == MapKind::diverging && is_signed && !(file && file->hard_hinge);
     if (centred) s.hi = nice_symmetric(r), s.lo = -s.hi;
-    const FieldOf one{&data, &field};
     if (s.kind == ScaleKind::linear && !labels && !file)
-      if (const ShownRange shown = shown_range({&one, 1}, p.component, centred, context); !shown.range.empty())
+      if (const ShownRange shown = shown_range({&itself, 1}, p.component, centred, context); !shown.range.empty())
         take_shown_range(shown, r, field.name, s, context);
     if (const Range window = stated_window(data);
         automatic && !labels && !is_signed && is_scanned(data, field) && window.lo < s.hi && window.hi > s.lo) {
@@ -298,6 +323,13 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
       s.lo = -1024, s.hi = std::min(s.hi, 2000.0);  // from air to bone; what lies below was never measured
     }
   }
+  const bool chosen = p.range.empty() || !p.range_of.empty();  // not stated by a user
+  if (chosen && !labels && s.map.name == "coolwarm" && s.kind == ScaleKind::linear && s.lo == -s.hi) {
+    // Of the side that reaches less far the map's outer colours are left out, so that zero keeps its own and equal steps look alike.
+    const Range all = p.range_of.empty() ? r : p.range_of;
+    const double m = s.hi, lo = std::max(s.lo, all.lo), hi = std::min(s.hi, all.hi);
+    if (hi - lo < 1.5 * m) s.map = part_of(s.map, 0.5 + 0.5 * lo / m, 0.5 + 0.5 * hi / m), s.lo = lo, s.hi = hi;
+  }
   if (s.lo == s.hi) {  // a constant field: any range around it will do
     const double d = s.lo == 0 ? 1 : std::abs(s.lo) * 0.01;
     s.lo -= d, s.hi += d;
@@ -305,12 +337,12 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   }
   if (s.kind == ScaleKind::symlog) s.linear_threshold = p.linear_threshold > 0 ? p.linear_threshold : nice_symmetric({s.lo, s.hi}) * 1e-3;
   if (labels) {
-    const FieldOf one{&data, &field};
-    const Labels found = shared ? p.labels : labels_of({&one, 1}, true, context);
+    const Labels found = shared ? p.labels : labels_of({&itself, 1}, true, context);
     s.labels = found.values;
     if (file) take_categories(*file, field, s, context);
     else s.label_names = found.names;
     if (!s.labels.empty()) s.lo = s.labels.front(), s.hi = std::max(s.labels.back(), s.lo + 1);
+    if (s.map.name == "labels" && !file) color_by_number(s);
   }
   if (file) {
     s.below = file->below, s.above = file->above;

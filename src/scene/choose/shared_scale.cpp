@@ -31,7 +31,7 @@ bool share_scale(std::span<const FieldOf> fields, ColoringParams& p, const Conte
   const std::string map(is_signed ? "coolwarm" : sequential_map(*fields[0].data, *fields[0].field));
   if (automatic) p.map = map;
   if (!p.range.empty()) return true;
-  p.range = {shown.range.lo, shown.range.hi};
+  p.range = {shown.range.lo, shown.range.hi}, p.range_of = all;
   const auto triangle = [&](std::string& color, double at) {  // in the legend
     if (color.empty()) color = color_text(find_colormap(map).at(at));
   };

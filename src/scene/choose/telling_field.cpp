@@ -61,6 +61,12 @@ bool counts_up(const Field& f) {
   return true;
 }
 
+// Numbers that reach so far that most things can have their own.
+bool one_for_each(const Field& f, const Range& r) {
+  constexpr size_t few = 64;  // a legend of names has room for them
+  return f.array.count() > few && r.hi - r.lo + 1 >= 0.5 * double(f.array.count());
+}
+
 // Of any point; nothing for AMR grids.
 std::function<Vec3(size_t)> positions_of(const Mesh& mesh) {
   if (is_lattice(mesh))
@@ -100,8 +106,9 @@ bool is_position(const Dataset& d, const Field& f) {
 bool is_rounding(const Dataset& d, const Field& f, double size) {
   if (size >= 1e-3 || !is_float(f.array.type())) return false;  // ranges cost a pass over each field
   return std::any_of(d.fields().begin(), d.fields().end(), [&](const Field& o) {
-    return &o != &f && o.association == f.association && is_float(o.array.type()) && o.role != Role::normals && o.role != Role::tcoords &&
-           size < rounding * size_of(d.range(o));
+    const bool alike = o.association == f.association || size < rounding;  // a fraction at points may be small beside energies of cells
+    return &o != &f && alike && is_float(o.array.type()) && o.role != Role::normals && o.role != Role::tcoords &&
+           o.association != Association::whole && size < rounding * size_of(d.range(o));
   });
 }
 
@@ -116,9 +123,13 @@ Telling telling(const Dataset& d, const Field& f) {
   const bool whole = !is_float(f.array.type());
   const std::vector<std::string> words = words_of(f.name);
   if (f.components() == 1) {
-    if (any_of(words, numberings) || counts_up(f)) return Telling::numbering;
-    if (whole && (any_of(words, whole_numberings) || to_lower(f.name).ends_with("id") || to_lower(f.name).ends_with("ids")))
-      return Telling::numbering;
+    const bool named_id =
+        any_of(words, numberings) ||
+        (whole && (any_of(words, whole_numberings) || to_lower(f.name).ends_with("id") || to_lower(f.name).ends_with("ids")));
+    const bool counts = counts_up(f);
+    if (counts && is_lattice(d.mesh()) && !named_id) return Telling::numbering;  // the ramp of an image
+    if (counts || (named_id && one_for_each(f, r))) return Telling::ids;
+    if (named_id) return Telling::numbering;
     if (whole && r.lo == 0 && r.hi == 1 && element_size(f.array.type()) == 1) return Telling::numbering;  // a mask
     if (whole && any_of(words, divisions)) return Telling::divisions;
     if (f.role == Role::labels) return Telling::divisions;

@@ -9,11 +9,12 @@ namespace sg {
 enum class Telling {
   values,     ///< a quantity
   divisions,  ///< parts, materials, blocks, levels: where things are, not what
-  numbering,  ///< ids, ranks, ghosts and masks: bookkeeping; coordinates, which the axes show already; textures
+  numbering,  ///< ranks, ghosts and masks: bookkeeping; coordinates, which the axes show already; textures
+  ids,        ///< a number of its own for each point or cell: colours of it would be a pattern without meaning
   nothing,    ///< the same everywhere, or rounding errors beside another field
 };
 
-/// By name, values and their neighbours: a field of integers called `block` divides, one that counts up in order numbers, one that varies
+/// By name, values and their neighbours: a field of integers called `block` divides, one that counts up in order is an id, one that varies
 /// by less than 1e-12 of its size or reaches less than 1e-12 of another field's says nothing.
 Telling telling(const Dataset& data, const Field& field);
 

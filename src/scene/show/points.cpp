@@ -15,7 +15,7 @@ void describe(Schema& s, PointsShow& p) {
 
 std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const PointsShow& p, Context& context) {
   PointsItem item;
-  item.data = input;
+  item.data = input, item.color = lone_color;
   item.color_by = field_color(*input, p.coloring, context);
   if (item.color_by && item.color_by->association == Association::cell) {
     context.info("points are coloured by point fields; cell field '" + item.color_by->field + "' is not shown on them");

@@ -5,6 +5,7 @@
 #include "data/cells/plane_normal.h"
 #include "data/field_ops.h"
 #include "filter/field/sampling/point_cell.h"
+#include "filter/mesh/faces/bilinear_quads.h"
 #include "filter/mesh/faces/faces.h"
 #include "filter/mesh/surface.h"
 #include "scene/show/field_color.h"
@@ -16,7 +17,7 @@ void describe(Schema& s, SurfaceShow& p) {
   describe(s, p.coloring);
   s("style", p.style, "solid: its faces; wireframe: the edges of the faces alone; points: their points alone.");
   s("opacity", p.opacity, "Opacity: 1 is opaque, 0 invisible.").range(0, 1);
-  s("edges", p.edges, "Draw the edges of the cells, where those are wider than a few pixels; below eight they fade.");
+  s("edges", p.edges, "Draw the edges of the cells; they fade where those are narrower than eight pixels, all of them where most are.");
   s("flat", p.flat, "Shade with one normal per polygon instead of smoothly.");
   s("lit", p.lit, "Light the surface; default: yes, but not a flat one that a field colours: its colours are those of the legend.");
   s("feature_angle", p.feature_angle, "Edges with a larger angle stay sharp when normals are computed.").unit("deg").range(0, 180);
@@ -26,6 +27,9 @@ void describe(Schema& s, SurfaceShow& p) {
 }
 
 namespace {
+
+// Where colours tell values, light may not take them far from those of the legend: it shows the shape and no more.
+constexpr Material telling_colors{0.42f, 0.58f, 0.08f, 32, true};
 
 // The points of the vertex cells as a cloud, on which a cell field is a point field.
 DatasetPtr vertex_cells(const Dataset& d, const SurfaceMesh& mesh, const std::string& field) {
@@ -100,10 +104,15 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceSh
   } else {
     item.data = surface_of(input, context);
   }
+  if (item.color_by && item.color_by->association == Association::point && item.color_by->scale.labels.empty()) {
+    const DatasetPtr whole = std::exchange(item.data, bilinear_parts(item.data, item.color_by->field));
+    if (item.data != whole && !item.edge_lines) item.edge_lines = whole;
+  }
   if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
   item.opacity = p.opacity;
   item.edges = p.edges;
   item.flat = p.flat;
+  if (item.color_by && !item.color_by->direct) item.material = telling_colors;
   item.material.lit = p.lit.value_or(!(item.color_by && plane_normal(*item.data)));
   item.feature_angle = p.feature_angle;
   item.lic = surface_texture_of(*item.data, p.lic);
@@ -113,9 +122,9 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceSh
     LinesItem lines;
     lines.data = item.data;
     lines.color_by = item.color_by;
-    if (!p.coloring.color.empty()) lines.color = item.color;
     lines.opacity = p.opacity;
-    if (mesh.polygons.size() + mesh.strips.size() == 0) lines.width = 2.5;  // alone they may be seen
+    if (mesh.polygons.size() + mesh.strips.size() == 0) lines.width = 2.5, lines.color = lone_color;
+    if (!p.coloring.color.empty()) lines.color = item.color;
     scene.items.emplace_back(std::move(lines));
   }
   if (mesh.vertices.size() > 0) {
@@ -127,6 +136,7 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceSh
       points.color_by->association = Association::point;
     }
     if (!p.coloring.color.empty()) points.color = item.color;
+    else if (mesh.polygons.size() + mesh.strips.size() == 0) points.color = lone_color;
     points.opacity = p.opacity;
     points.size = 8;
     scene.items.emplace_back(std::move(points));

@@ -8,10 +8,11 @@
 #include "color/transfer_text.h"
 #include "data/fields/field_component.h"
 #include "data/lattice.h"
+#include "data/ranks/over_all.h"
 #include "scene/choose/scale.h"
-#include "scene/choose/volume_boundaries.h"
-#include "scene/choose/volume_extent.h"
-#include "scene/choose/volume_look.h"
+#include "scene/choose/volume/boundaries.h"
+#include "scene/choose/volume/extent.h"
+#include "scene/choose/volume/look.h"
 #include "scene/show/volume_presets.h"
 
 namespace sg {
@@ -124,7 +125,7 @@ void take_second_axis(const VolumeShow& p, const Fields& fields, const ColorScal
 
 // The default level: the value at which something begins.
 void choose_level(const Field& field, VolumeItem& item, Context& context) {
-  const Range r = item.data->range(field, field.components() > 1 ? item.component : 0);
+  const Range r = range_over_all(*item.data, field, field.components() > 1 ? item.component : 0, context);
   if (r.empty()) return item.levels.push_back(0);
   const auto found = material_boundaries(sample_derivatives(item.data, field, item.component, false, 500000, context), r.lo, r.hi, 1);
   double level = 0.5 * (r.lo + r.hi);
@@ -149,7 +150,7 @@ void choose_transfer(const VolumeShow& p, const Field& field, VolumeItem& item, 
     return;
   }
   if (value_of_word<TransferChoice>(p.transfer) == TransferChoice::boundaries) {
-    const Range r = item.data->range(field, field.components() > 1 ? item.component : 0);
+    const Range r = range_over_all(*item.data, field, field.components() > 1 ? item.component : 0, context);
     const auto found = material_boundaries(sample_derivatives(item.data, field, item.component, false, 2000000, context), r.lo, r.hi);
     const bool free = item.detail.second == SecondAxis::none;
     TransferDetail detail;
@@ -164,8 +165,8 @@ void choose_transfer(const VolumeShow& p, const Field& field, VolumeItem& item, 
     }
     context.info(fmt::format("no material boundaries stand out in '{}'; opacity is chosen from its histogram", field.name));
   }
-  const std::string why =
-      choose_volume_look(*item.data, field, p.coloring, item, value_of_word<TransferChoice>(p.transfer) == TransferChoice::automatic);
+  const std::string why = choose_volume_look(*item.data, field, p.coloring, item,
+                                             value_of_word<TransferChoice>(p.transfer) == TransferChoice::automatic, context);
   if (info_of(item.mode).absorbs) context.info(why);
 }
 
@@ -199,7 +200,7 @@ VolumeShow with_preset(const VolumeShow& p, const Schema& schema, const Dataset&
   const int component = component_of(p, fields, *fields.opacity);
   check_component(*fields.opacity, component, "component");
   std::string reason;
-  VolumeShow look = volume_of_preset(p.preset, d, *fields.opacity, component, reason);
+  VolumeShow look = volume_of_preset(p.preset, d, *fields.opacity, component, reason, context);
   context.info(reason);
   if (states("map") || states("color")) look.colors.clear();
   if (states("widgets") || states("transfer")) look.opacity.reset();

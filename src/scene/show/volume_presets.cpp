@@ -6,7 +6,8 @@
 #include "base/error.h"
 #include "base/text/text.h"
 #include "color/parse_color.h"
-#include "scene/choose/volume_look.h"
+#include "data/ranks/over_all.h"
+#include "scene/choose/volume/look.h"
 
 namespace sg {
 
@@ -87,8 +88,8 @@ const Look& look_of(std::string_view name) {
 }
 
 // To three digits: numbers for people to read.
-Range rounded_foreground(const Field& field, int component, const Range& r) {
-  const Range f = foreground(field, component, r.lo, r.hi);
+Range rounded_foreground(const Field& field, int component, const Range& r, const Context& context) {
+  const Range f = foreground(field, component, r.lo, r.hi, context);
   const Range short_one{*parse_double(short_number(f.lo, 3)), *parse_double(short_number(f.hi, 3))};
   return short_one.lo < short_one.hi ? short_one : f;
 }
@@ -104,20 +105,21 @@ std::span<const VolumePreset> volume_presets() {
   return presets;
 }
 
-VolumeShow volume_of_preset(std::string_view name, const Dataset& data, const Field& field, int component, std::string& reason) {
+VolumeShow volume_of_preset(std::string_view name, const Dataset& data, const Field& field, int component, std::string& reason,
+                            const Context& context) {
   const Look& look = look_of(name);
-  Range r = data.range(field, field.components() > 1 ? component : 0);
+  Range r = range_over_all(data, field, field.components() > 1 ? component : 0, context);
   if (r.empty()) r = {0, 1};
   if (r.lo == r.hi) r.hi = r.lo + std::max(1.0, 0.01 * std::abs(r.lo));
   double zero = r.lo, per = r.hi - r.lo;  // value = zero + per * place
   if (look.axis == Look::Axis::hounsfield) {
     double offset = 0;
-    if (looks_like_ct(data, field, &offset) || (r.lo <= -500 && r.hi >= 500)) {
+    if (looks_like_ct(data, field, &offset, context) || (r.lo <= -500 && r.hi >= 500)) {
       zero = offset, per = 1;
       reason = fmt::format("preset {}: values are Hounsfield units{}", name, offset != 0 ? fmt::format(" + {}", short_number(offset)) : "");
     } else if (look.foreground_is_vessels) {
       constexpr double faint = 120, bright = 500;
-      const Range f = rounded_foreground(field, component, r);
+      const Range f = rounded_foreground(field, component, r, context);
       per = (f.hi - f.lo) / (bright - faint), zero = f.lo - faint * per;
       reason = fmt::format("preset {}: '{}' does not look like CT in Hounsfield units; its foreground {} to {} is taken as vessels", name,
                            field.name, short_number(f.lo), short_number(f.hi));
@@ -129,7 +131,7 @@ VolumeShow volume_of_preset(std::string_view name, const Dataset& data, const Fi
                            field.name, short_number(r.lo), short_number(r.hi));
     }
   } else {
-    const Range f = rounded_foreground(field, component, r);
+    const Range f = rounded_foreground(field, component, r, context);
     zero = f.lo, per = f.hi - f.lo;
     reason = fmt::format("preset {}: the foreground of '{}' ranges from {} to {}", name, field.name, short_number(f.lo, 3),
                          short_number(f.hi, 3));

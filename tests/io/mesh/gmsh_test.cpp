@@ -108,8 +108,9 @@ TEST_CASE("gmsh: groups, names, steps and data of version 2.2") {
   CHECK(f.require("physical").array.get(0) == 7);
   CHECK(f.require("entity").array.get(0) == 3);
   CHECK(f.require("partition").array.get(2) == 3);
-  REQUIRE(d->notes().size() == 2);
-  CHECK(d->notes()[0] == std::pair<std::string, std::string>("physical 7 of dimension 1", "the edge"));
+  REQUIRE(d->notes().size() == 1);
+  CHECK(d->notes()[0] == std::pair<std::string, std::string>("labels of physical", "7=the edge\n9=inside"));
+  CHECK_FALSE(f.find("group"));
   CHECK(f.require("T").array.get(3) == 4);
   CHECK(std::isnan(f.require("q").array.get(0)));
   CHECK(f.require("q").array.get(2, 1) == 2);
@@ -121,6 +122,19 @@ TEST_CASE("gmsh: groups, names, steps and data of version 2.2") {
   CHECK(jump.get(size_t(cells.point(1, 2))) == 3);
   CHECK(jump.get(size_t(cells.point(2, 1))) == 7);
   CHECK(jump.get(size_t(cells.point(1, 0))) == 1);
+
+  // A curve and a surface may share a number: then all groups are numbered anew, and those without a name get one.
+  std::string both = ascii_22();
+  both.replace(both.find("2 9 \"inside\""), 12, "2 7 \"face\"");
+  both.replace(both.find("6 2 4 9"), 7, "6 2 4 7");
+  const DatasetPtr shared = test::read_text("b.msh", both);
+  CHECK(shared->fields().require("physical").array.get(1) == 7);
+  const Array group = shared->fields().require("group").array;
+  CHECK(group.get(0) == 1);
+  CHECK(group.get(1) == 2);
+  CHECK(group.get(2) == 3);
+  REQUIRE(shared->notes().size() == 1);
+  CHECK(shared->notes()[0] == std::pair<std::string, std::string>("labels of group", "1=the edge\n2=face\n3=surfaces 9"));
 
   CHECK(file_times(test::temp_folder() + "a.msh", {}, context) == std::vector<double>{0, 0.5});
   ReadOptions late;

@@ -211,6 +211,49 @@ TEST_CASE("raster edges: they fade where cells are narrower than eight pixels ac
   }
 }
 
+TEST_CASE("raster edges: without a colour of their own they are darker than bright surfaces and lighter than dark ones") {
+  SurfaceMesh m = triangle_mesh({-60, -60, 0, 0, -60, 0, 60, -60, 0, -60, 60, 0, 0, 60, 0, 60, 60, 0}, {});
+  m.polygons = {Array::from_vector<int32_t>({0, 1, 4, 3, 1, 2, 5, 4}), {}, 4};
+  for (const float grey : {0.9f, 0.6f, 0.4f, 0.2f, 0.05f}) {
+    SurfaceItem q = item(make_dataset(m), {grey, grey, grey}, false);
+    q.edges = true;
+    Scene s;
+    s.items = {q};
+    const Picture p = draw(s, front_parallel(200), 200, 200, 2);
+    const double face = p.rgba(70, 100)[0], edge = p.rgba(100, 100)[0];
+    CAPTURE(grey);
+    if (grey > 0.35f) CHECK(edge < 0.5 * face);
+    else CHECK(edge > 2 * face);
+  }
+}
+
+TEST_CASE("raster edges: where most cells are too small for edges, the others have none either") {
+  // Squares of 20 pixels on the left; on the right as many columns, or none, of squares of 2.
+  const auto left_edge = [](int small) {
+    std::vector<float> xyz;
+    std::vector<int32_t> ids;
+    const auto squares = [&](float x0, int nx, int ny, float d) {
+      for (int j = 0; j < ny; ++j)
+        for (int i = 0; i < nx; ++i) {
+          const auto at = int32_t(xyz.size() / 3);
+          const float x = x0 + float(i) * d, y = -60 + float(j) * d;
+          xyz.insert(xyz.end(), {x, y, 0, x + d, y, 0, x + d, y + d, 0, x, y + d, 0});
+          ids.insert(ids.end(), {at, at + 1, at + 2, at + 3});
+        }
+    };
+    squares(-60, 3, 6, 20), squares(0, small, small > 0 ? 60 : 0, 2);
+    SurfaceMesh m = triangle_mesh(xyz, {});
+    m.polygons = {Array::from_vector(ids), {}, 4};
+    SurfaceItem q = item(make_dataset(m), {1, 1, 1}, false);
+    q.edges = true, q.edge_color = {0, 0, 0};
+    Scene s;
+    s.items = {q};
+    return red_behind(draw(s, front_parallel(200), 200, 200, 1), 60, 90);
+  };
+  CHECK(left_edge(0) < 0.6);
+  CHECK(left_edge(30) == 1);
+}
+
 TEST_CASE("raster marks: mistakes are told") {
   Scene s;
   s.items = {LinesItem{}};

@@ -10,7 +10,7 @@
 #include "color/parse_color.h"
 #include "filter/scalar/bands.h"
 #include "scene/choose/chosen_scale.h"
-#include "scene/choose/volume_look.h"
+#include "scene/choose/volume/look.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -46,12 +46,33 @@ TEST_CASE("choose_scale: signed data gets a diverging map with zero in the middl
   CHECK(test::chosen_scale(positive).hi == 3);
 }
 
+TEST_CASE("choose_scale: of a diverging map only as much is taken on each side as the values reach, zero keeps its colour") {
+  const auto uneven = image<float>(4, [](size_t i, size_t, size_t) { return i == 0 ? -0.5f : float(i); });  // -0.5 .. 3
+  const ColorScale s = test::chosen_scale(uneven);
+  const Colormap whole = find_colormap("coolwarm");
+  CHECK(s.lo == -0.5);
+  CHECK(s.hi == 3);
+  CHECK(s.map.kind == MapKind::diverging);
+  const auto same = [](Vec3f a, Vec3f b) { return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)}) < 0.01; };
+  for (const double v : {-0.5, -0.25, 0.0, 1.0, 3.0}) CHECK(same(s.map.at(s.position(v)), whole.at(0.5 + v / 6)));
+}
+
+TEST_CASE("choose_scale: a ramp of whole numbers along y is no map of labels, though neighbours along x are equal") {
+  const auto ramp = image<uint8_t>(16, [](size_t, size_t j, size_t) { return uint8_t(j); });
+  CHECK_FALSE(looks_like_labels(*ramp, ramp->fields()[0]));
+}
+
 TEST_CASE("choose_scale: labels in pieces get one colour each, noisy integers do not") {
   const auto pieces = image<uint8_t>(16, [](size_t i, size_t j, size_t) { return uint8_t(i < 4 ? 0 : i < 9 ? 3 : j < 8 ? 7 : 12); });
   CHECK(looks_like_labels(*pieces, pieces->fields()[0]));
   const ColorScale s = test::chosen_scale(pieces);
   CHECK(s.map.categorical());
   CHECK(s.labels == std::vector<double>{0, 3, 7, 12});
+  const auto selected = image<uint8_t>(16, [](size_t i, size_t j, size_t) { return uint8_t(i < 9 ? 3 : j < 8 ? 1 : 12); });
+  const ColorScale of_some = test::chosen_scale(selected);
+  const std::vector<Vec3f> palette = find_colormap("labels").colors;
+  for (const double label : {3.0, 12.0}) CHECK(of_some.color(label) == s.color(label));
+  CHECK(of_some.map.colors[0] == palette[0]);
   const auto noise = image<uint8_t>(16, [](size_t i, size_t j, size_t k) { return uint8_t((i * 37 + j * 101 + k * 53) % 60); });
   CHECK_FALSE(looks_like_labels(*noise, noise->fields()[0]));
   const auto real = image<float>(8, [](size_t i, size_t, size_t) { return float(i < 4); });

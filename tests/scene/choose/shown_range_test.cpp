@@ -6,7 +6,7 @@
 
 #include "data/fields/known_looks.h"
 #include "scene/choose/chosen_scale.h"
-#include "scene/choose/volume_look.h"
+#include "scene/choose/volume/look.h"
 #include "scene/look.h"
 #include "scene/show/glyphs.h"
 #include "scene/show/surface.h"

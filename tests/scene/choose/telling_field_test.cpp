@@ -43,13 +43,26 @@ TEST_CASE("telling fields: quantities, divisions, numberings and nothing") {
   CHECK(telling_of(of<int>("block", parts)) == Telling::divisions);
   for (const char* name : {"rank", "GlobalNodeId", "vtkGhostType", "IBlank", "procid", "block_number", "cellids"})
     CHECK_MESSAGE(telling_of(of<int>(name, parts)) == Telling::numbering, name);
-  CHECK(telling_of(of<int>("any", [](int i) { return 5 + i; })) == Telling::numbering);
+  CHECK(telling_of(of<int>("any", [](int i) { return 5 + i; })) == Telling::numbering);  // the ramp of an image
   CHECK(telling_of(of<uint8_t>("inside", [](int i) { return uint8_t(i % 3 == 0); })) == Telling::numbering);
   CHECK(telling_of(of<double>("constant", [](int) { return 3.5; })) == Telling::nothing);
   CHECK(telling_of(of<double>("nearly", [](int i) { return 1e5 * (1 + 1e-15 * (i % 3)); })) == Telling::nothing);
   // x is a coordinate where its values are.
   CHECK(telling_of(of<double>("x", [](int i) { return double(i % 4); })) == Telling::numbering);
   CHECK(telling_of(of<double>("pressure", [](int i) { return double(i % 4); })) == Telling::values);
+}
+
+TEST_CASE("telling fields: an id for each of many points gives no colour, even where there is nothing else") {
+  DatasetParts p;
+  UniformGrid g;
+  g.dims = {100, 1, 1};
+  p.mesh = g;
+  std::vector<int64_t> ids;
+  for (int64_t i = 0; i < 100; ++i) ids.push_back(1000 + 37 * i % 100);  // in no order
+  p.fields.add({"PointId", Association::point, Array::from_vector(ids), "", Role::none});
+  const DatasetPtr d = make_dataset(p);
+  CHECK(telling(*d, d->fields()[0]) == Telling::ids);
+  CHECK(automatic_field(*d) == nullptr);
 }
 
 TEST_CASE("telling fields: rounding errors beside another field say nothing, alone they do") {

@@ -7,7 +7,7 @@
 #include "color/transfer_text.h"
 #include "data/field_ops.h"
 #include "filter/field/sampling/point_cell.h"
-#include "scene/choose/volume_support.h"
+#include "scene/choose/volume/volume_support.h"
 #include "scene/show/show.h"
 #include "scene/show/volume_presets.h"
 #include "support/test.h"

@@ -2,6 +2,7 @@
 #include "data/cells/shape/cell_inverse.h"
 
 #include <algorithm>
+#include <array>
 
 #include "data/cells/cell_topology.h"
 
@@ -217,14 +218,29 @@ Vec3 nearest_on_triangle(Vec3 a, Vec3 b, Vec3 c, Vec3 x, Vec3& l) {
 
 namespace {
 
-double distance2(const CellGeometry& g, Vec3 rst, Vec3 x) {
+// p + r u + s v + r s w, 0 <= r, s <= 1: a quadrilateral of four corners.
+struct BilinearPatch {
+  Vec3 p, u, v, w;
+
+  Vec3 position(Vec3 rst) const { return p + u * rst.x + v * rst.y + w * (rst.x * rst.y); }
+  Vec3 frame(Vec3 rst, Vec3 column[3]) const {
+    column[0] = u + w * rst.y, column[1] = v + w * rst.x, column[2] = Vec3();
+    return position(rst);
+  }
+};
+
+Vec3 clamped(const CellGeometry& g, Vec3 rst) { return g.shape->clamped(rst); }
+Vec3 clamped(const BilinearPatch&, Vec3 rst) { return {std::clamp(rst.x, 0.0, 1.0), std::clamp(rst.y, 0.0, 1.0), 0}; }
+
+template <class Shape>
+double distance2(const Shape& g, Vec3 rst, Vec3 x) {
   const Vec3 d = g.position(rst) - x;
   return dot(d, d);
 }
 
 // Gauss-Newton by steps from step_of(rst, columns, miss), clamped to the element; steps that do not help are halved.
-template <class Move>
-Vec3 descend(const CellGeometry& g, Vec3 x, Vec3 rst, Move step_of) {
+template <class Shape, class Move>
+Vec3 descend(const Shape& g, Vec3 x, Vec3 rst, Move step_of) {
   double have = distance2(g, rst, x);
   for (int i = 0; i < 60; ++i) {
     Vec3 column[3];
@@ -234,7 +250,8 @@ Vec3 descend(const CellGeometry& g, Vec3 x, Vec3 rst, Move step_of) {
     bool better = false;
     Vec3 next = rst;
     for (int half = 0; half < 12 && !better; ++half, scale /= 2) {
-      next = g.shape->clamped(rst + step * scale);
+      next = clamped(g, rst + step * scale);
+      if (next == rst) break;  // held by the rim, and shorter steps are held too
       const double d2 = distance2(g, next, x);
       better = d2 < have;
       if (better) have = d2;
@@ -294,22 +311,43 @@ bool on_cell(const CellGeometry& g, Vec3 x, Vec3& rst) {
   return false;
 }
 
-// The nearest place of a parallelogram p + r u + s v, 0 <= r, s <= 1.
-Vec3 nearest_on_parallelogram(Vec3 p, Vec3 u, Vec3 v, Vec3 x) {
-  const Vec3 column[3] = {u, v, {0, 0, 0}};
-  const Vec3 inside = in_plane(column, x - p);
-  if (inside.x >= 0 && inside.x <= 1 && inside.y >= 0 && inside.y <= 1) return inside;
-  double best = HUGE_VAL, t;
-  Vec3 rst;
-  auto side = [&](Vec3 a, Vec3 b, auto at) {
-    const Vec3 d = nearest_on_segment(a, b, x, t) - x;
-    if (dot(d, d) < best) best = dot(d, d), rst = at(t);
+// The place nearest to x on the triangles between (pieces + 1)^2 samples of a surface over [0,1]^2, folded onto its element by `place`.
+template <class Shape, class Place>
+Vec3 nearest_of_samples(const Shape& g, Vec3 x, int pieces, Place&& place) {
+  std::array<Vec3, 21 * 21> sample;  // curved cells have at most order 10
+  for (int j = 0, n = 0; j <= pieces; ++j)
+    for (int i = 0; i <= pieces; ++i) sample[size_t(n++)] = g.position(place(i, j));
+  double best = HUGE_VAL;
+  Vec3 start;
+  for (int j = 0; j < pieces; ++j)
+    for (int i = 0; i < pieces; ++i)
+      for (int half = 0; half < 2; ++half) {
+        const int ij[3][2] = {{i, j}, {i + 1, j + half}, {i + 1 - half, j + 1}};
+        auto at = [&](int c) { return sample[size_t(ij[c][0] + (pieces + 1) * ij[c][1])]; };
+        Vec3 l;
+        const Vec3 d = nearest_on_triangle(at(0), at(1), at(2), x, l) - x;
+        if (!(dot(d, d) < best)) continue;
+        best = dot(d, d);
+        start = place(ij[0][0], ij[0][1]) * l.x + place(ij[1][0], ij[1][1]) * l.y + place(ij[2][0], ij[2][1]) * l.z;
+      }
+  return start;
+}
+
+Vec3 step_in_plane(Vec3, const Vec3* column, Vec3 miss) { return in_plane(column, miss); }
+
+Vec3 nearest_on_bilinear(const BilinearPatch& b, Vec3 x) {
+  constexpr int pieces = 2;
+  const Vec3 start = nearest_of_samples(b, x, pieces, [](int i, int j) { return Vec3(double(i) / pieces, double(j) / pieces, 0); });
+  Vec3 rst = descend(b, x, start, step_in_plane);
+  if (std::min(std::min(rst.x, 1 - rst.x), std::min(rst.y, 1 - rst.y)) > 1e-12) return rst;
+  // It ended on the rim, where steps across are cut off: the sides themselves decide.
+  double have = distance2(b, rst, x), t;
+  const auto side = [&](Vec3 from, Vec3 to) {
+    const Vec3 d = nearest_on_segment(b.position(from), b.position(to), x, t) - x;
+    if (dot(d, d) < have) have = dot(d, d), rst = lerp(from, to, t);
   };
-  side(p, p + u, [](double r) { return Vec3(r, 0, 0); });
-  side(p + v, p + v + u, [](double r) { return Vec3(r, 1, 0); });
-  side(p, p + v, [](double s) { return Vec3(0, s, 0); });
-  side(p + u, p + u + v, [](double s) { return Vec3(1, s, 0); });
-  return rst;
+  side({0, 0, 0}, {1, 0, 0}), side({0, 1, 0}, {1, 1, 0}), side({0, 0, 0}, {0, 1, 0}), side({1, 0, 0}, {1, 1, 0});
+  return descend(b, x, rst, step_in_plane);
 }
 
 }  // namespace
@@ -327,48 +365,27 @@ Vec3 nearest_reference(const CellGeometry& g, Vec3 x) {
     nearest_on_triangle(g.at[0], g.at[1], g.at[2], x, l);
     return {l.y, l.z, 0};
   }
-  const bool straight = g.at.size() == 4 && linear_topology(g.shape->type()) && g.shape->dimension() == 2;  // of four corners
-  if (straight) {
-    const Vec3 p = g.at[0], u = g.at[1] - p, v = g.at[g.shape->type() == CellType::pixel ? 2 : 3] - p;
-    const Vec3 off = g.at[g.shape->type() == CellType::pixel ? 3 : 2] - (p + u + v);
-    if (dot(off, off) <= 1e-28 * (dot(u, u) + dot(v, v)) && length(cross(u, v)) > 1e-7 * length(u) * length(v))
-      return nearest_on_parallelogram(p, u, v, x);
+  if (g.at.size() == 4 && linear_topology(g.shape->type()) && g.shape->dimension() == 2) {
+    const bool in_rows = g.shape->type() == CellType::pixel;
+    const Vec3 p = g.at[0], u = g.at[1] - p, v = g.at[in_rows ? 2 : 3] - p;
+    return nearest_on_bilinear({p, u, v, g.at[in_rows ? 3 : 2] - (p + u + v)}, x);
   }
   if (Vec3 rst; on_cell(g, x, rst)) return rst;
   const int order = std::max({g.shape->orders()[0], g.shape->orders()[1], 1});
   const int pieces = 2 * order;
   if (base == CellType::line) return nearest_on_curve(g, x, {0, 0, 0}, {1, 0, 0}, pieces);
-  // Samples of the surface, and the nearest triangle between them.
-  auto place = [&](int i, int j) { return from_cube(base, {double(i) / pieces, double(j) / pieces, 0}); };
-  std::vector<Vec3> sample;
-  for (int j = 0; j <= pieces; ++j)
-    for (int i = 0; i <= pieces; ++i) sample.push_back(g.position(place(i, j)));
-  double best = HUGE_VAL;
-  Vec3 start = g.shape->center();
-  for (int j = 0; j < pieces; ++j)
-    for (int i = 0; i < pieces; ++i)
-      for (int half = 0; half < 2; ++half) {
-        const int ij[3][2] = {{i, j}, {i + 1, j + half}, {i + 1 - half, j + 1}};
-        auto at = [&](int c) { return sample[size_t(ij[c][0] + (pieces + 1) * ij[c][1])]; };
-        Vec3 l;
-        const Vec3 d = nearest_on_triangle(at(0), at(1), at(2), x, l) - x;
-        if (!(dot(d, d) < best)) continue;
-        best = dot(d, d);
-        start = place(ij[0][0], ij[0][1]) * l.x + place(ij[1][0], ij[1][1]) * l.y + place(ij[2][0], ij[2][1]) * l.z;
-      }
-  Vec3 rst = descend(g, x, start, [&](Vec3, const Vec3* column, Vec3 miss) { return in_plane(column, miss); });
+  const Vec3 start = nearest_of_samples(g, x, pieces, [&](int i, int j) {
+    return from_cube(base, {double(i) / pieces, double(j) / pieces, 0});
+  });
+  Vec3 rst = descend(g, x, start, step_in_plane);
   if (g.shape->outside(rst) < -1e-12) return rst;
   // It ended on the rim, where steps across are cut off: the rim's own curves decide.
   double have = distance2(g, rst, x);
-  const LinearTopology& t = *linear_topology(straight ? g.shape->type() : base);
-  for (const auto& e : t.edges) {
-    const Vec3 from = g.shape->node(e[0]), to = g.shape->node(e[1]);
-    double share = 0;
-    if (straight) nearest_on_segment(g.at[e[0]], g.at[e[1]], x, share);
-    const Vec3 q = straight ? lerp(from, to, share) : nearest_on_curve(g, x, from, to, pieces);
+  for (const auto& e : linear_topology(base)->edges) {
+    const Vec3 q = nearest_on_curve(g, x, g.shape->node(e[0]), g.shape->node(e[1]), pieces);
     if (const double d2 = distance2(g, q, x); d2 < have) have = d2, rst = q;
   }
-  return descend(g, x, rst, [&](Vec3, const Vec3* column, Vec3 miss) { return in_plane(column, miss); });
+  return descend(g, x, rst, step_in_plane);
 }
 
 }  // namespace sg

@@ -188,6 +188,14 @@ bool CellMap::locate(Vec3 x, CellPlace& place, double tolerance) {
 void CellMap::nearest(Vec3 x, CellPlace& place) {
   if (locate(x, place) || !shape_ || dimension() < 3) return;
   nearest_of_faces(x, place);
+  place.outside = std::sqrt(place.distance2) / size();
+  const InverseResult r = invert_solid(Geometry(*this), place.nearest, 1e-6);
+  if (r.found) place.rst = shape_->clamped(r.rst);
+}
+
+void CellMap::nearest_outside(Vec3 x, CellPlace& place) {
+  if (shape_ && dimension() == 3) nearest_of_faces(x, place);
+  else locate(x, place);
 }
 
 void CellMap::nearest_of_faces(Vec3 x, CellPlace& place) {
@@ -227,9 +235,6 @@ void CellMap::nearest_of_faces(Vec3 x, CellPlace& place) {
     if (const double d2 = dot(p - x, p - x); d2 < best) best = d2, place.nearest = p;
   }
   place.distance2 = best;
-  place.outside = std::sqrt(best) / size();
-  const InverseResult r = invert_solid(Geometry(*this), place.nearest, 1e-6);
-  if (r.found) place.rst = shape_->clamped(r.rst);
 }
 
 const std::vector<uint32_t>& CellMap::triangles() {

@@ -39,6 +39,8 @@ class CellMap {
   bool locate(Vec3 x, CellPlace& place, double tolerance = 1e-9);
   /// The nearest point of the cell: x itself inside a solid, else the nearest of its faces (curved ones by iteration).
   void nearest(Vec3 x, CellPlace& place);
+  /// Of a cell that is known not to hold x: the nearest point and its distance alone.
+  void nearest_outside(Vec3 x, CellPlace& place);
   /// Interpolation weights of ids() at a located place: shape functions (rational where weighted); polygons by mean value
   /// coordinates in their plane (Floater 2003); polyhedra by mean value coordinates of their triangulated faces (Ju et al. 2005);
   /// strips and poly-lines by their triangle or piece.

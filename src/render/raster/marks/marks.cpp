@@ -2,6 +2,7 @@
 #include "render/raster/marks/marks.h"
 
 #include <cmath>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "render/prepare/glyph_set.h"
@@ -49,6 +50,16 @@ constexpr double roomy = 8, crowded = 3;
 
 double edge_fade(double room_pixels) { return std::clamp((room_pixels - crowded) / (roomy - crowded), 0.0, 1.0); }
 
+// Edges of the larger cells alone would look like a change of the data: where many of small ones (short edges) are `gone`, all go.
+void fade_together(std::vector<MarkRecord>& edges, size_t gone) {
+  constexpr double few = 0.25, many = 0.5;
+  const double share = double(gone) / double(std::max<size_t>(edges.size() + gone, 1));
+  const auto all = float(std::clamp((many - share) / (many - few), 0.0, 1.0));
+  if (all > 0)
+    for (MarkRecord& m : edges) m.fade *= all;
+  else edges.clear();
+}
+
 bool make_record(const PreparedItem& item, const Projection& p, double pixel_scale, size_t i, MarkRecord& m) {
   const bool line = item.kind == PreparedItem::Kind::lines;
   Vec3 a = eye_point(item, p, line ? item.segments->points[2 * i] : (*item.points)[i]);
@@ -60,7 +71,6 @@ bool make_record(const PreparedItem& item, const Projection& p, double pixel_sca
   if (line && !item.segments->room.empty()) {
     const double depth = 0.5 * (a.z + b.z), pixels = (p.parallel ? p.scale : p.scale / std::max(depth, 1e-300)) / pixel_scale;
     m.fade = float(edge_fade(double(item.segments->room[i]) * pixels));
-    if (!(m.fade > 0)) return false;
   }
   if (!place_segment(p, a, b, m)) return false;
   if (!line) m.from = m.to = 0;
@@ -85,14 +95,19 @@ PixelBox mark_box(const MarkRecord& m, int width, int height) {
 std::vector<MarkRecord> mark_records(const PreparedItem& item, uint32_t number, const Projection& projection, double pixel_scale) {
   const size_t n = item.primitives, chunks = (n + marks_per_chunk - 1) / marks_per_chunk;
   std::vector<std::vector<MarkRecord>> parts(chunks);
+  std::vector<size_t> gone(chunks);
   parallel_for(n, marks_per_chunk, [&](size_t begin, size_t end) {
     MarkRecord m;
     m.half = float(0.5 * item.width * pixel_scale), m.halo = float(item.halo * pixel_scale), m.item = number;
     for (size_t i = begin; i < end; ++i)
-      if (make_record(item, projection, pixel_scale, i, m)) parts[begin / marks_per_chunk].push_back(m);
+      if (make_record(item, projection, pixel_scale, i, m)) {
+        if (m.fade > 0) parts[begin / marks_per_chunk].push_back(m);
+        else gone[begin / marks_per_chunk] += std::hypot(m.bx - m.ax, m.by - m.ay) < roomy * pixel_scale;
+      }
   });
   std::vector<MarkRecord> all;
   for (const auto& p : parts) all.insert(all.end(), p.begin(), p.end());
+  if (item.segments && !item.segments->room.empty()) fade_together(all, std::accumulate(gone.begin(), gone.end(), size_t(0)));
   return all;
 }
 
@@ -163,7 +178,18 @@ void MarkTile::add(const Cover& c, uint32_t group, double joint, std::vector<Cov
   out.push_back(c);
 }
 
-void color_mark(const PreparedItem& item, const std::vector<Lamp>& lights, const Projection& p, Cover& c) {
+namespace {
+
+// An edge in the colour of what it lies on, but darker, is seen without hiding the field; on dark colours it must be lighter.
+void stand_out(const float* under, float* rgb) {
+  constexpr float dark = 0.1f, shade = 0.25f, lift = 0.1f;  // linear luminance, share that is left, share of white
+  const bool lighter = 0.2126f * under[0] + 0.7152f * under[1] + 0.0722f * under[2] < dark;
+  for (int k = 0; k < 3; ++k) rgb[k] = lighter ? under[k] + lift * (1 - under[k]) : shade * under[k];
+}
+
+}  // namespace
+
+void color_mark(const PreparedItem& item, const std::vector<Lamp>& lights, const Projection& p, const float* under, Cover& c) {
   const uint32_t i = c.primitive - item.first_primitive;
   const ColorSource& source = item.color;
   const bool line = item.kind == PreparedItem::Kind::lines;
@@ -200,6 +226,7 @@ void color_mark(const PreparedItem& item, const std::vector<Lamp>& lights, const
   }
   c.alpha *= rgba.w * item.opacity;
   for (int k = 0; k < 3; ++k) c.rgb[k] = rgba[k] * light + gloss;
+  if (item.contrasts && under[3] >= 1) stand_out(under, c.rgb);
 }
 
 }  // namespace sg::raster

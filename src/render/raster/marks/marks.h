@@ -62,7 +62,7 @@ class MarkTile {
   std::vector<Last> last_, last_halo_;
 };
 
-/// Colours of the covers of lines and dots.
-void color_mark(const PreparedItem& item, const std::vector<Lamp>& lights, const Projection& projection, Cover& cover);
+/// Colours of the covers of lines and dots. `under`: linear RGBA of the opaque pixel behind.
+void color_mark(const PreparedItem& item, const std::vector<Lamp>& lights, const Projection& projection, const float* under, Cover& cover);
 
 }  // namespace sg::raster

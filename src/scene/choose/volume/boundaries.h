@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/choose/volume_derivatives.h"
+#include "scene/choose/volume/derivatives.h"
 
 namespace sg {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/choose/volume_boundaries.h"
+#include "scene/choose/volume/boundaries.h"
 
 #include "base/parallel.h"
 #include "filter/mesh/to_unstructured.h"

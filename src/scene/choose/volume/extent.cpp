@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/choose/volume_extent.h"
+#include "scene/choose/volume/extent.h"
 
 #include <fmt/core.h>
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/choose/volume_derivatives.h"
+#include "scene/choose/volume/derivatives.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "base/all_ranks.h"
 #include "base/parallel.h"
 #include "data/lattice.h"
+#include "data/ranks/over_all.h"
 #include "filter/field/derivatives/derivatives.h"
 
 namespace sg {
@@ -120,12 +122,13 @@ std::vector<DerivativeSample> sample_derivatives(const DatasetPtr& data, const F
   std::erase_if(samples, [](const DerivativeSample& s) {
     return !std::isfinite(s.value) || !std::isfinite(s.gradient) || !std::isfinite(s.second_derivative) || !std::isfinite(s.curvature);
   });
+  if (context.communicator) samples = all_concatenated(std::span<const DerivativeSample>(samples), context.communicator);
   return samples;
 }
 
 Range second_axis_range(const DatasetPtr& data, const Field& field, int component, SecondAxis axis, const Field* second, Context& context) {
   if (axis == SecondAxis::field && second) {
-    Range r = data->range(*second, second->components() > 1 ? -1 : 0);
+    Range r = range_over_all(*data, *second, second->components() > 1 ? -1 : 0, context);
     if (r.empty()) r = {0, 1};
     if (r.lo == r.hi) r.hi = r.lo + std::max(1.0, std::abs(r.lo));
     return r;

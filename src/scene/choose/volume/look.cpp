@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/choose/volume_look.h"
+#include "scene/choose/volume/look.h"
 
 #include <fmt/core.h>
 
+#include "base/all_ranks.h"
 #include "base/text/text.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
 #include "data/patient/modality.h"
 #include "data/patient/patient_frame.h"
+#include "data/ranks/over_all.h"
 #include "scene/choose/scale.h"
 #include "scene/choose/shown_range.h"
 
 namespace sg {
 
-std::vector<size_t> histogram(const Field& field, int component, double lo, double hi, size_t bins) {
+std::vector<size_t> histogram(const Field& field, int component, double lo, double hi, size_t bins, const Context& context) {
   std::vector<size_t> h(bins);
   if (!(lo < hi)) return h;
   const double scale = double(bins) / (hi - lo);
@@ -30,14 +32,15 @@ std::vector<size_t> histogram(const Field& field, int component, double lo, doub
       if (x >= lo && x <= hi) ++h[std::min(bins - 1, size_t((x - lo) * scale))];
     }
   });
+  all_sum(std::span<size_t>(h), context.communicator);
   return h;
 }
 
-bool looks_like_ct(const Dataset& data, const Field& field, double* offset) {
+bool looks_like_ct(const Dataset& data, const Field& field, double* offset, const Context& context) {
   const ElementType t = field.array.type();
   if ((t != ElementType::i16 && t != ElementType::u16) || field.components() != 1) return false;
   const Modality modality = modality_of(data, field);
-  const Range r = data.range(field);
+  const Range r = range_over_all(data, field, 0, context);
   if (r.empty() || modality == Modality::other) return false;
   const bool hounsfield = r.lo <= -500;
   *offset = hounsfield ? 0 : 1024;
@@ -45,7 +48,7 @@ bool looks_like_ct(const Dataset& data, const Field& field, double* offset) {
   if (r.hi < 1500 || r.hi > 8000 || r.lo < -4000 || (!hounsfield && r.lo > 300)) return false;
   // Air: a good part of the volume lies at least 300 HU below water. Of the rest soft tissue is a narrow peak about water; MR images, which
   // begin at 0 as well, are spread over their whole range.
-  const auto h = histogram(field, -1, r.lo, r.hi, 1024);
+  const auto h = histogram(field, -1, r.lo, r.hi, 1024, context);
   size_t all = 0, air = 0, tissue = 0;
   for (size_t b = 0; b < h.size(); ++b) {
     const double hu = r.lo + (double(b) + 0.5) / double(h.size()) * (r.hi - r.lo) - *offset;
@@ -84,11 +87,11 @@ size_t fullest(const std::vector<size_t>& h) {
 }
 
 // Fields of which it is known what matters in them: crests, troughs or strands. "" when it is not.
-std::string known_look(const Dataset& data, const Field& field, const Range& r, int component, VolumeItem& item) {
+std::string known_look(const Dataset& data, const Field& field, const Range& r, int component, VolumeItem& item, const Context& context) {
   using Shows = FieldLook::Shows;
   const Shows shows = field.look.shows;
   if (shows == Shows::any || shows == Shows::zero) return "";
-  const auto h = histogram(field, component, r.lo, r.hi, 1024);
+  const auto h = histogram(field, component, r.lo, r.hi, 1024, context);
   size_t all = 0;
   for (const size_t n : h) all += n;
   const double width = r.hi - r.lo;
@@ -142,8 +145,8 @@ void ct_look(const Range& r, double offset, bool choose_colors, VolumeItem& item
 Colormap soft_grey() { return {"soft grey", MapKind::sequential, "A warm grey to white.", {{0.46f, 0.42f, 0.40f}, {1, 0.98f, 0.95f}}, {}}; }
 
 // Whatever is no air, in soft grey and lit, so that the skin can be read; the window is the file's own or that of the foreground.
-void scan_look(const Dataset& data, const Field& field, int component, const Range& r, VolumeItem& item) {
-  const Range f = foreground(field, component, r.lo, r.hi), stated = stated_window(data);
+void scan_look(const Dataset& data, const Field& field, int component, const Range& r, VolumeItem& item, const Context& context) {
+  const Range f = foreground(field, component, r.lo, r.hi, context), stated = stated_window(data);
   const bool window = !stated.empty() && stated.hi > r.lo && stated.lo < r.hi;
   const double width = f.hi - f.lo;
   item.opacity.points = {{r.lo, 0}, {f.lo, 0}, {f.lo + 0.06 * width, 0.25}, {f.hi, 0.5}, {r.hi, 0.5}};
@@ -155,8 +158,8 @@ void scan_look(const Dataset& data, const Field& field, int component, const Ran
 
 }  // namespace
 
-Range foreground(const Field& field, int component, double lo, double hi) {
-  auto h = histogram(field, component, lo, hi, 1024);
+Range foreground(const Field& field, int component, double lo, double hi, const Context& context) {
+  auto h = histogram(field, component, lo, hi, 1024, context);
   const double width = hi - lo;
   const size_t peak = fullest(h);
   Range r{lo, hi};
@@ -169,20 +172,21 @@ Range foreground(const Field& field, int component, double lo, double hi) {
   return r;
 }
 
-std::string choose_volume_look(const Dataset& data, const Field& field, const ColoringParams& params, VolumeItem& item, bool anatomy) {
+std::string choose_volume_look(const Dataset& data, const Field& field, const ColoringParams& params, VolumeItem& item, bool anatomy,
+                               const Context& context) {
   const Range r{item.color.lo, item.color.hi};
   if (item.mode == VolumeItem::Mode::maximum) {
     item.opacity.points = {{r.lo, 0}, {r.hi, 1}};
     return "maximum along each ray";
   }
-  const Range values = data.range(field, params.component);
+  const Range values = range_over_all(data, field, params.component, context);
   if (!values.empty() && values.lo == values.hi) {
     item.opacity.points = {{values.lo, 0.2}};
     return fmt::format("every value is {}: drawn evenly", short_number(values.lo, 6));
   }
   double offset = 0;
-  if (anatomy && params.range.empty() && looks_like_ct(data, field, &offset)) {
-    ct_look(data.range(field), offset, !params.map, item);
+  if (anatomy && params.range.empty() && looks_like_ct(data, field, &offset, context)) {
+    ct_look(range_over_all(data, field, 0, context), offset, !params.map, item);
     const bool stated = modality_of(data, field) == Modality::ct;
     return fmt::format("CT ({}{}): skin and bone colours", stated ? "stated in the file" : "an air peak and soft tissue in 16-bit values",
                        offset ? ", Hounsfield + 1024" : "");
@@ -192,18 +196,18 @@ std::string choose_volume_look(const Dataset& data, const Field& field, const Co
     for (int i = 0; i <= 16; ++i) item.opacity.points.push_back({item.color.value_at(i / 16.0), 0.25 * (i / 16.0) * (i / 16.0)});
     return "opacity rises with the position on the scale";
   }
-  if (const std::string why = known_look(data, field, r, params.component, item); !why.empty()) return why;
+  if (const std::string why = known_look(data, field, r, params.component, item, context); !why.empty()) return why;
   if (item.color.map.kind == MapKind::diverging && r.lo < 0 && r.hi > 0) {
     const double m = std::max(-r.lo, r.hi);
     item.opacity.points = {{-m, 0.8}, {-0.5 * m, 0.25}, {-0.2 * m, 0}, {0.2 * m, 0}, {0.5 * m, 0.25}, {m, 0.8}};
     return "signed: opaque away from zero on both sides";
   }
   if (anatomy && in_patient_frame(data) && !params.map && params.range.empty()) {
-    scan_look(data, field, params.component, r, item);
+    scan_look(data, field, params.component, r, item, context);
     return fmt::format("a scan: in grey, values above {} are shown", short_number(item.opacity.points[1].x, 3));
   }
   // What most samples have about is taken for the background; opacity follows the quantiles away from it.
-  const auto h = histogram(field, params.component, r.lo, r.hi);
+  const auto h = histogram(field, params.component, r.lo, r.hi, 256, context);
   const size_t peak = fullest(h);
   if (peak > h.size() / 2) {  // bright background: see the low values
     const double q50 = quantile(h, r.lo, r.hi, 0.5), q10 = quantile(h, r.lo, r.hi, 0.1);
