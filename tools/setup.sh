@@ -45,6 +45,11 @@ install_packages() {
       say "apt-get failed; the whole log is $build/install.log"
       exit 2
     fi
+    # What is built depends on what is installed.
+    if [ -f "$build/build.ninja" ] && ! cmake "$build" >"$build/configure.log" 2>&1; then
+      cat "$build/configure.log" >&2
+      exit 4
+    fi
   fi
   wanted_packages >"$stamp"
 }

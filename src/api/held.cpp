@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "data/memory/memory_budget.h"
 #include "io/plugin.h"
+#include "pipeline/catalog/catalog.h"
 #include "pipeline/operation/operation.h"
 
 namespace sightglass {
@@ -48,6 +49,10 @@ void set_memory_limit(size_t bytes) {
 
 std::string help(std::string_view operation) {
   return guarded([&] { return sg::ops_help(operation); });
+}
+
+std::string catalog_json() {
+  return guarded([] { return sg::catalog_json(sg::catalog()); });
 }
 
 void set_values(sg::Schema& schema, const Params& params, std::string_view owner) {

@@ -402,6 +402,9 @@ class SIGHTGLASS_API Film {
 
 /// What `sightglass ops NAME` prints: an operation, its parameters, units, ranges and choices. "": all operations.
 SIGHTGLASS_API std::string help(std::string_view operation = {});
+/// All of it as `sightglass ops --json` prints it: sources, operations, ways to show, readers, writers, camera, picture and film with JSON
+/// Schemas of their parameters.
+SIGHTGLASS_API std::string catalog_json();
 
 }  // namespace sightglass
 

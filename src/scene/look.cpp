@@ -40,7 +40,7 @@ std::string field_reason(const Dataset& d, const std::string& field) {
     const bool ids = std::any_of(d.fields().begin(), d.fields().end(), is_id);
     return ids ? "one colour (its fields are ids of points or cells)" : "one colour (no field varies over it)";
   }
-  if (f->role == Role::colors) return fmt::format("its own colours '{}'", f->name);
+  if (is_direct_color(*f)) return fmt::format("its own colours '{}'", f->name);
   return fmt::format("coloured by '{}'{}", f->name, f->components() > 1 ? " (magnitude)" : "");
 }
 

@@ -125,7 +125,7 @@ DatasetPtr curvature(const DatasetPtr& in, const CurvatureParams& p, Context& ct
   fill_border(gaussian, edges, place);
   fill_border(mean, edges, place);
   auto add = [&](const char* name, std::vector<double> v, const char* unit = "") {
-    out.fields.add({name, Association::point, Array::from_vector(std::move(v)), unit, Role::none});
+    out.fields.add({name, Association::point, Array::from_vector(std::move(v)), unit, Role::none, known_look(name)});
   };
   if (p.principal) {
     std::vector<double> largest(n), smallest(n);

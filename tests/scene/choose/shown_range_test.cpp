@@ -209,3 +209,18 @@ TEST_CASE("glyphs of several parts: one length for one value, and shares of one 
   sized.glyphs.size = 3;  // of the largest of all
   CHECK(shared(sized)[0].glyphs.factor == 0.5);
 }
+
+TEST_CASE("shown range: specks of noise do not take the scale of a curvature, and zero is the middle of its map") {
+  std::vector<float> v(2000);
+  for (size_t i = 0; i < v.size(); ++i) v[i] = float(0.2 * std::sin(0.1 * double(i)) + 0.1);
+  v[7] = 900, v[100] = -400;
+  UniformGrid g;
+  g.dims = {2000, 1, 1};
+  FieldSet fields;
+  fields.add({"mean curvature", Association::point, Array::from_vector(v), "", Role::none, known_look("mean curvature")});
+  const ColorScale s = test::chosen_scale(make_dataset(g, fields));
+  CHECK(s.hi < 1);
+  CHECK(s.lo > -1);
+  CHECK(s.map.kind == MapKind::diverging);
+  CHECK(s.above);
+}

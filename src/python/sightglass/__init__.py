@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Trustworthy pictures from simulation and scanner data: numpy in, picture out.
+
+    import sightglass as sg
+    ds = sg.read("wing.vtu")
+    ds.contour(field="mach", values=[1]).plot().save("shock.png")
+
+Operations are functions and methods: sg.contour(ds, ...), ds.contour(...); sg.help("contour") tells their parameters, help() alone lists
+them. What is chosen goes to the logger "sightglass", warnings to `warnings`.
+"""
+from __future__ import annotations
+
+from typing import Any
+
+from . import _core, _operations
+from ._data import Data
+from ._errors import CancelledError, DataError, Error, InternalError, SightglassWarning, UnknownNameError, UsageError
+from ._meshes import CELL_TYPES, curvilinear, lines, points, rectilinear, surface, uniform, unstructured
+from ._scene import Picture, Scene
+
+__version__ = _core.version()
+__all__ = ["CELL_TYPES", "CancelledError", "Data", "DataError", "Error", "InternalError", "Picture", "Scene", "SightglassWarning",
+           "UnknownNameError", "UsageError", "curvilinear", "help", "lines", "points", "read", "rectilinear", "scene", "set_memory_limit",
+           "set_threads", "surface", "times", "uniform", "unstructured"]
+
+set_threads = _core.set_threads
+set_memory_limit = _core.set_memory_limit
+
+
+def read(path: Any, **params: Any) -> Data:
+    """Any file that `sightglass info` reads; of a series ("flow_*.vtu") one step. Parameters: help("read"): fields, time, region, ..."""
+    return Data(_core.read(str(path), params))
+
+
+def times(path: Any) -> list[float]:
+    """The times of a series, ascending; none for a file without time."""
+    return _core.times(str(path))
+
+
+def scene() -> Scene:
+    """An empty scene: scene().add(ds, "volume", preset="ct_bone").render()."""
+    return Scene()
+
+
+def help(name: str = "") -> None:  # noqa: A001  what Python's own does, for operations
+    """Prints what `sightglass ops NAME` prints: an operation, its parameters, units, ranges and choices; without a name all operations."""
+    print(_core.help(name), end="")
+
+
+def __getattr__(name: str) -> Any:
+    f = _operations.function(name) if not name.startswith("_") else None
+    if f is None:
+        near = _operations.nearest(name) if not name.startswith("_") else ""
+        hint = f"did you mean '{near}'?" if near else ""
+        raise UnknownNameError(f"sightglass has no operation '{name}'" + (f"; {hint}" if hint else ""), f"unknown operation '{name}'", "", hint)
+    return f
+
+
+def __dir__() -> list[str]:
+    return [*__all__, *_operations.names()]

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Data: a mesh with its fields, a collection of named parts, or a table."""
+from __future__ import annotations
+
+import html
+from typing import Any, Iterator
+
+import numpy as np
+
+from . import _core, _operations
+from ._errors import UnknownNameError, usage
+from ._numbers import lent, on_grid, tuples
+
+
+class Data:
+    """A mesh with its fields, a collection of named parts, or a table of columns. It never changes: what operations return is new and
+    shares what stayed the same. Arrays that were handed in are read-only while data hold them."""
+
+    __slots__ = ("_core", "__weakref__")
+
+    def __init__(self, core: _core.Data):
+        self._core = core
+
+    # ---- what it is
+
+    @property
+    def kind(self) -> str:
+        """"uniform", "rectilinear", "curvilinear", "unstructured", "surface", "points", "amr", "collection" or "table"."""
+        return self._core.kind
+
+    @property
+    def n_points(self) -> int:
+        """Of all parts together."""
+        return self._core.point_count()
+
+    @property
+    def n_cells(self) -> int:
+        """Of all parts together."""
+        return self._core.cell_count()
+
+    @property
+    def bounds(self) -> np.ndarray:
+        """Two rows: the smallest and the largest x, y and z."""
+        return np.array(self._core.bounds())
+
+    @property
+    def dims(self) -> tuple[int, int, int]:
+        """Points along x, y and z of a grid."""
+        return tuple(self._core.dims())
+
+    @property
+    def points(self) -> np.ndarray:
+        """Positions of all points, (n, 3)."""
+        return self._core.points()
+
+    @property
+    def cells(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Point numbers of all cells one after the other, where each begins (one more than there are cells), and VTK's number of its
+        type."""
+        return self._core.cells()
+
+    @property
+    def parts(self) -> dict[str, Data]:
+        """Of a collection, by name; itself under "" for anything else. Parts that share a name are numbered."""
+        parts: dict[str, Data] = {}
+        for name, part in self._core.parts():
+            unique, n = name, 2
+            while unique in parts:
+                unique, n = f"{name} #{n}", n + 1
+            parts[unique] = Data(part)
+        return parts
+
+    # ---- fields
+
+    def keys(self) -> list[str]:
+        """Names of the fields, or of the columns of a table."""
+        return [f[0] for f in self._core.fields()]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.keys())
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.keys()
+
+    def __len__(self) -> int:
+        return len(self._core.fields())
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """The numbers of a field where they lie: read-only, one row per point or cell; of a column of words a list of them."""
+        if self.kind == "table":
+            words = self._core.words(name)
+            if words:
+                return np.array([words[i] if i >= 0 else "" for i in self._core.field(name)[3]])
+        return self._core.field(name)[3]
+
+    def unit(self, field: str) -> str:
+        """"K", "m/s"; "" where the data do not say."""
+        return self._core.field(field)[2]
+
+    def on(self, field: str) -> str:
+        """"points", "cells" or "whole"."""
+        return self._core.field(field)[1]
+
+    def range(self, field: str, component: int = -1) -> tuple[float, float]:
+        """Of the finite values of all parts; component -1: the only one, or the length of each row."""
+        return self._core.range(field, component)
+
+    def with_field(self, name: str, values: Any, unit: str = "", on: str | None = None, order: str | None = None) -> Data:
+        """New data with one more field, or another one of that name; everything else is shared.
+
+        ``values``: one value or row per point or cell; with ``order`` ("zyx" or "xyz") an array with the axes of a grid. Used where it
+        lies, if its layout permits, and read-only from then on. ``on``: "points" or "cells"; default: whichever its length fits.
+        """
+        where = f"with_field '{name}'"
+        if order is not None:
+            components = np.ndim(values) > 3 or (np.ndim(values) > 1 and 1 not in self.dims and np.ndim(values) > 3)
+            array = on_grid(values, order, where, components)[1]
+        else:
+            array = tuples(values, where)
+        if on is None:
+            n = len(array)
+            on = "points" if n == self.n_points else "cells" if n == self.n_cells else None
+            if on is None:
+                raise usage(f"{n} values", where, f"there are {self.n_points} points and {self.n_cells} cells")
+        return Data(self._core.with_field(name, on, lent(array, values), unit))
+
+    # ---- doing something with it
+
+    def save(self, path: Any, **params: Any) -> None:
+        """Writes a file; its extension chooses the format. Nothing is ever half written."""
+        self._core.write(str(path), params)
+
+    def plot(self, show: str = "auto", size: tuple[int, int] = (1280, 720), camera: dict | None = None, picture: dict | None = None,
+             **params: Any) -> Any:
+        """The picture that `sightglass render` would make; ``params`` are those of the way to show."""
+        from ._scene import Scene
+
+        return Scene().add(self, show, **params).camera(**(camera or {})).picture(**(picture or {})).render(size)
+
+    def __getattr__(self, name: str) -> Any:
+        method = _operations.method(name) if not name.startswith("_") else None
+        if method is None:
+            near = f"; did you mean '{_operations.nearest(name)}'?" if _operations.nearest(name) else ""
+            raise UnknownNameError(f"data have no attribute and Sightglass no operation '{name}'{near}", f"unknown operation '{name}'",
+                                   "", near.strip("; "))
+        return method.__get__(self)
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *_operations.names("operation")]
+
+    # ---- how it looks
+
+    def __repr__(self) -> str:
+        return f"<sightglass.Data: {self._core.summary()}>"
+
+    def _repr_html_(self) -> str:
+        rows = [f"<b>{html.escape(self._core.summary())}</b>"]
+        if self.kind == "collection":
+            rows += [f"{html.escape(name)}: {html.escape(part._core.summary())}" for name, part in self.parts.items()]
+            return "<br>".join(rows)
+        cells = []
+        for name, on, unit, array in self._core.fields():
+            components = array.shape[1] if array.ndim == 2 else 1
+            lo, hi = self.range(name) if array.size else (np.nan, np.nan)
+            cells.append("<tr>" + "".join(f"<td>{html.escape(str(t))}</td>" for t in (
+                name, on, f"{array.dtype}" + (f" x{components}" if components > 1 else ""), f"{lo:.6g} .. {hi:.6g}", unit)) + "</tr>")
+        head = "".join(f"<th>{t}</th>" for t in ("field", "on", "type", "range", "unit"))
+        return rows[0] + f"<table><tr>{head}</tr>{''.join(cells)}</table>"

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is to be seen, from where, and the picture of it."""
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from ._data import Data
+
+
+class Picture:
+    """Pixels, with the pipeline that makes them again and what was chosen. A notebook shows it."""
+
+    __slots__ = ("_core", "__weakref__")
+
+    def __init__(self, core: _core.Image):
+        self._core = core
+
+    @property
+    def array(self) -> np.ndarray:
+        """(height, width, 3 or 4) bytes, sRGB, rows from the top."""
+        return self._core.pixels()
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height."""
+        return self._core.width, self._core.height
+
+    @property
+    def notes(self) -> list[str]:
+        """What was chosen and why."""
+        return self._core.notes()
+
+    @property
+    def recipe(self) -> str:
+        """The pipeline that makes this picture again (`sightglass run`, `sightglass open`), as YAML."""
+        return self._core.recipe()
+
+    def save(self, path: Any) -> None:
+        """As .png (with the recipe), .jpg or .webp."""
+        self._core.write(str(path))
+
+    def _repr_png_(self) -> bytes:
+        return self._core.png()
+
+    def __repr__(self) -> str:
+        return f"<sightglass.Picture: {self.size[0]}x{self.size[1]}>"
+
+
+class Scene:
+    """Data and how they are shown. Calls chain: Scene().add(a, "volume").camera(view="front").render()."""
+
+    __slots__ = ("_core",)
+
+    def __init__(self) -> None:
+        self._core = _core.Scene()
+
+    def add(self, data: Data, show: str = "auto", **params: Any) -> Scene:
+        """``show``: "surface", "volume", "lines", "points", "labels", "glyphs" or "outline", with its parameters; "auto" chooses."""
+        self._core.show(data._core, show, params)
+        return self
+
+    def camera(self, **params: Any) -> Scene:
+        """view, direction, azimuth, zoom, ...: see sightglass.help("camera"). What is not said follows from the data."""
+        self._core.camera(params)
+        return self
+
+    def picture(self, **params: Any) -> Scene:
+        """title, background, legend, axes, ...: see sightglass.help("picture")."""
+        self._core.picture(params)
+        return self
+
+    def render(self, size: tuple[int, int] = (1280, 720)) -> Picture:
+        """The picture, ``size`` pixels wide and high."""
+        return Picture(self._core.render(int(size[0]), int(size[1])))
+
+    def movie(self, path: Any, size: tuple[int, int] = (1280, 720), **params: Any) -> list[float]:
+        """A film of what moves: .webm, .gif or numbered pictures; parameters: see sightglass.help("film"). Returns the times."""
+        return self._core.film(str(path), params, int(size[0]), int(size[1]))

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+import hashlib
+import subprocess
+
+import numpy as np
+import pytest
+import sightglass as sg
+
+
+def digest(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def test_the_same_pixels_as_the_command_line(tmp_path, program):
+    sg.gyroid(size=24).save(tmp_path / "g.vti")
+    picture = sg.read(tmp_path / "g.vti").plot(size=(200, 150))
+    subprocess.run([program, "render", tmp_path / "g.vti", "--size", "200x150", "-o", tmp_path / "there.png"], check=True, capture_output=True)
+    picture.save(tmp_path / "here.png")
+    there = sg.read(tmp_path / "there.png")
+    here = sg.read(tmp_path / "here.png")
+    name = here.keys()[0]
+    assert np.array_equal(here[name], there[name])
+    assert picture.array.shape == (150, 200, 3) and picture.size == (200, 150)
+
+
+def test_any_number_of_threads_gives_the_same_bytes():
+    try:
+        pictures = []
+        for n in (1, 2, 5):
+            sg.set_threads(n)
+            pictures.append(sg.gyroid(size=24).plot(size=(160, 120), show="volume")._repr_png_())
+        assert pictures[0] == pictures[1] == pictures[2]
+    finally:
+        sg.set_threads(0)
+
+
+def test_scenes_hold_several_things(volume):
+    ds = sg.uniform(volume, name="T")
+    scene = sg.scene().add(ds, "outline").add(ds.contour(values=[8]), "surface", color="red", opacity=0.5).camera(view="front")
+    picture = scene.picture(title="Two", background="black").render((120, 90))
+    assert picture.array.std() > 1
+    assert "contour" in picture.recipe
+    assert picture._repr_png_().startswith(b"\x89PNG")
+    with pytest.raises(sg.UsageError, match="opacity"):
+        scene.add(ds, "surface", opacity=7)
+    with pytest.raises(sg.UsageError, match="sufrace"):
+        scene.add(ds, "sufrace")
+
+
+def test_pictures_say_what_was_chosen(volume):
+    assert any("volume" in note for note in sg.uniform(volume).plot(size=(64, 48)).notes)
+
+
+def test_films(tmp_path):
+    scene = sg.scene().add(sg.gyroid(size=12).contour(), "surface").camera(azimuth="{t}")
+    assert scene.movie(tmp_path / "turn.webm", size=(64, 48), times="0:288:5") == [0, 72, 144, 216, 288]
+    assert (tmp_path / "turn.webm").stat().st_size > 100
+
+
+def test_two_threads_draw_at_once():
+    import threading
+
+    pictures = {}
+
+    def draw(n):
+        pictures[n] = sg.gyroid(size=20).plot(size=(120, 90))._repr_png_()
+
+    threads = [threading.Thread(target=draw, args=(n,)) for n in range(4)]
+    for t in threads:
+        t.start()
+    for t in threads:
+        t.join()
+    assert len(set(pictures.values())) == 1
+
+
+def test_other_processes_draw_too():
+    import multiprocessing
+
+    for way in ("fork", "spawn"):
+        with multiprocessing.get_context(way).Pool(1) as pool:
+            assert pool.apply(points_of_gyroid) == 512
+
+
+def points_of_gyroid():
+    return sg.gyroid(size=8).n_points
+
+
+def test_interrupts_stop_long_work(tmp_path):
+    import os
+    import signal
+    import sys
+    import time
+
+    code = ("import sightglass as sg, time\nd = sg.abc(size=96)\nprint('go', flush=True)\n"
+            "try:\n  d.ftle(size=200)\nexcept KeyboardInterrupt:\n  print('stopped', sg.gyroid(size=8).n_points, flush=True)\n")
+    env = {**os.environ, "PYTHONPATH": os.path.dirname(os.path.dirname(sg.__file__))}
+    p = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, env=env)
+    assert p.stdout.readline().strip() == "go"
+    time.sleep(0.3)
+    p.send_signal(signal.SIGINT)
+    assert p.communicate(timeout=60)[0].strip() == "stopped 512"
+    assert p.returncode == 0
