@@ -17,8 +17,11 @@ pybind11_add_module(sightglass_python MODULE NO_EXTRAS ${python_core})
 target_include_directories(sightglass_python PRIVATE ${CMAKE_SOURCE_DIR}/src)
 target_link_libraries(sightglass_python PRIVATE libsightglass)
 target_compile_definitions(sightglass_python PRIVATE SIGHTGLASS_NO_SHORT_NAME)
-# An exception class is known by its address: the module throws and catches those of the library.
 set_target_properties(sightglass_python PROPERTIES OUTPUT_NAME _core LIBRARY_OUTPUT_DIRECTORY ${python_package})
+
+# Editors and type checkers read the operations from stubs.
+add_custom_command(TARGET sightglass_python POST_BUILD COMMAND ${Python_EXECUTABLE} ${CMAKE_SOURCE_DIR}/tools/python_stubs ${CMAKE_BINARY_DIR}/python
+                   VERBATIM)
 
 file(GLOB python_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/python/sightglass/*)
 file(MAKE_DIRECTORY ${python_package})

@@ -47,6 +47,7 @@ def help(name: str = "") -> None:  # noqa: A001  what Python's own does, for ope
     print(_core.help(name), end="")
 
 
+# What follows is for names that are not written down above: the operations. Type checkers take them from the stub.
 def __getattr__(name: str) -> Any:
     f = _operations.function(name) if not name.startswith("_") else None
     if f is None:

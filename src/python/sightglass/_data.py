@@ -2,17 +2,17 @@
 """Data: a mesh with its fields, a collection of named parts, or a table."""
 from __future__ import annotations
 
-import html
 from typing import Any, Iterator
 
 import numpy as np
 
 from . import _core, _operations
 from ._errors import UnknownNameError, usage
+from ._methods import Methods
 from ._numbers import lent, on_grid, tuples
 
 
-class Data:
+class Data(Methods):
     """A mesh with its fields, a collection of named parts, or a table of columns. It never changes: what operations return is new and
     shares what stayed the same. Arrays that were handed in are read-only while data hold them."""
 
@@ -46,7 +46,8 @@ class Data:
     @property
     def dims(self) -> tuple[int, int, int]:
         """Points along x, y and z of a grid."""
-        return tuple(self._core.dims())
+        nx, ny, nz = self._core.dims()
+        return nx, ny, nz
 
     @property
     def points(self) -> np.ndarray:
@@ -154,6 +155,8 @@ class Data:
         return f"<sightglass.Data: {self._core.summary()}>"
 
     def _repr_html_(self) -> str:
+        import html
+
         rows = [f"<b>{html.escape(self._core.summary())}</b>"]
         if self.kind == "collection":
             rows += [f"{html.escape(name)}: {html.escape(part._core.summary())}" for name, part in self.parts.items()]

@@ -24,7 +24,7 @@ def _three(numbers: Any, what: str) -> tuple[float, float, float]:
     a = np.asarray(numbers, dtype=float).reshape(-1)
     if len(a) != 3:
         raise usage(f"{len(a)} numbers", what, "one for each of x, y and z")
-    return tuple(a.tolist())
+    return float(a[0]), float(a[1]), float(a[2])
 
 
 def uniform(values: Any = None, *, dims: Sequence[int] | None = None, spacing: Any = (1, 1, 1), origin: Any = (0, 0, 0), name: str = "values",
@@ -37,7 +37,7 @@ def uniform(values: Any = None, *, dims: Sequence[int] | None = None, spacing: A
     """
     if (values is None) == (dims is None):
         raise usage("needs values or dims", "uniform", "an array with the values at its points, or dims=(nx, ny, nz) for a grid without")
-    if values is None:
+    if dims is not None:
         return Data(_core.uniform_grid(tuple(int(n) for n in dims), _three(spacing, "spacing"), _three(origin, "origin")))
     size, array = on_grid(values, order, f"uniform '{name}'", components)
     grid = _core.uniform_grid(size, _three(spacing, "spacing"), _three(origin, "origin"))

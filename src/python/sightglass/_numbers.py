@@ -82,8 +82,8 @@ def on_grid(array: Any, order: str, what: str, components: bool = False) -> tupl
     last = (axes,) if components else ()
     if order == "xyz":
         a = a.transpose(*range(axes - 1, -1, -1), *last)
-    dims = tuple(reversed(a.shape[:axes])) + (1,) * (3 - axes)
+    nx, ny, nz = tuple(reversed(a.shape[:axes])) + (1,) * (3 - axes)
     if not a.flags.c_contiguous:
         say(False, f"{what}: copied, x is not the fastest axis; order='{'xyz' if order == 'zyx' else 'zyx'}' may be meant")
         a = np.ascontiguousarray(a)
-    return dims, a.reshape(-1, a.shape[-1]) if components else a.reshape(-1)
+    return (nx, ny, nz), a.reshape(-1, a.shape[-1]) if components else a.reshape(-1)

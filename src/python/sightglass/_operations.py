@@ -2,19 +2,23 @@
 """Operations and sources as functions and methods, made of the schema that `sightglass ops --json` prints."""
 from __future__ import annotations
 
-import difflib
-import inspect
-import json
 import keyword
 from functools import lru_cache
-from typing import Any, Callable, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence, Union
 
 from . import _core
+
+if TYPE_CHECKING:
+    import inspect
+
+    from ._data import Data
 
 
 @lru_cache(maxsize=None)
 def catalog() -> dict[str, Any]:
     """Sources, operations, ways to show, readers, writers, camera, picture and film with JSON Schemas of their parameters."""
+    import json  # here and below: what only some programs need does not slow the start of all
+
     return json.loads(_core.catalog_json())
 
 
@@ -30,6 +34,8 @@ def names(kind: str = "") -> list[str]:
 
 def nearest(name: str) -> str:
     """The name that is most like it; "" for none."""
+    import difflib
+
     return next(iter(difflib.get_close_matches(name, _entries(), 1)), "")
 
 
@@ -44,8 +50,9 @@ def _annotation(schema: dict[str, Any]) -> Any:
     if isinstance(kind, list):
         return Union[tuple(_types.get(k, Any) for k in kind)]
     if kind == "array":
-        return Sequence[_annotation(schema.get("items", {}))]
-    return _types.get(kind, Any)
+        items: Any = _annotation(schema.get("items", {}))
+        return Sequence[items]
+    return _types.get(str(kind), Any)
 
 
 def python_name(name: str) -> str:
@@ -67,7 +74,9 @@ def _line(name: str, schema: dict[str, Any]) -> str:
     return f"    {python_name(name)}: {schema.get('description', '')}" + (f" [{', '.join(notes)}]" if notes else "")
 
 
-def _document(f: Callable, entry: dict[str, Any], first: Sequence[inspect.Parameter]) -> Callable:
+def _document(f: Callable, entry: dict[str, Any], first: Sequence["inspect.Parameter"]) -> Callable:
+    import inspect
+
     properties = entry["params"].get("properties", {})
     parameters = list(first)
     for name, schema in properties.items():
@@ -103,6 +112,8 @@ def function(name: str) -> Callable | None:
 
     def operation(data: Data, *others: Data, **params: Any) -> Data:
         return Data(data._core.run(name, _stated(params), [o._core for o in others]))
+
+    import inspect
 
     positional = inspect.Parameter("data", inspect.Parameter.POSITIONAL_ONLY, annotation="Data")
     more = inspect.Parameter("others", inspect.Parameter.VAR_POSITIONAL, annotation="Data")
