@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # The Python package: build/python/sightglass holds the module _core and links to the sources of src/python/sightglass. Only where Python and
 # pybind11 are installed (packages-python.txt).
+if(NOT Python_EXECUTABLE AND EXISTS /usr/bin/python3)  # the one whose packages packages-python.txt lists, whatever else is on the path
+  set(Python_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "Python that the package sightglass is built for")
+endif()
 find_package(Python COMPONENTS Interpreter Development.Module QUIET)
 if(Python_FOUND)
   set(PYBIND11_FINDPYTHON ON)
