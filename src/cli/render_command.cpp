@@ -44,7 +44,8 @@ void check_output(const std::string& path) {
   if (std::find(known.begin(), known.end(), ext) == known.end()) {
     std::string list;
     for (const std::string& e : known) list += (list.empty() ? "." : " .") + e;
-    fail_usage(fmt::format("'{}' is not a picture format", ext), path, "supported: " + list);
+    fail_usage(fmt::format("'{}' is not a picture format", ext), path,
+               fmt::format("supported: {}{}", list, ext.empty() ? "" : "; data is written by: sightglass convert IN -o NAME." + ext));
   }
   AtomicFile probe(path);  // missing folder, no permission, a folder of that name: removed again at once
 }
@@ -184,7 +185,10 @@ int run_render(const Options& o, Context& context) {
   if (!o.field.empty()) options.coloring.push_back("field=" + o.field);
   if (!o.map.empty()) options.coloring.push_back("map=" + o.map);
   if (!o.scale.empty()) options.coloring.push_back("scale=" + o.scale);
-  for (const std::string& w : quoted_words(o.legend)) options.coloring.push_back(w.find('=') == w.npos ? "legend=" + w : "legend_" + w);
+  for (const std::string& w : quoted_words(o.legend)) {
+    const char* name = w.find('=') != w.npos ? "legend_" : value_of_word<LegendPlace>(w) ? "legend_place=" : "legend=";
+    options.coloring.push_back(name + w);
+  }
   FilmParams film;
   take_film_flags(o, film);
   const char* unnamed = film.turntable > 0 ? "{name}.webm" : "{name}.png";

@@ -35,7 +35,7 @@ inline void describe(Schema& s, IsolinesParams& p) {
   s("field", p.field, "Point field; default: the active scalar.").takes(fields::on_points);
   s("component", p.component, "Component of a field with several: 0, 1, ..., x, y, z, or magnitude.");
   s("values", p.values, "Values of the lines; default: evenly spaced within the range.").unit("@field");
-  s("count", p.count, "Number of lines when no values are given.").range(1, 100000);
+  s("count", p.count, "About how many lines, at round values, when no values are given.").range(1, 100000);
 }
 
 /// `contour` of a flat grid or surface (of solids: their skin), joined by `polylines`; cell field 'contour value' always. Larger

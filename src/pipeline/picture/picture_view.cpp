@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where what is shown comes from, and from where it is seen when nothing is said.
 #include <algorithm>
+#include <cmath>
 
 #include "filter/mesh/clip/clip.h"
 #include "pipeline/operation/operation.h"
@@ -40,6 +41,20 @@ std::optional<Vec3> cut_normal(const PipelineFile::Step& step) {
 
 }  // namespace
 
+namespace {
+
+// On the side of a cut, and not so much along it that little of it is seen.
+Vec3 facing(Vec3 direction, Vec3 normal) {
+  constexpr double least = 0.5;  // cosine
+  const Vec3 n = normalize(normal);
+  if (const double towards = dot(direction, n); towards < 0) direction -= n * (2 * towards);
+  const double towards = dot(direction, n) / length(direction);
+  const Vec3 along = direction - n * dot(direction, n);
+  return towards >= least ? direction : n * least + normalize(along) * std::sqrt(1 - least * least);
+}
+
+}  // namespace
+
 std::string origin_of(const PipelineFile& file, const std::string& step) {
   const auto chain = steps_behind(file, step);
   return !chain.empty() && chain.back()->reads() ? word_value(chain.back()->words, "path").value_or("") : "";
@@ -49,7 +64,7 @@ void face_cut(const PipelineFile& file, const std::string& step, CameraDefaults&
   if (camera.parallel) return;
   for (const PipelineFile::Step* s : steps_behind(file, step))
     if (const auto n = cut_normal(*s)) {
-      if (const double towards = dot(camera.direction, *n); towards < 0) camera.direction -= *n * (2 * towards / dot(*n, *n));
+      camera.direction = facing(camera.direction, *n);
       return;
     }
 }

@@ -2,10 +2,6 @@
 // From cells to triangles and segments.
 #include <fmt/core.h>
 
-#include <atomic>
-#include <bit>
-#include <cmath>
-
 #include "base/error.h"
 #include "base/parallel.h"
 #include "filter/mesh/surface.h"
@@ -56,7 +52,8 @@ Derived visible_triangles(const SurfaceMesh& mesh, const Dataset& data) {
   return {Array::from_vector(std::move(t.indices), 3), Array::from_vector(std::move(t.cells))};
 }
 
-/// The mesh without its hidden polygons and strips.
+}  // namespace
+
 SurfaceMesh visible_polygons(const SurfaceMesh& mesh, const Dataset& data) {
   const Array ghosts = packed_ghosts(data);
   const uint8_t* ghost = bytes_of(ghosts);
@@ -76,8 +73,6 @@ SurfaceMesh visible_polygons(const SurfaceMesh& mesh, const Dataset& data) {
   out.points = mesh.points, out.polygons = kept(mesh.polygons), out.strips = kept(mesh.strips);
   return out;
 }
-
-}  // namespace
 
 Positions packed_positions(const DatasetPtr& data, const Points& points) {
   if (points.xyz.type() == ElementType::f32 && points.xyz.packed()) return {points.xyz, points.origin};
@@ -145,63 +140,6 @@ SegmentSet curved_edges(const Dataset& data, const SurfaceMesh& mesh) {
       all += length(mesh.points.at(s.points[2 * end + 1]) - mesh.points.at(s.points[2 * end]));
     std::fill(s.room.begin() + ptrdiff_t(i), s.room.begin() + ptrdiff_t(end), float(all));
   }
-  return s;
-}
-
-namespace {
-
-// The width of each polygon across each of its edges: its height for triangles, its area by the edge's length for others; the smallest
-// counts. Positive floats are in the order of their bits, so that threads may take minima.
-void find_room(const SurfaceMesh& mesh, SegmentSet& s) {
-  s.room.assign(s.count(), HUGE_VALF);
-  const auto narrow = [&](int64_t a, int64_t b, double width) {
-    if (a == b || !std::isfinite(width)) return;
-    const auto first = uint32_t(std::min(a, b)), second = uint32_t(std::max(a, b));
-    size_t lo = 0, hi = s.count();
-    while (lo < hi) {
-      const size_t middle = (lo + hi) / 2;
-      const bool before = s.points[2 * middle] != first ? s.points[2 * middle] < first : s.points[2 * middle + 1] < second;
-      if (before) lo = middle + 1;
-      else hi = middle;
-    }
-    std::atomic_ref<uint32_t> bits(reinterpret_cast<uint32_t&>(s.room[lo]));
-    const auto mine = std::bit_cast<uint32_t>(float(width));
-    for (uint32_t seen = bits.load(); mine < seen && !bits.compare_exchange_weak(seen, mine);) {
-    }
-  };
-  const CellsView polygons = cells_view(mesh.polygons), strips = cells_view(mesh.strips);
-  const auto at = [&](int64_t id) { return mesh.points.at(size_t(id)); };
-  parallel_for(polygons.count, 1 << 12, [&](size_t begin, size_t end) {
-    for (size_t c = begin; c < end; ++c) {
-      const size_t n = polygons.size(c);
-      if (n < 2) continue;
-      Vec3 twice_area;
-      const Vec3 corner = at(polygons.point(c, 0));
-      for (size_t k = 1; k + 1 < n; ++k) twice_area += cross(at(polygons.point(c, k)) - corner, at(polygons.point(c, k + 1)) - corner);
-      const double area = length(twice_area) * (n == 3 ? 1 : 0.5);
-      for (size_t k = 0; k < n; ++k) {
-        const int64_t a = polygons.point(c, k), b = polygons.point(c, (k + 1) % n);
-        narrow(a, b, area / length(at(b) - at(a)));
-      }
-    }
-  });
-  parallel_for(strips.count, 1 << 8, [&](size_t begin, size_t end) {
-    for (size_t c = begin; c < end; ++c)
-      for (size_t k = 0; k + 2 < strips.size(c); ++k) {
-        const int64_t id[3] = {strips.point(c, k), strips.point(c, k + 1), strips.point(c, k + 2)};
-        const double area = length(cross(at(id[1]) - at(id[0]), at(id[2]) - at(id[0])));
-        for (int e = 0; e < 3; ++e) narrow(id[e], id[(e + 1) % 3], area / length(at(id[(e + 1) % 3]) - at(id[e])));
-      }
-  });
-}
-
-}  // namespace
-
-SegmentSet polygon_edges(const Dataset& data, const SurfaceMesh& mesh) {
-  const SurfaceMesh visible = visible_polygons(mesh, data);
-  SegmentSet s;
-  s.points = edges_of(visible);
-  find_room(visible, s);
   return s;
 }
 

@@ -107,7 +107,10 @@ void take_texture(const SurfaceTexture& texture, PreparedItem& item);
 SegmentSet line_segments(const Dataset& data, const SurfaceMesh& mesh);
 /// The same of lines that are the edges of curved cells: their room is their length.
 SegmentSet curved_edges(const Dataset& data, const SurfaceMesh& mesh);
-/// Every edge of the polygons and strips once, in order of its points, with its room.
+/// The mesh without its hidden polygons and strips.
+SurfaceMesh visible_polygons(const SurfaceMesh& mesh, const Dataset& data);
+/// Every edge of the polygons and strips once, in order of its points, with its room; not those inside one face of an input cell, where a
+/// filter made several polygons of it (they have the same 'original_cell' and lie in one plane).
 SegmentSet polygon_edges(const Dataset& data, const SurfaceMesh& mesh);
 ColorSource color_source(const DatasetPtr& data, const std::optional<FieldColor>& color, Vec3f constant, const char* where);
 /// Packed f32 positions and their origin; other layouts are copied, f64 ones relative to the middle of the data.

@@ -280,6 +280,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   const bool labels = shared || (automatic ? p.range.empty() && looks_like_labels(data, field, context) : asked.categorical());
   s.kind = p.scale;
   const FieldOf itself{&data, &field};
+  bool below_log = false;
   if (s.kind == ScaleKind::log && p.range.empty() && r.lo <= 0) {
     // Zeros and negative values have no place on a log scale: start at the smallest positive value.
     Range positive;
@@ -294,8 +295,11 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
     if (positive.empty())
       fail_usage(fmt::format("field '{}' has no positive value for a log scale", field.name), "scale", "use scale=linear or scale=symlog");
     r = positive;
+    below_log = true;
     context.info(fmt::format("values of '{}' at or below 0 have no place on a log scale; they are drawn as below it", field.name));
   }
+  constexpr double decades = 1e12;  // what lies below is what rounding left
+  if (s.kind == ScaleKind::log && p.range.empty() && r.lo > 0 && r.lo * decades < r.hi) r.lo = r.hi / decades, below_log = true;
   const bool ct = is_scanned(data, field) && modality_of(data, field) == Modality::ct;
   const bool is_signed = two_sided(field, r) && !ct;  // Hounsfield's zero, water, is no middle
   if (automatic)
@@ -353,7 +357,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   if (!p.above.empty()) s.above = parse_color(p.above, "above");
   if (!p.nan.empty()) s.nan = parse_color(p.nan, "nan");
   s.clamp = p.clamp;
-  if (!p.range.empty() || ct) show_what_lies_beyond(data.range(field, p.component), s);
+  if (!p.range.empty() || ct || below_log) show_what_lies_beyond(data.range(field, p.component), s);
   name_legend(p, s);
   return s;
 }

@@ -245,7 +245,7 @@ TEST_CASE("choose_look: CT, labels, flat images, surfaces and points are recogni
 
   const auto labels = image<uint8_t>(16, [](size_t i, size_t j, size_t) { return uint8_t(i < 4 ? 0 : j < 8 ? 1 : 2); });
   const Look look = choose_look(*labels, "", "");
-  REQUIRE(look.filter.size() == 2);
+  REQUIRE(look.filter.size() == 3);
   CHECK(look.filter[0] == "label_surface");
 
   UniformGrid flat;

@@ -224,6 +224,8 @@ DatasetPtr ridges(const DatasetPtr& in, const RidgesParams& p, Context& context)
   const std::vector<int64_t> stay = cells_on_ridges(all, p, field, flat, sign, cell, strength);
   DatasetParts out = all->parts();
   for (const char* scratch : {slope_name, bend_name, zero_name}) out.fields.remove(scratch, Association::point);
+  // polylines would take these of the input for kinds of lines, and end lines where they change.
+  for (const char* kind : {"contour value", "edge type"}) out.fields.remove(kind, Association::cell);
   out.fields.add({"ridge strength", Association::point, Array::from_vector(std::move(strength)), "", Role::none});
   const DatasetPtr kept = extract_cells(make_dataset(std::move(out)), stay, "ridges");
   if (stay.empty()) return kept;

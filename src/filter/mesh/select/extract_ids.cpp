@@ -41,7 +41,7 @@ std::vector<uint8_t> chosen(const DatasetPtr& in, const ExtractParams& p, size_t
 }
 
 bool has_region(const ImplicitParams& p) {
-  return p.origin || p.position || p.axis != CutAxis::none || !p.sphere.empty() || !p.cylinder.empty() || !p.box.empty() ||
+  return p.origin || p.normal != ImplicitParams().normal || p.position || p.axis != CutAxis::none || !p.sphere.empty() || !p.cylinder.empty() || !p.box.empty() ||
          !p.quadric.empty() || !p.function.empty();
 }
 

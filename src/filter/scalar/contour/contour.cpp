@@ -346,8 +346,9 @@ DatasetPtr contour(const DatasetPtr& given, const ContourParams& params, Context
     if (pieces[i].lines.count() + pieces[i].triangles.count() > 0 || context.communicator) continue;
     const Range range = input->range(field, component);  // not before: it is a pass over all samples
     context.info(range.empty() ? fmt::format("contour: field '{}' has no values", field.name)
-                               : fmt::format("contour: nothing at {} = {}; the field ranges from {} to {}", field.name,
-                                             short_number(values[i]), short_number(range.lo), short_number(range.hi)));
+                               : fmt::format("contour: nothing at {} = {}; the field ranges from {} to {}{}", field.name,
+                                             short_number(values[i]), short_number(range.lo), short_number(range.hi),
+                                             range.lo == range.hi ? " (that of a contour before? on=input takes the data as read)" : ""));
   }
   return assemble(*input, field, values, std::move(pieces), job, params.normals && dimension == 3);
 }

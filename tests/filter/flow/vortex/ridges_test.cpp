@@ -59,6 +59,20 @@ TEST_CASE("ridges: the crest of a straight wall is found to second order, and no
   }
 }
 
+TEST_CASE("ridges: fields of the input that other operations mark kinds of lines with do not end any") {
+  Context context;
+  RidgesParams p;
+  p.strength = 0.2, p.smooth = 0;
+  const DatasetPtr plain = height({41, 41, 1}, wall);
+  DatasetParts parts = plain->parts();
+  std::vector<float> numbers(plain->cell_count());
+  for (size_t i = 0; i < numbers.size(); ++i) numbers[i] = float(i);
+  for (const char* name : {"contour value", "edge type"}) parts.fields.add({name, Association::cell, Array::from_vector(numbers), "", Role::none});
+  const DatasetPtr a = ridges(plain, p, context), b = ridges(make_dataset(std::move(parts)), p, context);
+  CHECK(a->point_count() == b->point_count());
+  CHECK(total(a, "length") == total(b, "length"));
+}
+
 TEST_CASE("ridges: a ring has a circle, its negative the same valley, and a limit cuts it") {
   Context context;
   const auto ring = [](Vec3 x) {
