@@ -35,6 +35,13 @@ namespace {
 constexpr float deep = 0.05f;   // optical depth from which on the order within a segment is seen
 constexpr float solid = 16.0f;  // and from which on its front alone is
 
+/// How far into a part of optical depth D one sees, as a share of its length: a mean free path, D f (2 (1 - r) + (2 r - 1) f) = 1, for a
+/// density that goes in a straight line so that its centroid is at `weight` (r is the share of the far end, 3 weight - 1).
+float sight(float depth, float weight) {
+  const float r = std::clamp(3 * weight - 1, 0.0f, 1.0f), near = 1 - r;
+  return 1 / (depth * (near + std::sqrt(near * near + (2 * r - 1) / depth)));
+}
+
 /// Where there is light on the ends of a part of a stretch, linear between them.
 struct LitPart {
   double from, to;
@@ -73,7 +80,10 @@ class Pieces {
     Vec3f c = color(mean) * alpha, both{0, 0, 0};
     const float brighter = lit ? lit->brighter(length) : 0;
     const bool together = lit && std::abs(brighter) * medium.color_slope() * std::abs(medium.axis(b) - medium.axis(a)) > covary_from_;
-    if (depth > deep || together) {
+    if (depth > solid) {
+      weight = sight(depth, weight);
+      c = color(a + (b - a) * weight) * alpha;
+    } else if (depth > deep || together) {
       // A/2 - A/D + exp(-D), by its series where that cancels.
       const float hidden =
           depth < 0.2f ? depth * depth * (1.0f / 12 - depth * (1.0f / 24 - depth * (1.0f / 80))) : 0.5f * alpha - alpha / depth + pass;

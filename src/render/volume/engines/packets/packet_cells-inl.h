@@ -351,6 +351,14 @@ class PacketCells : public RayLanes<D, T, Axes> {
         spread.any_change = true;
       }
     }
+    // Of what is as good as opaque its front alone is seen, a mean free path into it, however its colours go on.
+    const M solid = deep & (depth > 16.0f);
+    if (any(solid)) {
+      const F sight = way_of_depth(sigma_t, one / max(depth, one)), seen = mul_add(sight, b - a, a);
+      const auto front = line ? medium.color(seen, *line) : medium.color(seen);
+      r = select(solid, front.r * alpha, r), g = select(solid, front.g * alpha, g), bl = select(solid, front.b * alpha, bl);
+      weight = select(solid, sight, weight);
+    }
     // Light on it, and front-to-back compositing.
     const F before = only(drawn, sum.pass);
     lit(weight, alpha, spread, r, g, bl);
