@@ -83,3 +83,12 @@ TEST_CASE("point cells: every cell of a point, ascending") {
   CHECK(std::vector<uint32_t>(cells[4].begin(), cells[4].end()) == std::vector<uint32_t>{0, 1, 2, 3});
   CHECK(std::vector<uint32_t>(cells[2].begin(), cells[2].end()) == std::vector<uint32_t>{1});
 }
+
+TEST_CASE("cell_to_point: a cloud passes as it is, with empty fields of the cells that it does not have") {
+  Context ctx;
+  FieldSet fields;
+  fields.add({"c", Association::cell, Array::from_vector(std::vector<float>()), "", Role::none});
+  const DatasetPtr cloud =
+      make_dataset(Mesh(PointCloud{{Array::from_vector(std::vector<float>{0, 0, 0, 1, 0, 0}, 3), Vec3()}}), std::move(fields));
+  CHECK(cell_to_point(cloud, {}, ctx) == cloud);
+}

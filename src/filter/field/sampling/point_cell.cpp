@@ -114,8 +114,7 @@ DatasetPtr point_to_cell(const DatasetPtr& in, const PointToCellParams& p, Conte
 
 DatasetPtr cell_to_point(const DatasetPtr& in, const CellToPointParams& p, Context& ctx) {
   std::vector<Field> fields = chosen_fields(in, p.fields, Association::cell);
-  if (fields.empty()) return in;
-  if (in->as<PointCloud>()) fail_usage("a point cloud has no cells", "cell_to_point", "its fields already lie on the points");
+  if (fields.empty() || in->as<PointCloud>()) return in;  // what a cloud has lies on its points
   if (is_lattice(in->mesh())) {
     LatticeCells around{lattice_dims(in->mesh()), {}, {}};
     for (size_t a = 0; a < 3; ++a) around.cells[a] = std::max<size_t>(around.points[a], 2) - 1;
