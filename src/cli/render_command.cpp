@@ -19,6 +19,7 @@
 #include "cli/cli.h"
 #include "cli/info.h"
 #include "cli/say.h"
+#include "color/legend_content.h"
 #include "filter/mesh/select/piece.h"
 #include "image/codec.h"
 #include "io/file_series.h"
