@@ -42,7 +42,7 @@ std::vector<double> even_values(const Range& range, int count) {
   std::vector<double> values;
   for (double k = best.first; best.step > 0 && k <= best.last && values.size() <= 4 * size_t(count); ++k) {
     const double digits = round_near(k * best.step, 1e-9 * best.step);  // 0.3, not 0.30000000000000004
-    if (!values.empty() && !(digits > values.back())) break;             // steps below what doubles tell apart
+    if (!values.empty() && !(digits > values.back())) break;            // steps below what doubles tell apart
     values.push_back(digits);
   }
   return values;

@@ -41,8 +41,8 @@ std::vector<uint8_t> chosen(const DatasetPtr& in, const ExtractParams& p, size_t
 }
 
 bool has_region(const ImplicitParams& p) {
-  return p.origin || p.normal != ImplicitParams().normal || p.position || p.axis != CutAxis::none || !p.sphere.empty() || !p.cylinder.empty() || !p.box.empty() ||
-         !p.quadric.empty() || !p.function.empty();
+  return p.origin || p.normal != ImplicitParams().normal || p.position || p.axis != CutAxis::none || !p.sphere.empty() ||
+         !p.cylinder.empty() || !p.box.empty() || !p.quadric.empty() || !p.function.empty();
 }
 
 // Cells (or points of a cloud) in the region.

@@ -67,7 +67,8 @@ TEST_CASE("ridges: fields of the input that other operations mark kinds of lines
   DatasetParts parts = plain->parts();
   std::vector<float> numbers(plain->cell_count());
   for (size_t i = 0; i < numbers.size(); ++i) numbers[i] = float(i);
-  for (const char* name : {"contour value", "edge type"}) parts.fields.add({name, Association::cell, Array::from_vector(numbers), "", Role::none});
+  for (const char* name : {"contour value", "edge type"})
+    parts.fields.add({name, Association::cell, Array::from_vector(numbers), "", Role::none});
   const DatasetPtr a = ridges(plain, p, context), b = ridges(make_dataset(std::move(parts)), p, context);
   CHECK(a->point_count() == b->point_count());
   CHECK(total(a, "length") == total(b, "length"));
