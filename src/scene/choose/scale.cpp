@@ -64,13 +64,14 @@ double share_of_equal_neighbours(const Field& field, std::array<size_t, 3> dims,
   return counts[1] ? double(counts[0]) / double(counts[1]) : 1.0;
 }
 
-// Label 1 takes the first colour, 2 the second, whichever others are there, so that a selection keeps its colours.
+// Label 1 takes the first colour, 2 the second, whichever others are there, so that a selection keeps its colours; 0, which often is what
+// has none, grey.
 void color_by_number(ColorScale& s) {
   const std::vector<Vec3f> palette = s.map.colors;
   const auto n = double(palette.size());
-  if (!std::all_of(s.labels.begin(), s.labels.end(), [&](double v) { return v == std::round(v) && v >= 0 && v < n; })) return;
+  if (!std::all_of(s.labels.begin(), s.labels.end(), [&](double v) { return v == std::round(v) && v >= 0 && v <= n; })) return;
   s.map.colors.clear();
-  for (const double v : s.labels) s.map.colors.push_back(palette[size_t(v + n - 1) % palette.size()]);
+  for (const double v : s.labels) s.map.colors.push_back(v == 0 ? Vec3f{0.70f, 0.70f, 0.72f} : palette[size_t(v) - 1]);
 }
 
 // The colours of a map between two of its places.

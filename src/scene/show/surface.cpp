@@ -99,9 +99,8 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceSh
   // Ranges come from the whole input, so that a surface and its volume share colours.
   item.color_by = field_color(*input, p.coloring, context);
   if (p.edges) {
-    // Of a clipped mesh the pieces of a cell keep its number, by which the edges between them are left out.
-    const bool pieces = input->fields().find("original_cell", Association::cell);
-    Skin skin = faces_and_edges(input, {.original_cell = !pieces}, context);
+    // Of a clipped mesh the pieces of a cell keep its own number, by which the edges between them are left out.
+    Skin skin = faces_and_edges(input, {.original_cell = false}, context);
     item.data = std::move(skin.surface), item.edge_lines = std::move(skin.edges);
   } else {
     item.data = surface_of(input, context);
