@@ -184,6 +184,7 @@ void try_one(const Operation& o, uint64_t seed, Tried& tried) {
     const Data result = run(o, few, *params, context);
     differs = difference(whole, result, [&](const Field& f) { return std::find(wanted.begin(), wanted.end(), f.name) != wanted.end(); });
   } catch (const Error& e) {
+    if (std::string_view(e.what()).find("allowed are in use") != std::string_view::npos) return;  // the whole result holds the memory
     differs = e.what();
   }
   CHECK_MESSAGE(differs.empty(),

@@ -222,6 +222,11 @@ TEST_CASE("property: two volumes in one place keep the tolerance, lit or not") {
       RandomVolume v =
           random_lattice(r, kinds, r.chance(0.3), 1, i == 0 ? Vec3{0, 0, 0} : Vec3{r.in(-0.7, 0.7), r.in(-0.7, 0.7), r.in(-0.7, 0.7)});
       random_transfer(r, kinds, v.lo, v.hi, v.cell, v);
+      // Of two that are opaque in one place nobody can say how their colours mix: both are infinitely dense.
+      const auto whole = [](const Vec2& p) { return p.y >= 1; };
+      if (i == 1 && std::any_of(volumes[0].transfer.opacity.begin(), volumes[0].transfer.opacity.end(), whole))
+        for (auto* points : {&v.transfer.opacity, &v.item.opacity.points})
+          for (Vec2& p : *points) p.y = std::min(p.y, 0.9999);
       v.item.shaded = lit && (i == 0 || r.chance(0.7));
       box.add(v.box.lo), box.add(v.box.hi);
       words += v.words + (v.item.shaded ? "lit; " : "; ");
