@@ -196,7 +196,8 @@ TEST_CASE("signals: hang-up and the polite end clean up as Ctrl-C does; a second
       if (twice && signal != SIGINT) continue;
       INFO(signal << (twice ? " twice" : " once"));
       const std::string folder = fresh_folder("signals");
-      const pid_t child = start({"convert", "--source", "hydrogen size=80", "--compression", "lzma", "-o", "out.vti"}, folder);
+      // Work of some seconds, so that the signal comes while it goes on, however busy the machine is.
+      const pid_t child = start({"convert", "--source", "hydrogen size=160", "--compression", "lzma", "-o", "out.vti"}, folder);
       REQUIRE(wait_until([&] { return !fs::is_empty(folder); }, 60));  // it writes
       ::kill(child, signal);
       if (twice) ::kill(child, signal);
