@@ -180,7 +180,8 @@ class Preparation {
     if (!(given.opacity > 0)) return;
     SurfaceItem s = given;
     if (!s.data->as<SurfaceMesh>()) {  // any other mesh shows its outer faces
-      const auto outer = derived(given.data, "outer faces", [&] { return OuterFaces{faces_and_edges(given.data, {.original_cell = false}, context_)}; });
+      const auto outer =
+          derived(given.data, "outer faces", [&] { return OuterFaces{faces_and_edges(given.data, {.original_cell = false}, context_)}; });
       s.data = outer->skin.surface, s.edge_lines = outer->skin.edges;
     }
     const SurfaceMesh& mesh = surface_mesh(s.data, "surface");
