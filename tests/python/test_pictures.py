@@ -91,7 +91,8 @@ def test_interrupts_stop_long_work(tmp_path):
     import sys
     import time
 
-    code = ("import sightglass as sg, time\nd = sg.abc(size=96)\nprint('go', flush=True)\n"
+    # Started in the background of a shell, programs ignore the signal until they ask for it.
+    code = ("import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)\nimport sightglass as sg\nd = sg.abc(size=96)\nprint('go', flush=True)\n"
             "try:\n  d.ftle(size=200)\nexcept KeyboardInterrupt:\n  print('stopped', sg.gyroid(size=8).n_points, flush=True)\n")
     env = {**os.environ, "PYTHONPATH": os.path.dirname(os.path.dirname(sg.__file__))}
     p = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, env=env)
