@@ -48,19 +48,24 @@ size_t column_of(const sg::Table& table, std::string_view name) {
   fail_no_field(name, names);
 }
 
+Array offsets_of(const sg::CellArray& lists) {
+  if (lists.fixed <= 0) return make_array(lists.offsets);
+  std::vector<int64_t> offsets(lists.size() + 1);
+  for (size_t i = 0; i < offsets.size(); ++i) offsets[i] = int64_t(i) * lists.fixed;
+  return Array(std::move(offsets));
+}
+
 // Types as one number a cell, offsets in any case.
 Cells lists_of(const sg::UnstructuredMesh& mesh) {
   const size_t n = mesh.cells.size();
   Cells cells;
   cells.ids = make_array(mesh.cells.connectivity);
-  if (mesh.cells.fixed > 0) {
-    std::vector<int64_t> offsets(n + 1);
-    for (size_t i = 0; i <= n; ++i) offsets[i] = int64_t(i) * mesh.cells.fixed;
-    cells.offsets = Array(std::move(offsets));
-  } else {
-    cells.offsets = make_array(mesh.cells.offsets);
-  }
+  cells.offsets = offsets_of(mesh.cells);
   cells.types = mesh.types.empty() ? Array(std::vector<uint8_t>(n, uint8_t(mesh.single_type))) : make_array(mesh.types);
+  if (mesh.polyhedron_faces.empty()) return cells;
+  cells.face_ids = make_array(mesh.faces.connectivity);
+  cells.face_offsets = offsets_of(mesh.faces);
+  cells.cell_faces = make_array(mesh.polyhedron_faces);
   return cells;
 }
 
@@ -191,6 +196,36 @@ std::array<size_t, 3> Data::dims() const {
     if (!sg::is_lattice(d->mesh()))
       sg::fail_usage(fmt::format("a mesh of kind '{}' has no dimensions", d->kind()), "dims()", "point_count() and cells() tell its size");
     return sg::lattice_dims(d->mesh());
+  });
+}
+
+Placing Data::placing() const {
+  return guarded([&] {
+    const sg::DatasetPtr d = single(*this, "placing()");
+    const auto* grid = d->as<sg::UniformGrid>();
+    if (!grid) sg::fail_usage(fmt::format("a mesh of kind '{}' has no even spacing", d->kind()), "placing()", "points() are its positions");
+    Placing p;
+    for (int a = 0; a < 3; ++a) {
+      const sg::Vec3 axis = grid->direction.column(a);
+      p.spacing[size_t(a)] = grid->spacing[a], p.origin[size_t(a)] = grid->origin[a], p.axes[size_t(a)] = {axis.x, axis.y, axis.z};
+    }
+    return p;
+  });
+}
+
+std::array<Array, 3> Data::coordinates() const {
+  return guarded([&]() -> std::array<Array, 3> {
+    const sg::DatasetPtr d = single(*this, "coordinates()");
+    if (const auto* grid = d->as<sg::RectilinearGrid>()) return {make_array(grid->x), make_array(grid->y), make_array(grid->z)};
+    const auto* grid = d->as<sg::UniformGrid>();
+    if (!grid) sg::fail_usage(fmt::format("a mesh of kind '{}' has no axes", d->kind()), "coordinates()", "points() are its positions");
+    std::array<Array, 3> all;
+    for (int a = 0; a < 3; ++a) {
+      std::vector<double> axis(grid->dims[size_t(a)]);
+      for (size_t i = 0; i < axis.size(); ++i) axis[i] = grid->origin[a] + grid->spacing[a] * double(i);
+      all[size_t(a)] = Array(std::move(axis));
+    }
+    return all;
   });
 }
 

@@ -50,7 +50,7 @@ template <class State>
 sg::PipelineFile moving_pipeline(const State& scene, int width, int height, sg::StepResults& results, sg::Context& context) {
   sg::PipelineFile file = scene.pipeline(width, height, [&](const std::string& step, const Data::Held& held, StepsOf& steps) {
     if (may_move(*held.made, context)) add_memory(held.made, steps, results, "film()");
-    else results[step] = held.data;
+    else results.insert_or_assign(step, held.data);
   });
   // Above what is at hand nothing runs.
   for (const auto& step : file.steps)

@@ -87,9 +87,14 @@ Data make_data(sg::Data data, std::shared_ptr<const Made> made) {
 }
 
 Data data_from_memory(sg::DatasetPtr data) {
+  std::string about = sg::summary(*data);
+  return data_from_memory(sg::Data(std::move(data)), std::move(about));
+}
+
+Data data_from_memory(sg::Data data, std::string about) {
   auto made = std::make_shared<Made>();
   made->operation = sg::memory_step;
-  made->words = {"data=" + sg::summary(*data)};
+  made->words = {"data=" + std::move(about)};
   auto held = std::make_shared<const Data::Held>(Data::Held{std::move(data), made});
   made->memory = held;
   return Data(std::move(held));
@@ -121,7 +126,7 @@ void add_memory(const std::shared_ptr<const Made>& made, StepsOf& steps, sg::Ste
   if (!held)
     sg::fail_usage("follows time, and of what lies above it numbers from memory are gone (" + made->words.at(0) + ")", std::string(where),
                    "keep the Data that hold them");
-  results[steps.add(made)] = held->data;
+  results.insert_or_assign(steps.add(made), held->data);
 }
 
 }  // namespace sightglass

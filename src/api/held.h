@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Private to the library: what the values of sightglass.h hold, and how errors and parameters cross over.
 #pragma once
+#include <exception>
 #include <new>
 #include <optional>
 
@@ -10,7 +11,9 @@
 #include "base/schema/schema.h"
 #include "data/dataset.h"
 #include "image/image.h"
+#include "io/lent_series.h"
 #include "pipeline/file/pipeline_file.h"
+#include "pipeline/picture/picture.h"
 
 namespace sightglass {
 
@@ -19,12 +22,18 @@ struct Made {
   std::string operation;           ///< "read", a source, an operation; memory_step: numbers of the caller's
   std::vector<std::string> words;  ///< what was stated
   std::vector<std::shared_ptr<const Made>> inputs;
-  std::weak_ptr<const Data::Held> memory;  ///< of memory_step, as long as somebody holds them
+  std::weak_ptr<const Data::Held> memory;      ///< of memory_step, as long as somebody holds them
+  std::shared_ptr<const sg::LentSeries> lent;  ///< of "read", where it reads steps that the program makes
 };
 
 struct Data::Held {
   sg::Data data;
   std::shared_ptr<const Made> made;
+};
+/// What a function of the program threw while the library worked.
+struct Foreign : sg::Error {
+  Foreign(std::string text, std::exception_ptr e) : sg::Error(sg::ErrorKind::data, std::move(text)), thrown(std::move(e)) {}
+  std::exception_ptr thrown;
 };
 struct Array::Held {
   sg::Array array;
@@ -36,13 +45,16 @@ struct Image::Held {
   sg::Image image;
   sg::PipelineFile file;  ///< completed with what was chosen
   std::vector<std::string> notes;
+  sg::Seen seen = {};
 };
 
-/// What leaves the library is sightglass::Error alone.
+/// What leaves the library is sightglass::Error, or what the program itself has thrown.
 template <class F>
 decltype(auto) guarded(F&& f) {
   try {
     return f();
+  } catch (const Foreign& e) {
+    std::rethrow_exception(e.thrown);
   } catch (const sg::Error& e) {
     throw Error(Error::Kind(int(e.kind())), e.what(), e.problem(), e.where(), e.hint());
   } catch (const std::bad_alloc&) {
@@ -65,7 +77,8 @@ std::vector<std::string> stated_words(const sg::Schema& schema);
 const Data::Held& held_by(const Data& data);
 /// From what an operation of `made` gave.
 Data make_data(sg::Data data, std::shared_ptr<const Made> made);
-/// From the caller's numbers.
+/// From the caller's numbers; `about`: what a recipe says of them.
+Data data_from_memory(sg::Data data, std::string about);
 Data data_from_memory(sg::DatasetPtr data);
 
 /// Numbers of the caller's above data, by the names of their steps. Throws Error(usage) naming `where` when they are gone.

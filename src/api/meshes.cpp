@@ -2,7 +2,11 @@
 // Meshes from the caller's memory.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "api/held.h"
+#include "io/mesh/amr_cover.h"
 
 namespace sightglass {
 
@@ -55,6 +59,26 @@ Data uniform_grid(std::array<size_t, 3> dims, Vec3 spacing, Vec3 origin) {
   });
 }
 
+Data uniform_grid(std::array<size_t, 3> dims, const Placing& placing) {
+  return guarded([&] {
+    sg::UniformGrid g;
+    g.dims = dims;
+    const auto vec = [](const Vec3& v) { return sg::Vec3{v[0], v[1], v[2]}; };
+    g.spacing = vec(placing.spacing), g.origin = vec(placing.origin);
+    for (size_t a = 0; a < 3; ++a) {
+      const sg::Vec3 axis = vec(placing.axes[a]);
+      const double length = sg::length(axis);
+      if (!(length > 0) || !std::isfinite(length))
+        sg::fail_usage(fmt::format("the direction of {} has the length {}", "xyz"[a], length), "uniform_grid()",
+                       "three axes that are not 0");
+      for (int row = 0; row < 3; ++row) g.direction.m[row][a] = axis[row] / length;
+    }
+    if (!(std::abs(sg::determinant(g.direction)) > 1e-6))
+      sg::fail_usage("the directions of its axes lie in a plane", "uniform_grid()", "three axes that span space");
+    return from_mesh(std::move(g));
+  });
+}
+
 Data rectilinear_grid(Array x, Array y, Array z) {
   return guarded([&] {
     auto axis = [](const Array& a) {
@@ -83,6 +107,10 @@ Data unstructured_mesh(Array points, Cells cells) {
     m.cells = lists_of(cells.ids, cells.offsets);
     const sg::Array types = retupled(cells.types.held().array, 1, "types").made_packed();
     m.types = types.type() == sg::ElementType::u8 ? types : types.converted(sg::ElementType::u8);
+    if (cells.cell_faces.count() > 0) {
+      m.faces = lists_of(cells.face_ids, cells.face_offsets);
+      m.polyhedron_faces = list_of(cells.cell_faces, "cell_faces").converted(sg::ElementType::i64);
+    }
     return from_mesh(std::move(m));
   });
 }
@@ -132,6 +160,41 @@ Data line_mesh(Array points, Array ids, Array offsets) {
 
 Data point_cloud(Array points) {
   return guarded([&] { return from_mesh(sg::PointCloud{points_of(points)}); });
+}
+
+Data amr_grid(const std::vector<AmrLevel>& levels, Vec3 origin) {
+  return guarded([&] {
+    sg::AmrGrid grid;
+    grid.origin = {origin[0], origin[1], origin[2]};
+    if (levels.empty()) sg::fail_usage("has no levels", "amr_grid()");
+    grid.dimension = levels[0].spacing[2] == 0 ? 2 : 3;
+    for (size_t l = 0; l < levels.size(); ++l) {
+      sg::AmrGrid::Level level;
+      for (size_t a = 0; a < 3; ++a) {
+        const bool flat = a == 2 && grid.dimension == 2;
+        const double width = flat ? 1 : levels[l].spacing[a];
+        level.spacing[int(a)] = width;
+        const double ratio = l == 0 || flat ? 1 : levels[l - 1].spacing[a] / width;
+        level.ratio[a] = int(std::clamp(std::round(ratio), -1.0, 1e6));
+        if (!(width > 0) || !std::isfinite(width) || level.ratio[a] < 1 || std::abs(ratio - level.ratio[a]) > 1e-6 * ratio)
+          sg::fail_usage(
+              fmt::format("cells of level {} are {} long along {}", l, width, "xyz"[a]), "amr_grid()",
+              l == 0 ? "a positive length" : fmt::format("a whole share of the {} of level {}", levels[l - 1].spacing[a], l - 1));
+      }
+      for (const AmrLevel::Patch& p : levels[l].patches) {
+        sg::AmrGrid::Patch patch;
+        std::copy(p.lo.begin(), p.lo.end(), patch.lo.begin()), std::copy(p.hi.begin(), p.hi.end(), patch.hi.begin());
+        if (grid.dimension == 2) patch.lo[2] = patch.hi[2] = 0;
+        level.patches.push_back(patch);
+      }
+      grid.levels.push_back(std::move(level));
+    }
+    sg::number_patches(grid);
+    sg::DatasetParts parts;
+    parts.cell_ghost = sg::refined_cells(grid);
+    parts.mesh = std::move(grid);
+    return data_from_memory(sg::make_dataset(std::move(parts)));
+  });
 }
 
 }  // namespace sightglass

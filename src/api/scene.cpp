@@ -109,12 +109,14 @@ Scene& Scene::picture(const Params& params) {
 Image Scene::render(int width, int height, const Context& context) const {
   return guarded([&] {
     sg::PictureOptions options;
-    sg::PipelineFile file = state_->pipeline(
-        width, height, [&](const std::string& step, const Data::Held& held, StepsOf&) { options.results[step] = held.data; });
+    sg::PipelineFile file = state_->pipeline(width, height, [&](const std::string& step, const Data::Held& held, StepsOf&) {
+      options.results.insert_or_assign(step, held.data);
+    });
     // What is shown is at hand, so nothing above it runs.
     for (const auto& step : file.steps) options.results.try_emplace(step.name, sg::DatasetPtr());
     sg::Picture picture = sg::make_picture(file, options, context.state().core);
-    return Image(std::make_shared<const Image::Held>(Image::Held{std::move(picture.image), std::move(file), std::move(picture.notes)}));
+    return Image(std::make_shared<const Image::Held>(
+        Image::Held{std::move(picture.image), std::move(file), std::move(picture.notes), std::move(picture.seen)}));
   });
 }
 
@@ -123,10 +125,12 @@ int Image::width() const { return held_->image.width; }
 int Image::height() const { return held_->image.height; }
 int Image::channels() const { return held_->image.channels; }
 std::span<const uint8_t> Image::pixels() const { return held_->image.pixels; }
+std::span<const float> Image::depth() const { return {held_->seen.depth.data(), held_->seen.depth.size()}; }
+std::span<const uint32_t> Image::ids() const { return {held_->seen.show.data(), held_->seen.show.size()}; }
 const std::vector<std::string>& Image::notes() const { return held_->notes; }
 
 std::string Image::recipe() const {
-  return guarded([&] { return sg::emit_pipeline(held_->file); });
+  return guarded([&] { return sg::emit_pipeline(sg::without_lent(held_->file)); });
 }
 
 void Image::write(const std::string& path) const {

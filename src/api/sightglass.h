@@ -21,6 +21,7 @@
 #include <functional>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -218,6 +219,16 @@ struct Cells {
   Array ids;      ///< all lists one after the other; i32 and i64 are used where they lie
   Array offsets;  ///< where each list begins, and where the last one ends: one more than there are cells
   Array types;    ///< u8 (Cell), one per cell
+  // Of polyhedra; empty where there are none.
+  Array face_ids;      ///< the point numbers of all faces one after the other
+  Array face_offsets;  ///< where each face begins: one more than there are faces
+  Array cell_faces;    ///< where the faces of each cell begin: one more than there are cells
+};
+
+/// Point (i,j,k) lies at origin + spacing[0] i axes[0] + spacing[1] j axes[1] + spacing[2] k axes[2].
+struct Placing {
+  Vec3 spacing{1, 1, 1}, origin{0, 0, 0};
+  std::array<Vec3, 3> axes{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};  ///< directions, of length 1
 };
 
 class SIGHTGLASS_API Image;
@@ -236,7 +247,8 @@ class SIGHTGLASS_API Data {
   size_t cell_count() const;
   Box bounds() const;
 
-  /// In file order; of a table its columns (a column of words holds places in words()). Of a collection: see parts().
+  /// In file order; of a table its columns (a column of words holds places in words(), -1 where there is none). Of a collection: see
+  /// parts().
   std::vector<Field> fields() const;
   /// Points before cells before the whole. Throws Error(usage) with the nearest name.
   Field field(std::string_view name) const;
@@ -249,9 +261,21 @@ class SIGHTGLASS_API Data {
   Array points() const;
   /// Points along x, y, z of a uniform, rectilinear or curvilinear grid (x fastest). Throws Error(usage) for others.
   std::array<size_t, 3> dims() const;
+  /// Where a uniform grid lies. Throws Error(usage) for others.
+  Placing placing() const;
+  /// The coordinates along x, y and z of a uniform or rectilinear grid (of a uniform one along its own axes). Throws Error(usage) for
+  /// others.
+  std::array<Array, 3> coordinates() const;
   /// Of an unstructured mesh or a surface, whose cells stand in the order vertices, lines, polygons, strips. Throws Error(usage) for
   /// others.
   Cells cells() const;
+
+  /// The time of what is at hand; none where the data do not say.
+  std::optional<double> time() const;
+  /// The times of the series that it comes from, ascending; empty where nothing above it has times.
+  std::vector<double> times(const Context& context = {}) const;
+  /// The same at another time: what lies above it runs again, on the step nearest to `time`.
+  Data at(double time, const Context& context = {}) const;
 
   /// The datasets and tables of a collection in order, nested names joined by '/'; itself for anything else.
   std::vector<std::pair<std::string, Data>> parts() const;
@@ -303,6 +327,8 @@ Data source(const P& p, const Context& context = {}) { return source(P::operatio
 // Meshes from memory. Arrays are used where they lie. Throws Error(data) for lists of ids that lead outside, and for sizes that differ.
 /// Point (i,j,k) lies at origin + spacing * (i,j,k); x is fastest. A dimension of 1 makes it flat.
 SIGHTGLASS_API Data uniform_grid(std::array<size_t, 3> dims, Vec3 spacing = {1, 1, 1}, Vec3 origin = {0, 0, 0});
+/// The same turned: axes are made as long as 1, and may not lie in a plane.
+SIGHTGLASS_API Data uniform_grid(std::array<size_t, 3> dims, const Placing& placing);
 /// The coordinates along each axis, ascending or descending; f32 or f64.
 SIGHTGLASS_API Data rectilinear_grid(Array x, Array y, Array z);
 /// Points: f32 or f64, x y z of each, as 3 components or one after the other; x is fastest.
@@ -315,6 +341,36 @@ SIGHTGLASS_API Data polygon_mesh(Array points, Array ids, Array offsets);
 SIGHTGLASS_API Data line_mesh(Array points, Array ids, Array offsets);
 SIGHTGLASS_API Data point_cloud(Array points);
 
+/// Patches of one fineness: whole boxes of cells.
+struct AmrLevel {
+  /// Cells lo to hi, both in it, counted at this level from the origin of the grid.
+  struct Patch {
+    std::array<int64_t, 3> lo, hi;
+  };
+  Vec3 spacing;  ///< of its cells
+  std::vector<Patch> patches;
+};
+/// Cell fields hold the cells of all patches one after the other (level by level, patch by patch, x fastest), point fields likewise. Each
+/// level's spacing is a whole share of the one before; cells under finer patches count as refined.
+SIGHTGLASS_API Data amr_grid(const std::vector<AmrLevel>& levels, Vec3 origin = {0, 0, 0});
+
+/// Numbers, one per row; with `words` places in them (-1: none).
+struct Column {
+  std::string name;
+  Array values;
+  std::string unit;
+  std::vector<std::string> words;
+};
+SIGHTGLASS_API Data table(const std::vector<Column>& columns);
+
+/// Parts by name, in order; of any kind, collections too.
+SIGHTGLASS_API Data collection(const std::vector<std::pair<std::string, Data>>& parts);
+
+/// A time series that the program makes: `load` gives step 0, 1, ... when it is asked for, and the same each time; one step is held at a
+/// time. It may be called from any thread, not from several at once by one operation. What it throws comes out of what asked for the step.
+/// The data at hand are those of the first step. `times` ascend.
+SIGHTGLASS_API Data series(std::vector<double> times, std::function<Data(size_t step)> load, const Context& context = {});
+
 /// Pixels: 8 bits, sRGB, rows from the top, tightly packed.
 class SIGHTGLASS_API Image {
  public:
@@ -322,6 +378,11 @@ class SIGHTGLASS_API Image {
   int height() const;
   int channels() const;  ///< 3, or 4 with a transparent background (straight alpha)
   std::span<const uint8_t> pixels() const;
+  /// How far what is seen lies along the view, in units of the data, for each pixel; of volumes where half of the light is gone; infinity
+  /// where nothing is. Empty for the pictures of a film.
+  std::span<const float> depth() const;
+  /// Which of what was shown is seen: 1 is that of the first show(), 0 nothing, legends or axes. Empty for the pictures of a film.
+  std::span<const uint32_t> ids() const;
   /// What was chosen and why, one line each.
   const std::vector<std::string>& notes() const;
   /// The pipeline that makes this picture again (`sightglass run`, `sightglass open`), as YAML. Numbers from memory are not in it: there it
@@ -345,6 +406,47 @@ struct Frame {
   Image image;
   size_t number, count;  ///< from 0
   double time;
+};
+
+/// A pipeline, as that of a file or of the recipe in a picture: steps that run when their results are needed, and results that are kept up
+/// to a limit, so that after a change only what lies below it runs again. A value; from one thread at a time where it is changed.
+class SIGHTGLASS_API Pipeline {
+ public:
+  /// One step: its name, what it does ("read", a source, an operation) and what is stated of it, as text.
+  struct Step {
+    std::string name, operation;
+    std::vector<std::pair<std::string, std::string>> stated;
+    std::vector<std::string> from;
+  };
+  /// Of YAML as `sightglass run` takes it. Throws one Error(usage) with all mistakes.
+  static Pipeline parse(std::string_view yaml);
+  /// From a file; relative paths in it begin at its folder.
+  static Pipeline read(const std::string& path);
+  /// The recipe in a picture that Sightglass made. It is data from outside: it may read only below the folder of the picture and the
+  /// working folder, and write nothing (Error(usage) names what is in the way). `changed` receives the inputs that are not what they were.
+  static Pipeline open(const std::string& picture, std::vector<std::string>* changed = nullptr);
+  /// The steps that the data came from. Numbers from memory are held.
+  explicit Pipeline(const Data& data);
+
+  std::vector<Step> steps() const;
+  /// Of that step from now on; empty values are taken back. Throws Error(usage): unknown names with the nearest one, values out of range.
+  Pipeline& set(std::string_view step, const Params& params);
+  /// Of a step; "" the last one.
+  Data result(std::string_view step = {}, const Context& context = {}) const;
+  /// What the pipeline shows; where it shows nothing, what suits its last results.
+  Image render(int width = 0, int height = 0, const Context& context = {}) const;  ///< 0: as it states, else 1280x720
+  /// The plan of the last result as a table: what runs, what is cached, with sizes and times expected.
+  std::string explain() const;
+  /// As YAML. Numbers from memory are named only.
+  std::string text() const;
+  void write(const std::string& path) const;
+  /// How many bytes of results are kept beyond their use; 512 MB at first.
+  void set_cache_limit(size_t bytes);
+
+ private:
+  struct State;
+  explicit Pipeline(std::shared_ptr<State> state);
+  std::shared_ptr<State> state_;
 };
 
 /// What is to be seen, and from where. Parameters are checked at once; calls chain. camera(), picture() and film() take structs of

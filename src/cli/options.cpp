@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/file/file.h"
+#include "base/schema/other_words.h"
 #include "base/text/text.h"
 #include "io/file_series.h"
 #include "io/options.h"
@@ -236,7 +237,8 @@ void finish_raw(const RawText& raw, Options& o) {
       for (const CLI::Option* option : command.get_options())
         for (const std::string& n : option->get_lnames()) names.push_back("--" + n);
     }
-    const std::string near = nearest_name(word, names);
+    const std::string same = same_word(word, names);
+    const std::string near = same.empty() ? nearest_name(word, names) : same;
     fail_usage(fmt::format("unknown argument '{}'", word), "sightglass " + command.get_name(),
                near.empty() ? fmt::format("see: sightglass {} --help", command.get_name()) : fmt::format("did you mean '{}'?", near));
   }

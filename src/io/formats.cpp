@@ -14,6 +14,7 @@
 #include "data/lattice.h"
 #include "data/lattice_crop.h"
 #include "io/file_series.h"
+#include "io/lent_series.h"
 #include "io/options.h"
 #include "io/plugin.h"
 #include "io/reading_budget.h"
@@ -141,23 +142,34 @@ Data read_unchanged(const Format& f, const std::string& path, const ReadOptions&
 
 }  // namespace
 
+namespace {
+
+Data cropped(const Data& data, const LatticeRegion& region) {
+  if (region.whole()) return data;
+  return map_datasets(
+      data, [&](const DatasetPtr& d) { return is_lattice(d->mesh()) ? crop_lattice(*d, region.lo, region.hi, region.stride) : d; });
+}
+
+}  // namespace
+
 Data read_data(const std::string& path, const ReadOptions& options, Context& context) {
+  if (is_lent(path)) return cropped(read_lent(path, options, context), options.region);
   if (names_series(path)) return read_of_series(path, options, context);
   return with_format(path, options, [&](const Format& f, const std::string& at) {
     const Data data = map_datasets(read_unchanged(f, at, options, context), with_known_looks);
-    if (options.region.whole() || (f.honours & honours_region)) return data;
-    return map_datasets(data, [&](const DatasetPtr& d) {
-      return is_lattice(d->mesh()) ? crop_lattice(*d, options.region.lo, options.region.hi, options.region.stride) : d;
-    });
+    return f.honours & honours_region ? data : cropped(data, options.region);
   });
 }
 
 const Format& find_format(const std::string& path, const ReadOptions& options) {
+  static constexpr Format lent{.name = "series of a program", .extensions = ""};
+  if (is_lent(path)) return lent;
   std::string at = names_series(path) ? series_files(path).front() : path;
   return format_of(at, options);
 }
 
 std::vector<double> file_times(const std::string& path, const ReadOptions& options, Context& context) {
+  if (is_lent(path)) return lent_times(path);
   if (names_series(path)) return times_of_series(path, options, context);
   return with_format(path, options, [&](const Format& f, const std::string& at) {
     return f.times ? f.times(at, options, context) : std::vector<double>();

@@ -81,9 +81,3 @@ def test_collections_have_parts_and_tables_have_columns(volume):
     assert sum(p.n_cells for p in both.parts.values()) == both.n_cells
     table = ds.statistics()
     assert table.kind == "table" and len(table[table.keys()[0]]) == 1
-
-
-def test_notebooks_show_a_table_of_fields(volume):
-    text = sg.uniform(volume, name="a<b", unit="K")._repr_html_()
-    assert "a&lt;b" in text and "0 .. 22" in text and "<table>" in text
-    assert "uniform 6x5x4" in repr(sg.uniform(volume))

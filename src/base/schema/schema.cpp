@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/schema/other_words.h"
 #include "base/text/text.h"
 
 namespace sg {
@@ -95,7 +96,7 @@ class Check {
     if (decl_.choices_.empty()) return word;
     for (const std::string& c : decl_.choices_)
       if (equal_ignoring_case(c, word)) return c;
-    fail_usage(fmt::format("'{}' is not one of the choices", word), where_, unknown_name_hint(word, decl_.choices_));
+    fail_usage(fmt::format("'{}' is not one of the choices", word), where_, other_word_hint(word, decl_.choices_));
   }
 
   template <class T>
@@ -188,7 +189,7 @@ void set_value(Schema& schema, std::string_view name, const Value& value, std::s
   if (!decl) {
     std::vector<std::string> names;
     for (const ParamDecl& d : schema.decls()) names.push_back(d.name);
-    fail_usage(fmt::format("unknown parameter '{}'", name), std::string(owner), unknown_name_hint(name, names));
+    fail_usage(fmt::format("unknown parameter '{}'", name), std::string(owner), other_word_hint(name, names));
   }
   decl->ref.set(Check(*decl, owner.empty() ? std::string(name) : fmt::format("{} {}", owner, name), value, written)());
   decl->stated = true;

@@ -48,4 +48,17 @@ std::vector<double> even_values(const Range& range, int count) {
   return values;
 }
 
+std::vector<double> automatic_values(const Dataset& data, const Field& field, int component, int count, std::string_view who,
+                                     const Context& context) {
+  if (count > 1) {
+    std::vector<double> values = even_values(range_over_all(data, field, component, context), count);
+    if (values.size() > 1) {
+      context.info(fmt::format("{}: {} = {} to {} in steps of {}", who, field.name, short_number(values.front()), short_number(values.back()),
+                               short_number(values[1] - values[0])));
+      return values;
+    }
+  }
+  return {middle_value(data, field, component, who, context)};
+}
+
 }  // namespace sg

@@ -16,4 +16,8 @@ double middle_value(const Dataset& data, const Field& field, int component, std:
 /// count of 1, or the only value there is. None for an empty range.
 std::vector<double> even_values(const Range& range, int count);
 
+/// middle_value() for a count of 1, else even_values() of all parts and pieces. Tells `who` chose them.
+std::vector<double> automatic_values(const Dataset& data, const Field& field, int component, int count, std::string_view who,
+                                     const Context& context);
+
 }  // namespace sg

@@ -10,6 +10,7 @@
 //   picture: {size: 1280x720, camera: {direction: [1, 0.5, 0.3]}, output: out.png}
 // The picture of a series: output: out_{n}.png or film.webm, times: "0:10:101" (default: all of the file), fps: 25.
 #pragma once
+#include <concepts>
 #include <map>
 #include <string>
 #include <string_view>
@@ -87,8 +88,16 @@ struct PipelineGraph {
   std::vector<NodeId> show;                           ///< of each show, in file order
   NodeId last = -1;                                   ///< of the last step
 };
+/// Data at hand. Equal words in `content` vouch for equal data, as those of Graph::add_data().
+struct StepResult {
+  Data data;
+  std::string content;
+  StepResult() = default;
+  template <class D>
+  requires std::convertible_to<D, Data> StepResult(D d, std::string c = {}) : data(std::move(d)), content(std::move(c)) {}
+};
 /// Results at hand by the names of their steps, which then do not run; a null dataset: it is above others at hand and not requested.
-using StepResults = std::map<std::string, Data>;
+using StepResults = std::map<std::string, StepResult>;
 /// Throws one Error with all mistakes of the file and its operations, each with "origin:line".
 PipelineGraph build_graph(const PipelineFile& file, GraphOptions options = {}, const StepResults& results = {});
 

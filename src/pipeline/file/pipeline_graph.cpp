@@ -53,7 +53,7 @@ class GraphBuilder {
 
   void add(const PipelineFile::Step& step) {
     const auto result = results_.find(step.name);
-    const NodeId node = result != results_.end()                        ? built_.graph.add_data(result->second, {}, step.name)
+    const NodeId node = result != results_.end() ? built_.graph.add_data(result->second.data, result->second.content, step.name)
                         : step_kind(step.operation) == StepKind::memory ? add_memory(step)
                         : step.reads()                                  ? add_read(step)
                                                                         : add_operation(step);

@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "base/text/text.h"
 #include "io/file_series.h"
+#include "io/lent_series.h"
 #include "pipeline/file/yaml_tree.h"
 #include "pipeline/film/film_params.h"
 #include "pipeline/graph/key.h"
@@ -85,8 +86,15 @@ void replace_path(std::vector<std::string>& words, const std::string& path) {
 
 }  // namespace
 
+PipelineFile without_lent(PipelineFile file) {
+  for (auto& step : file.steps)
+    if (step.reads() && is_lent(word_value(step.words, "path").value_or("")))
+      step.operation = memory_step, step.words = {"data=time series of a program"};
+  return file;
+}
+
 void attach_recipe(Image& image, const PipelineFile& file, const std::string& picture_path) {
-  PipelineFile recipe = file;
+  PipelineFile recipe = without_lent(file);
   const std::string folder = folder_of(picture_path);
   std::string inputs;
   for (auto& step : recipe.steps) {

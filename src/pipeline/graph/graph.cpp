@@ -11,6 +11,7 @@
 #include "base/file/file.h"
 #include "base/text/text.h"
 #include "io/file_series.h"
+#include "io/lent_series.h"
 #include "pipeline/graph/graph_state.h"
 
 namespace sg {
@@ -154,6 +155,7 @@ void check_fields(const std::vector<Node>& nodes, NodeId id, const GraphOptions&
 
 // What is missing of a file or of the files of a series; "" when nothing is.
 std::string missing_file(const std::string& path) {
+  if (is_lent(path)) return "";
   if (!names_series(path)) return file_exists(path) ? "" : path + ": no such file";
   try {
     series_files(path);

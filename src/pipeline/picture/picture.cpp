@@ -263,7 +263,8 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
     if (!views.empty()) camera.view = view_named(views[i]);
     panels.push_back({views.empty() ? panel_title(file, i) : views[i], panel_of(shown[views.empty() ? i : 0], look, inside, camera)});
   }
-  picture.image = draw_layout(panels, stated, inside, around, drawing);
+  DrawnPicture drawn = draw_layout(panels, stated, inside, around, drawing);
+  picture.image = std::move(drawn.image), picture.seen = std::move(drawn.seen);
   context.progress(1, "done");
   return picture;
 }

@@ -61,8 +61,15 @@ struct PictureOptions {
   std::vector<std::string> coloring;  ///< words added to every way to show that colours by a field ("field=T", "map=ember")
 };
 
+/// What is seen where: planes of the whole picture, legends as background.
+struct Seen {
+  Plane<float> depth;    ///< along the view, in units of the data; of volumes where half of the light is gone; infinity where nothing is
+  Plane<uint32_t> show;  ///< which entry under `show`, from 1; 0 where none is
+};
+
 struct Picture {
   Image image;
+  Seen seen;
   std::vector<std::string> notes;    ///< what was chosen and why, one line each
   std::vector<PictureDraft> drafts;  ///< with on_draft: of each that was made, this one last
 };
@@ -75,6 +82,8 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
 /// Puts the recipe, the version and the hashes of the inputs into the image's text. Paths of inputs are written relative to
 /// the folder of `picture_path`, where the picture is going to be.
 void attach_recipe(Image& image, const PipelineFile& file, const std::string& picture_path);
+/// What a recipe may tell of it: series that a program lends (io/lent_series.h) are memory steps there.
+PipelineFile without_lent(PipelineFile file);
 
 /// The recipe inside a picture as stored, for inspection. Throws Error(data) when there is none.
 PipelineFile recipe_in(const Image& image, const std::string& picture_path);

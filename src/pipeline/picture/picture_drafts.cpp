@@ -86,11 +86,12 @@ void draw_drafts(const Scene& scene, const Camera& camera, const StatedPicture& 
   const Projection p = make_projection(camera, int(area.width), int(area.height));
   const double coarsest = options.on_draft ? pixels_in_memory(scene, p, draft.made_of) : 0;
   const auto draw = [&](double coarser, Context& c) { return draw_picture(scene, camera, stated, annotation, coarser, c); };
+  const auto take = [&](DrawnPicture drawn) { picture.image = std::move(drawn.image), picture.seen = std::move(drawn.seen); };
   if (!(coarsest > 1)) {  // all is in memory, or fine enough there
-    picture.image = draw(1, context);
+    take(draw(1, context));
     return;
   }
-  picture.image = draw(0, context);
+  take(draw(0, context));
   draft.voxel_pixels = coarsest, draft.compared = false;
   options.on_draft(picture, draft);
 
@@ -98,15 +99,15 @@ void draw_drafts(const Scene& scene, const Camera& camera, const StatedPicture& 
   const Deadline deadline(work, options.until);
   try {
     // The error of the first picture shows in what half as many samples along each axis change.
-    compare(picture.image, draw(2 * coarsest, work), draft);
+    compare(picture.image, draw(2 * coarsest, work).image, draft);
     picture.drafts.push_back(draft);
     double pixels = 1;
     while (2 * pixels < 0.75 * coarsest) pixels *= 2;
     for (; pixels >= 1; pixels /= 2) {
-      Image finer = draw(pixels, work);
+      DrawnPicture finer = draw(pixels, work);
       draft.made_of = "bricks", draft.voxel_pixels = pixels;
-      compare(finer, picture.image, draft);
-      picture.image = std::move(finer);
+      compare(finer.image, picture.image, draft);
+      take(std::move(finer));
       picture.drafts.push_back(draft);
       if (pixels > 1) options.on_draft(picture, draft);
     }

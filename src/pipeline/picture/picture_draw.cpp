@@ -27,9 +27,12 @@ Frame placed(const Frame& part, const Scene& scene, const Camera& camera, const 
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
       std::copy_n(&background.rgba[4 * size_t(y)], 4, &whole.rgba[4 * (size_t(y) * size_t(width) + size_t(x))]);
-  for (int y = 0; y < part.height; ++y)
-    std::copy_n(&part.rgba[4 * size_t(y) * size_t(part.width)], 4 * size_t(part.width),
-                &whole.rgba[4 * ((size_t(y) + size_t(at.y)) * size_t(width) + size_t(at.x))]);
+  const size_t row = size_t(part.width);
+  for (size_t y = 0; y < size_t(part.height); ++y) {
+    const size_t to = (y + size_t(at.y)) * size_t(width) + size_t(at.x);
+    std::copy_n(&part.rgba[4 * y * row], 4 * row, &whole.rgba[4 * to]);
+    std::copy_n(&part.depth[y * row], row, &whole.depth[to]), std::copy_n(&part.ids[y * row], row, &whole.ids[to]);
+  }
   return whole;
 }
 
@@ -86,8 +89,8 @@ Rect picture_beside_legends(const Annotation& annotation, const StatedPicture& s
   return {double(room.left), double(room.top), double(s.width - room.left - room.right), double(s.height - room.top - room.bottom)};
 }
 
-Image draw_picture(const Scene& scene, const Camera& camera, const StatedPicture& s, const Annotation& annotation, double coarser,
-                   Context& context) {
+DrawnPicture draw_picture(const Scene& scene, const Camera& camera, const StatedPicture& s, const Annotation& annotation, double coarser,
+                          Context& context) {
   const Rect area = picture_beside_legends(annotation, s);
   RenderOptions options;
   options.width = int(area.width), options.height = int(area.height), options.samples = s.picture.samples;
@@ -117,7 +120,7 @@ Image draw_picture(const Scene& scene, const Camera& camera, const StatedPicture
   if (beside) frame = placed(frame, scene, camera, options, area, s.width, s.height, context);
   Image image = to_image(frame, scene.transparent);
   annotate(image, with_texts, projection, int(area.x), int(area.y));
-  return image;
+  return {std::move(image), {std::move(frame.depth), std::move(frame.ids)}};
 }
 
 }  // namespace sg

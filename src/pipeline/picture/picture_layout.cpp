@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/file/file.h"
 #include "base/text/text.h"
+#include "io/lent_series.h"
 #include "pipeline/picture/picture_parts.h"
 #include "render/render.h"
 
@@ -80,7 +81,11 @@ std::string panel_title(const PipelineFile& file, size_t panel) {
   const std::vector<size_t> panels = panels_of(file, inputs);
   const auto i = size_t(std::find(panels.begin(), panels.end(), panel) - panels.begin());
   const std::string origin = origin_of(file, shown_step(file, i));
-  return origin.empty() ? base_of(file, i) : file_name_of(origin);
+  std::string time;  // tells panels of one series apart
+  for (const PipelineFile::Step* step : steps_behind(file, shown_step(file, i)))
+    if (const auto stated = word_value(step->words, "time"); stated && step->reads()) time = "t = " + *stated;
+  const std::string name = is_lent(origin) ? "" : origin.empty() ? base_of(file, i) : file_name_of(origin);
+  return name.empty() ? time : time.empty() ? name : name + ", " + time;
 }
 
 NamedView view_named(const std::string& word) {
@@ -99,8 +104,8 @@ StatedPicture inside_layout(const StatedPicture& stated, const Annotation& aroun
   return s;
 }
 
-Image draw_layout(const std::vector<NamedPanel>& panels, const StatedPicture& stated, const StatedPicture& inside, const Annotation& around,
-                  Context& context) {
+DrawnPicture draw_layout(const std::vector<NamedPanel>& panels, const StatedPicture& stated, const StatedPicture& inside,
+                         const Annotation& around, Context& context) {
   check_picture_memory(stated.width, stated.height, 2);
   const Rect area = area_beside(around, stated.width, stated.height);
   const int columns = std::max(1, int(area.width) / inside.width);
@@ -109,20 +114,27 @@ Image draw_layout(const std::vector<NamedPanel>& panels, const StatedPicture& st
   options.width = stated.width, options.height = stated.height, options.samples = 1;
   Scene empty;
   empty.background = stated.bottom, empty.background_top = stated.top, empty.transparent = stated.transparent;
-  Image whole = to_image(render(empty, panels[0].panel.camera, options, context), stated.transparent);
+  Frame frame = render(empty, panels[0].panel.camera, options, context);
+  Image whole = to_image(frame, stated.transparent);
   for (size_t i = 0; i < panels.size(); ++i) {
     Annotation annotation = panels[i].panel.annotation;
     annotation.title = panels[i].title;
     Context part(context, double(i) / double(panels.size()), double(i + 1) / double(panels.size()));
-    const Image image = draw_picture(panels[i].panel.scene, panels[i].panel.camera, inside, annotation, 1, part);
-    paste(image, whole, int(area.x) + int(i) % columns * inside.width, int(area.y) + int(i) / columns * inside.height);
+    const DrawnPicture drawn = draw_picture(panels[i].panel.scene, panels[i].panel.camera, inside, annotation, 1, part);
+    const int x0 = int(area.x) + int(i) % columns * inside.width, y0 = int(area.y) + int(i) / columns * inside.height;
+    paste(drawn.image, whole, x0, y0);
+    for (int y = 0; y < inside.height && y0 + y < stated.height && x0 + inside.width <= stated.width; ++y) {
+      const size_t from = size_t(y) * size_t(inside.width), to = size_t(y0 + y) * size_t(stated.width) + size_t(x0);
+      std::copy_n(&drawn.seen.depth[from], inside.width, &frame.depth[to]),
+          std::copy_n(&drawn.seen.show[from], inside.width, &frame.ids[to]);
+    }
   }
   Annotation rest;
   rest.title = around.title, rest.caption = around.caption, rest.notes = around.notes, rest.legends = around.legends,
   rest.show_nan_in_legend = around.show_nan_in_legend;
   rest.dark_background = around.dark_background, rest.scale = around.scale, rest.triad = false;
   annotate(whole, rest, make_projection(panels[0].panel.camera, stated.width, stated.height));
-  return whole;
+  return {std::move(whole), {std::move(frame.depth), std::move(frame.ids)}};
 }
 
 }  // namespace sg

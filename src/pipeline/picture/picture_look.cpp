@@ -100,6 +100,9 @@ Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file,
   std::vector<std::string> coloring = wanted.words;
   if (field != stated) coloring.push_back("field=" + field);
   Look look = choose_look(*largest, field, extension_of(origin));
+  // What is seen of a volume was told for the scale that is chosen.
+  if (word_value(wanted.words, "scale") || word_value(wanted.words, "range"))
+    if (const size_t at = look.reason.find("shown as a volume;"); at != look.reason.npos) look.reason.resize(look.reason.find(';', at));
   cut_open(look, largest, field, context);
   const std::string result =
       look.filter.empty() ? end : added_step(file, look.filter[0], {look.filter.begin() + 1, look.filter.end()}, end);

@@ -40,15 +40,15 @@ void take_place(const std::string& place, PictureNote& note) {
     return;
   }
   const auto numbers = split(place, ',');
-  const auto x = numbers.size() == 2 ? parse_double(trim(numbers[0])) : std::nullopt,
-             y = numbers.size() == 2 ? parse_double(trim(numbers[1])) : std::nullopt;
-  if (!x || !y || !(*x >= 0 && *x <= 1 && *y >= 0 && *y <= 1)) {
+  const auto share = [&](size_t i) { return numbers.size() == 2 ? parse_double(trim(numbers[i])).value_or(-1) : -1; };
+  const double x = share(0), y = share(1);
+  if (!(x >= 0 && x <= 1 && y >= 0 && y <= 1)) {
     std::vector<std::string_view> names;
     for (const auto& w : enum_words(NotePlace())) names.push_back(w.word);
     fail_usage(fmt::format("'{}' is not a place in the picture", place), owner,
                fmt::format("write shares of its width and height from the top left, e.g. 0.1,0.9, or one of {}", fmt::join(names, ", ")));
   }
-  note.at = Vec2{*x, *y};
+  note.at = Vec2{x, y};
 }
 
 PictureNote note_of(const std::string& part) {

@@ -46,6 +46,11 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::
 /// The step whose result the i-th show shows.
 const std::string& shown_step(const PipelineFile& file, size_t i);
 
+struct DrawnPicture {
+  Image image;
+  Seen seen;
+};
+
 /// A scene, seen and annotated.
 struct Panel {
   Scene scene;
@@ -68,8 +73,8 @@ NamedView view_named(const std::string& word);
 /// that is none or has no place for all.
 StatedPicture inside_layout(const StatedPicture& stated, const Annotation& around, size_t count);
 /// The panels in rows, each with its title; title and legends of `around` beside them.
-Image draw_layout(const std::vector<NamedPanel>& panels, const StatedPicture& stated, const StatedPicture& inside, const Annotation& around,
-                  Context& context);
+DrawnPicture draw_layout(const std::vector<NamedPanel>& panels, const StatedPicture& stated, const StatedPicture& inside,
+                         const Annotation& around, Context& context);
 
 /// One entry under `show`, with its parameters.
 struct StatedShow {
@@ -109,9 +114,9 @@ LinesItem back_edges(const Box3& box, const Camera& camera);
 Rect picture_beside_legends(const Annotation& annotation, const StatedPicture& stated);
 /// Renders beside the legends, continues the background behind them, and annotates.
 /// `coarser` as in RenderOptions.
-Image draw_picture(const Scene& scene, const Camera& camera, const StatedPicture& stated, const Annotation& annotation, double coarser,
-                   Context& context);
-/// Fills in picture.image and picture.drafts, through options.on_draft where that is set.
+DrawnPicture draw_picture(const Scene& scene, const Camera& camera, const StatedPicture& stated, const Annotation& annotation,
+                          double coarser, Context& context);
+/// Fills in picture.image, picture.seen and picture.drafts, through options.on_draft where that is set.
 void draw_drafts(const Scene& scene, const Camera& camera, const StatedPicture& stated, const Annotation& annotation,
                  const PictureOptions& options, Picture& picture, Context& context);
 

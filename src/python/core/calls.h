@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "api/sightglass.h"
+#include "python/core/progress.h"
 
 namespace sightglass::python {
 
@@ -43,6 +44,7 @@ template <class F>
 auto call(F&& f) {
   Context context;
   const Messages messages(context);
+  const Progress progress(context);
   const auto work = [&] {
     const Interruptible here(context);
     const pybind11::gil_scoped_release unlocked;

@@ -35,6 +35,7 @@ PYBIND11_MODULE(_core, m) {
   m.def("version", &version);
   m.def("help", [](const std::string& operation) { return help(operation); });
   m.def("catalog_json", &catalog_json);
+  m.def("show_progress", &show_progress);
   m.def("set_threads", &set_threads);
   m.def("set_memory_limit", &set_memory_limit);
 }

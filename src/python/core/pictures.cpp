@@ -23,11 +23,24 @@ py::array pixels_of(const Image& image) {
   return r;
 }
 
+// One number a pixel; a view that keeps the picture. Empty for the pictures of a film.
+template <class T>
+py::array plane_of(const Image& image, std::span<const T> (Image::*plane)() const) {
+  auto* owner = new Image(image);
+  const py::capsule keep(owner, [](void* p) { delete static_cast<Image*>(p); });
+  const std::span<const T> numbers = (owner->*plane)();
+  py::array_t<T> r({py::ssize_t(numbers.empty() ? 0 : image.height()), py::ssize_t(image.width())}, numbers.data(), keep);
+  r.attr("flags").attr("writeable") = false;
+  return r;
+}
+
 void declare_image(py::module_& m) {
   py::class_<Image>(m, "Image")
       .def_property_readonly("width", &Image::width)
       .def_property_readonly("height", &Image::height)
       .def("pixels", &pixels_of)
+      .def("depth", [](const Image& image) { return plane_of(image, &Image::depth); })
+      .def("ids", [](const Image& image) { return plane_of(image, &Image::ids); })
       .def("notes", &Image::notes)
       .def("recipe", &Image::recipe)
       .def("png",
@@ -53,11 +66,45 @@ void declare_scene(py::module_& m) {
       });
 }
 
+void declare_pipeline(py::module_& m) {
+  py::class_<Pipeline>(m, "Pipeline")
+      .def(py::init<const Data&>())
+      .def_static("parse", [](const std::string& yaml) { return Pipeline::parse(yaml); })
+      .def_static("read", &Pipeline::read)
+      .def_static("open",
+                  [](const std::string& picture) {
+                    std::vector<std::string> changed;
+                    Pipeline p = Pipeline::open(picture, &changed);
+                    return py::make_tuple(std::move(p), changed);
+                  })
+      .def("steps",
+           [](const Pipeline& p) {
+             py::list all;
+             for (const Pipeline::Step& s : p.steps()) all.append(py::make_tuple(s.name, s.operation, s.stated, s.from));
+             return all;
+           })
+      .def("set",
+           [](Pipeline& p, const std::string& step, const py::dict& params) {
+             Params all;
+             for (const auto& [name, value] : params) all.push_back({name.cast<std::string>(), value_of(name.cast<std::string>(), value)});
+             p.set(step, all);
+           })
+      .def("result",
+           [](const Pipeline& p, const std::string& step) { return call([&](const Context& context) { return p.result(step, context); }); })
+      .def("render", [](const Pipeline& p, int width,
+                        int height) { return call([&](const Context& context) { return p.render(width, height, context); }); })
+      .def("explain", &Pipeline::explain)
+      .def("text", &Pipeline::text)
+      .def("write", &Pipeline::write)
+      .def("set_cache_limit", &Pipeline::set_cache_limit);
+}
+
 }  // namespace
 
 void declare_pictures(py::module_& m) {
   declare_image(m);
   declare_scene(m);
+  declare_pipeline(m);
 }
 
 }  // namespace sightglass::python

@@ -15,13 +15,17 @@ from typing import Any
 from . import _core, _operations
 from ._data import Data
 from ._errors import CancelledError, DataError, Error, InternalError, SightglassWarning, UnknownNameError, UsageError
+from ._groups import amr, collection, series, table
 from ._meshes import CELL_TYPES, curvilinear, lines, points, rectilinear, surface, uniform, unstructured
+from ._pipeline import Pipeline, open, pipeline
+from ._progress import set_progress
 from ._scene import Picture, Scene
 
 __version__ = _core.version()
-__all__ = ["CELL_TYPES", "CancelledError", "Data", "DataError", "Error", "InternalError", "Picture", "Scene", "SightglassWarning",
-           "UnknownNameError", "UsageError", "curvilinear", "help", "lines", "points", "read", "rectilinear", "scene", "set_memory_limit",
-           "set_threads", "surface", "times", "uniform", "unstructured"]
+__all__ = ["CELL_TYPES", "CancelledError", "Data", "DataError", "Error", "InternalError", "Picture", "Pipeline", "Scene", "SightglassWarning",
+           "UnknownNameError", "UsageError", "amr", "collection", "curvilinear", "help", "lines", "pipeline", "points", "read", "rectilinear",
+           "scene", "series", "set_memory_limit", "set_progress", "set_threads", "surface", "table", "times", "uniform", "unstructured"]
+# Not open: `from sightglass import *` leaves Python's own alone.
 
 set_threads = _core.set_threads
 set_memory_limit = _core.set_memory_limit

@@ -50,6 +50,29 @@ class Data(Methods):
         return nx, ny, nz
 
     @property
+    def spacing(self) -> tuple[float, float, float]:
+        """Between the points of a uniform grid along its axes."""
+        x, y, z = self._core.placing()[0]
+        return x, y, z
+
+    @property
+    def origin(self) -> tuple[float, float, float]:
+        """Where the first point of a uniform grid lies."""
+        x, y, z = self._core.placing()[1]
+        return x, y, z
+
+    @property
+    def direction(self) -> np.ndarray:
+        """(3, 3): the columns are the directions of the axes of a uniform grid."""
+        return np.array(self._core.placing()[2]).T
+
+    @property
+    def axes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """The coordinates along x, y and z of a rectilinear or uniform grid (of that along its own axes)."""
+        x, y, z = self._core.coordinates()
+        return x, y, z
+
+    @property
     def points(self) -> np.ndarray:
         """Positions of all points, (n, 3)."""
         return self._core.points()
@@ -59,6 +82,13 @@ class Data(Methods):
         """Point numbers of all cells one after the other, where each begins (one more than there are cells), and VTK's number of its
         type."""
         return self._core.cells()
+
+    @property
+    def polyhedra(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Of polyhedra: the point numbers of all faces one after the other, where each face begins, and where the faces of each cell begin
+        (equal neighbours: a cell of another type). Empty where there are none."""
+        ids, begins, of_cells = self._core.faces()
+        return (ids, begins, of_cells) if len(ids) else (np.zeros(0, np.int64),) * 3
 
     @property
     def parts(self) -> dict[str, Data]:
@@ -125,17 +155,38 @@ class Data(Methods):
                 raise usage(f"{n} values", where, f"there are {self.n_points} points and {self.n_cells} cells")
         return Data(self._core.with_field(name, on, lent(array, values), unit))
 
+    # ---- time
+
+    @property
+    def time(self) -> float | None:
+        """Of what is at hand; None where the data do not say."""
+        return self._core.time()
+
+    @property
+    def times(self) -> list[float]:
+        """Of the series that it comes from, ascending; none where nothing above it has times."""
+        return self._core.times()
+
+    def at(self, time: float) -> Data:
+        """The same at another time: what it was made of runs again, on the step nearest to it."""
+        return Data(self._core.at(float(time)))
+
     # ---- doing something with it
 
     def save(self, path: Any, **params: Any) -> None:
         """Writes a file; its extension chooses the format. Nothing is ever half written."""
         self._core.write(str(path), params)
 
-    def plot(self, show: str = "auto", size: tuple[int, int] = (1280, 720), camera: dict | None = None, picture: dict | None = None,
-             **params: Any) -> Any:
-        """The picture that `sightglass render` would make; ``params`` are those of the way to show."""
+    def plot(self, show: str = "auto", size: tuple[int, int] | float = (1280, 720), camera: dict | None = None,
+             picture: dict | None = None, **params: Any) -> Any:
+        """The picture that `sightglass render` would make; ``params`` are those of the way to show (see Scene.add).
+
+        ``size``: width and height in pixels; one number is that of points and glyphs.
+        """
         from ._scene import Scene
 
+        if isinstance(size, (int, float)):
+            params["size"], size = size, (1280, 720)
         return Scene().add(self, show, **params).camera(**(camera or {})).picture(**(picture or {})).render(size)
 
     def __getattr__(self, name: str) -> Any:
@@ -155,17 +206,6 @@ class Data(Methods):
         return f"<sightglass.Data: {self._core.summary()}>"
 
     def _repr_html_(self) -> str:
-        import html
+        from ._notebook import page_of
 
-        rows = [f"<b>{html.escape(self._core.summary())}</b>"]
-        if self.kind == "collection":
-            rows += [f"{html.escape(name)}: {html.escape(part._core.summary())}" for name, part in self.parts.items()]
-            return "<br>".join(rows)
-        cells = []
-        for name, on, unit, array in self._core.fields():
-            components = array.shape[1] if array.ndim == 2 else 1
-            lo, hi = self.range(name) if array.size else (np.nan, np.nan)
-            cells.append("<tr>" + "".join(f"<td>{html.escape(str(t))}</td>" for t in (
-                name, on, f"{array.dtype}" + (f" x{components}" if components > 1 else ""), f"{lo:.6g} .. {hi:.6g}", unit)) + "</tr>")
-        head = "".join(f"<th>{t}</th>" for t in ("field", "on", "type", "range", "unit"))
-        return rows[0] + f"<table><tr>{head}</tr>{''.join(cells)}</table>"
+        return page_of(self)

@@ -16,8 +16,9 @@ CELL_TYPES = {
     "vertex": 1, "line": 3, "poly_line": 4, "triangle": 5, "triangle_strip": 6, "polygon": 7, "pixel": 8, "quad": 9, "tetra": 10,
     "tetrahedron": 10, "voxel": 11, "hexahedron": 12, "wedge": 13, "pyramid": 14, "quadratic_edge": 21, "quadratic_triangle": 22,
     "quadratic_quad": 23, "quadratic_tetra": 24, "quadratic_hexahedron": 25, "quadratic_wedge": 26, "quadratic_pyramid": 27,
-    "lagrange_triangle": 69, "lagrange_quad": 70, "lagrange_tetra": 71, "lagrange_hexahedron": 72, "lagrange_wedge": 73,
+    "polyhedron": 42, "lagrange_triangle": 69, "lagrange_quad": 70, "lagrange_tetra": 71, "lagrange_hexahedron": 72, "lagrange_wedge": 73,
 }
+_of_any_length = (4, 6, 7)  # poly_line, triangle_strip, polygon
 
 
 def _three(numbers: Any, what: str) -> tuple[float, float, float]:
@@ -27,20 +28,24 @@ def _three(numbers: Any, what: str) -> tuple[float, float, float]:
     return float(a[0]), float(a[1]), float(a[2])
 
 
-def uniform(values: Any = None, *, dims: Sequence[int] | None = None, spacing: Any = (1, 1, 1), origin: Any = (0, 0, 0), name: str = "values",
-            unit: str = "", order: str = "zyx", components: bool = False) -> Data:
+def uniform(values: Any = None, *, dims: Sequence[int] | None = None, spacing: Any = (1, 1, 1), origin: Any = (0, 0, 0),
+            direction: Any = None, name: str = "values", unit: str = "", order: str = "zyx", components: bool = False) -> Data:
     """A grid of even steps, with ``values`` at its points: uniform(volume, spacing=(0.5, 0.5, 2)).
 
     ``values``: an array of one to three axes; with ``components`` the last axis holds those of vectors. ``order``: "zyx" where the last
     axis is x (as tifffile, SimpleITK and h5py give it), "xyz" where the first is (nibabel). ``dims``: instead of values, points along x, y
-    and z. ``spacing`` and ``origin``: for x, y and z.
+    and z. ``spacing`` and ``origin``: for x, y and z. ``direction``: (3, 3), whose columns are the directions of the axes in space.
     """
+    turned = np.eye(3) if direction is None else np.asarray(direction, float)
+    if turned.shape != (3, 3):
+        raise usage(f"a direction of shape {turned.shape}", "uniform", "(3, 3), whose columns are the directions of the axes")
+    placing = _three(spacing, "spacing"), _three(origin, "origin"), turned.T.tolist()
     if (values is None) == (dims is None):
         raise usage("needs values or dims", "uniform", "an array with the values at its points, or dims=(nx, ny, nz) for a grid without")
     if dims is not None:
-        return Data(_core.uniform_grid(tuple(int(n) for n in dims), _three(spacing, "spacing"), _three(origin, "origin")))
+        return Data(_core.uniform_grid(tuple(int(n) for n in dims), *placing))
     size, array = on_grid(values, order, f"uniform '{name}'", components)
-    grid = _core.uniform_grid(size, _three(spacing, "spacing"), _three(origin, "origin"))
+    grid = _core.uniform_grid(size, *placing)
     return Data(grid.with_field(name, "points", lent(array, values), unit))
 
 
@@ -83,29 +88,88 @@ def _positions(points: Any) -> np.ndarray:
     return a
 
 
-def unstructured(points: Any, cells: Mapping[str | int, Any] | None = None) -> Data:
+def unstructured(points: Data | Any, cells: Mapping[str | int, Any] | Sequence[Any] | None = None, *, faces: Sequence[Any] | None = None) -> Data:
     """A mesh of cells of any types: unstructured(xyz, {"tetrahedron": (n, 4) point numbers, "hexahedron": (m, 8) ...}).
 
-    The types are those of CELL_TYPES or VTK's numbers. Cells come in the order of the mapping. Of data alone: the operation of that name.
+    The types are those of CELL_TYPES or VTK's numbers; cells come in the order of the mapping. "polygon" and "poly_line" take lists of any
+    lengths, "polyhedron" for each cell the list of its faces. ``cells`` may also be the three arrays that Data.cells gives, and ``faces``
+    those of Data.polyhedra. Of data alone: the operation of that name.
     """
     if isinstance(points, Data):
         return points.unstructured()
-    ids, sizes, types = [], [], []
-    for name, lists in (cells or {}).items():
+    if cells is not None and not isinstance(cells, Mapping):
+        if len(cells) != 3:
+            raise usage(f"{len(cells)} lists of cells", "unstructured", "a mapping from types to point numbers, or ids, offsets and types")
+        ids, offsets, types = whole(cells[0], "ids"), whole(cells[1], "offsets"), known(cells[2], "types").astype(np.uint8)
+        of_faces = None if faces is None or len(faces[2]) == 0 else tuple(whole(f, "faces") for f in faces)
+        return Data(_core.unstructured_mesh(_lent_positions(points), ids, offsets, types, of_faces))
+    if not cells:
+        raise usage("no cells", "unstructured", "points(xyz) makes points without cells")
+    made = _Lists()
+    for name, lists in cells.items():
         number = CELL_TYPES.get(name) if isinstance(name, str) else int(name)
         if number is None:
             raise usage(f"cell type '{name}' is not known", "unstructured", "one of " + ", ".join(CELL_TYPES))
-        a = np.asarray(lists)
-        if a.ndim != 2:
-            raise usage(f"the cells of type '{name}' have {a.ndim} dimensions", "unstructured", "one row of point numbers for each cell")
-        ids.append(whole(a, f"cells '{name}'"))
-        sizes.append(np.full(len(a), a.shape[1], np.int64))
-        types.append(np.full(len(a), number, np.uint8))
-    if not ids:
-        raise usage("no cells", "unstructured", "points(xyz) makes points without cells")
-    all_ids = ids[0] if len(ids) == 1 else np.concatenate([i.astype(np.int64) for i in ids])
-    offsets = np.concatenate([[0], np.cumsum(np.concatenate(sizes))]).astype(np.int64)
-    return Data(_core.unstructured_mesh(_lent_positions(points), all_ids, offsets, np.concatenate(types)))
+        made.add(number, lists, f"cells '{name}'")
+    return Data(_core.unstructured_mesh(_lent_positions(points), *made.arrays()))
+
+
+class _Lists:
+    """Cells of several types, one after the other."""
+
+    def __init__(self) -> None:
+        self.ids: list[np.ndarray] = []
+        self.sizes: list[np.ndarray] = []
+        self.types: list[np.ndarray] = []
+        self.faces: list[np.ndarray] = []
+        self.face_counts: list[np.ndarray] = []  # of each cell
+
+    def add(self, number: int, lists: Any, what: str) -> None:
+        if number == CELL_TYPES["polyhedron"]:
+            self.add_polyhedra(lists, what)
+            return
+        uneven = not isinstance(lists, np.ndarray) and len({len(cell) for cell in lists if np.ndim(cell)}) > 1
+        if uneven and number in _of_any_length:
+            self.ids.append(np.concatenate([whole(cell, what).astype(np.int64) for cell in lists]))
+            self.sizes.append(np.array([len(cell) for cell in lists], np.int64))
+        else:
+            if uneven:
+                raise usage("they have different numbers of points", what, "cells of this type all have the same")
+            a = np.asarray(lists)
+            if a.ndim != 2:
+                raise usage(f"{a.ndim} dimensions", what, "one row of point numbers for each cell")
+            self.ids.append(whole(a, what))
+            self.sizes.append(np.full(len(a), a.shape[1], np.int64))
+        self.finish(number)
+
+    def add_polyhedra(self, cells: Sequence[Sequence[Any]], what: str) -> None:
+        self.sizes.append(np.zeros(0, np.int64))
+        for cell in cells:
+            faces = [whole(face, what).astype(np.int64) for face in cell]
+            if not faces:
+                raise usage("a polyhedron without faces", what, "the point numbers of each of its faces")
+            points = np.unique(np.concatenate(faces))
+            self.ids.append(points)
+            self.sizes[-1] = np.append(self.sizes[-1], len(points))
+            self.faces += faces
+        self.finish(CELL_TYPES["polyhedron"], np.array([len(cell) for cell in cells], np.int64))
+
+    def finish(self, number: int, face_counts: np.ndarray | None = None) -> None:
+        n = len(self.sizes[-1])
+        self.types.append(np.full(n, number, np.uint8))
+        self.face_counts.append(np.zeros(n, np.int64) if face_counts is None else face_counts)
+
+    def arrays(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, Any]:
+        ids = self.ids[0] if len(self.ids) == 1 else np.concatenate([i.astype(np.int64) for i in self.ids])
+        faces = None
+        if self.faces:
+            sizes = np.array([len(f) for f in self.faces], np.int64)
+            faces = np.concatenate(self.faces), _begins(sizes), _begins(np.concatenate(self.face_counts))
+        return ids, _begins(np.concatenate(self.sizes)), np.concatenate(self.types), faces
+
+
+def _begins(sizes: np.ndarray) -> np.ndarray:
+    return np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)
 
 
 def surface(points: Any, faces: Any, offsets: Any = None) -> Data:

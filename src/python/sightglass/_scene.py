@@ -2,12 +2,17 @@
 """What is to be seen, from where, and the picture of it."""
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Mapping
 
 import numpy as np
 
 from . import _core
 from ._data import Data
+
+
+def _at_values(value: Any) -> Any:
+    """A mapping from values to opacities or colours in the words of the command line."""
+    return ",".join(f"@{float(at)!r}:{what}" for at, what in value.items()) if isinstance(value, Mapping) else value
 
 
 class Picture:
@@ -22,6 +27,17 @@ class Picture:
     def array(self) -> np.ndarray:
         """(height, width, 3 or 4) bytes, sRGB, rows from the top."""
         return self._core.pixels()
+
+    @property
+    def depth(self) -> np.ndarray:
+        """(height, width): how far what is seen lies along the view, in units of the data; of volumes where half of the light is gone;
+        infinity where nothing is."""
+        return self._core.depth()
+
+    @property
+    def ids(self) -> np.ndarray:
+        """(height, width): which of what was added to the scene is seen: 1 is the first, 0 nothing, legends or axes."""
+        return self._core.ids()
 
     @property
     def size(self) -> tuple[int, int]:
@@ -58,8 +74,11 @@ class Scene:
         self._core = _core.Scene()
 
     def add(self, data: Data, show: str = "auto", **params: Any) -> Scene:
-        """``show``: "surface", "volume", "lines", "points", "labels", "glyphs" or "outline", with its parameters; "auto" chooses."""
-        self._core.show(data._core, show, params)
+        """``show``: "surface", "volume", "lines", "points", "labels", "glyphs" or "outline", with its parameters; "auto" chooses.
+
+        What changes with the value is a mapping: opacity={180: 0, 450: 0.6}, colors={0: "black", 100: "#ffcc80"}.
+        """
+        self._core.show(data._core, show, {name: _at_values(value) for name, value in params.items()})
         return self
 
     def camera(self, **params: Any) -> Scene:

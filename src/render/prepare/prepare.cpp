@@ -86,7 +86,8 @@ struct OuterFaces {
   }
 };
 
-/// f32 numbers without losing the small differences of f64 ones far from zero.
+/// f32 numbers without losing the small differences of f64 ones far from zero. Near zero small numbers stay what they are: a logarithmic
+/// scale tells them apart.
 Scalars scalars_of(const Field& f, int component) {
   check_component(f, component, "color");
   const bool single = f.components() == 1 || component >= 0;
@@ -96,7 +97,9 @@ Scalars scalars_of(const Field& f, int component) {
   const View<double> v = wide.view<double>();
   const FieldStats stats = field_stats(wide);
   Scalars s;
-  if (!stats.range[0].empty()) s.offset = 0.5 * (stats.range[0].lo + stats.range[0].hi);
+  const Range& r = stats.range[0];
+  constexpr double far = 8;  // times the width of the range
+  if (!r.empty() && std::max(std::abs(r.lo), std::abs(r.hi)) > far * (r.hi - r.lo)) s.offset = 0.5 * (r.lo + r.hi);
   if (!std::isfinite(s.offset)) s.offset = 0;
   float* out = nullptr;
   s.values = Array::make<float>(v.count, 1, &out);

@@ -49,15 +49,17 @@ void share_colors(const std::vector<DatasetPtr>& parts, const ShowKind& kind, co
 
 std::vector<std::vector<DatasetPtr>> colored_alike(const std::vector<ShownParts>& shown) {
   std::vector<std::string> names;
+  std::vector<decltype(ColoringParams::map)> maps;
   for (const ShownParts& s : shown) {
     const ColoringParams* c = s.kind->coloring && !s.kind->is<VolumeShow>() ? s.kind->coloring(*s.stated) : nullptr;
-    const bool chooses = c && !c->map && c->range.empty() && c->scale == ScaleKind::linear && c->component < 0;
+    const bool chooses = c && c->range.empty() && c->scale == ScaleKind::linear && c->component < 0;
     names.push_back(chooses ? field_of_parts(s.parts, *s.kind, *s.stated) : "");
+    maps.push_back(c ? c->map : std::nullopt);
   }
   std::vector<std::vector<DatasetPtr>> beside(shown.size());
   for (size_t i = 0; i < shown.size(); ++i)
     for (size_t k = 0; k < shown.size(); ++k)
-      if (i != k && !names[i].empty() && names[i] == names[k])
+      if (i != k && !names[i].empty() && names[i] == names[k] && maps[i] == maps[k])
         beside[i].insert(beside[i].end(), shown[k].parts.begin(), shown[k].parts.end());
   return beside;
 }

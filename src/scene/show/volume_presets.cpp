@@ -61,7 +61,7 @@ const std::vector<Look>& looks() {
        [](VolumeShow& p) { p.mode = RayFunction::sum, p.coloring.map = "gray", p.shaded = false; }},
       {{"mip_angiography", "the maximum along each ray, in grey"},
        foreground,
-       {{0, 0}, {0.02, 1}, {1, 1}},
+       {{0, 1}, {1, 1}},
        {},
        [](VolumeShow& p) { p.mode = RayFunction::maximum, p.coloring.map = "gray", p.shaded = false; }},
       {{"combustion", "hot regions glow, cold ones are transparent"},

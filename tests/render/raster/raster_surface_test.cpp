@@ -54,6 +54,26 @@ TEST_CASE("raster: values and depth on a slanted quad are those of the ray's hit
   CHECK(worst_depth < 1e-6);
 }
 
+TEST_CASE("raster: small doubles keep their places on a logarithmic scale, whatever the largest are") {
+  // The value is 10^e(x), from 1e-6 on the left to 1e6 on the right; the triangles are so narrow that it is as good as that in each.
+  constexpr int n = 400;
+  std::vector<float> xyz;
+  std::vector<double> values;
+  std::vector<int32_t> ids;
+  for (int i = 0; i <= n; ++i)
+    for (const float y : {-1.0f, 1.0f}) xyz.insert(xyz.end(), {-1 + 2.0f * float(i) / n, y, 0}), values.push_back(std::pow(10.0, 12.0 * i / n - 6));
+  for (int i = 0; i < n; ++i) ids.insert(ids.end(), {2 * i, 2 * i + 2, 2 * i + 3, 2 * i, 2 * i + 3, 2 * i + 1});
+  FieldSet f;
+  f.add({"v", Association::point, Array::from_vector(std::move(values)), "", Role::none});
+  Scene s;
+  SurfaceItem strip = item(surface(std::move(xyz), std::move(ids), std::move(f)), {}, false);
+  strip.color_by = grey_by("v", 1e-6, 1e6);
+  strip.color_by->scale.kind = ScaleKind::log;
+  s.items.push_back(strip);
+  const Picture p = draw(s, front_parallel(2), 100, 100);
+  for (int x = 2; x < 98; ++x) CHECK(double(p.rgba(x, 50)[0]) == doctest::Approx((x + 0.5) / 100).epsilon(0.01));
+}
+
 TEST_CASE("raster: the silhouette of a sphere has the area of its cone") {
   // Sphere of radius 1 at distance 5: the silhouette's angle is asin(1/5).
   Scene s;

@@ -21,7 +21,8 @@ namespace sg {
 
 void describe(Schema& s, ContourParams& p) {
   s("field", p.field, "Point field to contour; default: the active scalar.");
-  s("values", p.values, "Isovalues, one surface each; default: the middle of the range.").unit("@field");
+  s("values", p.values, "Isovalues, one surface each; default: the middle of the range, or as many as 'count' says.").unit("@field");
+  s("count", p.count, "About how many values, at round numbers, when none are given.").range(1, 10000);
   s("normals", p.normals, "Add unit normals from the field's gradient.");
   s("topology", p.topology,
     "On grids: the surface of the trilinear function in each cell, or a fixed marching cubes table that separates values at or above the "
@@ -317,7 +318,7 @@ DatasetPtr contour(const DatasetPtr& given, const ContourParams& params, Context
   const int component = choose_component(field, params.component);
   const int dimension = dimension_to_cut(*input);
   std::vector<double> values = params.values;
-  if (values.empty()) values.push_back(middle_value(*input, field, component, "contour", context));
+  if (values.empty()) values = automatic_values(*input, field, component, params.count, "contour", context);
   for (double v : values)
     if (!std::isfinite(v)) fail_usage(fmt::format("{} is not a valid isovalue", v), "contour values", "give finite numbers");
 

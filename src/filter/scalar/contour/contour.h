@@ -20,6 +20,7 @@ constexpr auto enum_words(ContourTopology) {
 struct ContourParams {
   FieldName field;
   std::vector<double> values;
+  int count = 1;
   bool normals = true;
   double tolerance = 1e-3;
   std::string component;

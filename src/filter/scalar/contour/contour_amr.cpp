@@ -356,7 +356,7 @@ DatasetPtr contour_amr(const DatasetPtr& input, const ContourParams& params, int
     fail_usage(fmt::format("field '{}' belongs to the whole mesh; a contour needs values at the points", field->name), "contour");
   const int component = component_of(*field, params.component);
   ContourParams flat = params;
-  if (flat.values.empty()) flat.values.push_back(middle_value(*input, *field, component, "contour", context));
+  if (flat.values.empty()) flat.values = automatic_values(*input, *field, component, params.count, "contour", context);
   for (double v : flat.values)
     if (!std::isfinite(v)) fail_usage(fmt::format("{} is not a valid isovalue", v), "contour values", "give finite numbers");
   flat.field.name = field->name;

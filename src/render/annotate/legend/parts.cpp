@@ -32,7 +32,9 @@ std::string title_of(const ColorScale& s) {
   for (char c : shortened(s.title)) title += c == '_' ? std::string("_\u200b") : std::string(1, c);
   if (s.unit.empty()) return title;
   std::string unit = "[";
-  for (char c : shortened(s.unit)) unit += c == ' ' ? std::string("\u00a0") : std::string(1, c);
+  // No line ends within it: word joiners hold it together behind what Pango would break after.
+  for (char c : shortened(s.unit))
+    unit += c == ' ' ? std::string("\u00a0") : c == '/' || c == '-' ? std::string(1, c) + "\u2060" : std::string(1, c);
   unit += "]";
   return title.empty() ? unit : title + " " + unit;
 }

@@ -58,14 +58,16 @@ std::string typeset_number(const std::string& text) {
 
 namespace {
 
-constexpr std::string_view may_break = "\u200b";
+// U+200B and U+2060: here a line may, and may not, break. Three bytes each.
+constexpr std::string_view breaks[] = {"\u200b", "\u2060"};
 
-// Names of fields may hold anything; places where a line may break draw nothing.
+// Names of fields may hold anything; what tells of the breaks of lines draws nothing.
 std::string shown_text(std::string_view text) {
+  const auto next = [&] { return std::min(text.find(breaks[0]), text.find(breaks[1])); };
   std::string shown;
-  for (size_t at = text.find(may_break); at != text.npos; at = text.find(may_break)) {
-    shown.append(printable(text.substr(0, at), true)).append(may_break);
-    text.remove_prefix(at + may_break.size());
+  for (size_t at = next(); at != text.npos; at = next()) {
+    shown.append(printable(text.substr(0, at), true)).append(text.substr(at, breaks[0].size()));
+    text.remove_prefix(at + breaks[0].size());
   }
   return shown += printable(text, true);
 }

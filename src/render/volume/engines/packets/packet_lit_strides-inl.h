@@ -175,6 +175,24 @@ struct StrideLight {
     l.error = select(there_and_back(p0, p1) | there_and_back(p1, p2), 1.0f, l.error);
     return l;
   }
+  /// Of a pair so deep that it is seen to a mean free path into it alone, which is the share `sight` of the way, at p1: a straight line
+  /// through there. `astray` as in curved().
+  static HWY_INLINE StrideLight front(const LitPlace<D>& p0, const LitPlace<D>& p1, const LitPlace<D>& p2, F sight, F depth, F astray) {
+    const D d;
+    const F zero = set(d, 0), one = set(d, 1.0f);
+    const F x = sight + sight - one, per = one / max(sight + sight, 1e-6f);
+    const auto line = [&](F begin, F seen) HWY_ATTR {
+      const F rise = (seen - begin) * per;
+      return Parabola<D>{neg_mul_add(rise, x, seen), rise, zero};
+    };
+    StrideLight l{line(p0.light.diffuse, p1.light.diffuse), line(p0.light.specular, p1.light.specular), zero};
+    // Where light turns from one straight line to another, y mean free paths into it, the weighted mean lies beside it by what the two rise
+    // by in one more, times exp(-y) - 1 + y: up to 0.37 before the place that is seen, half of that in the mean.
+    l.error = share_front * (apart(p0.light, p1.light) + apart(p1.light, p2.light) / max(depth - one, one));
+    l.error = l.error + only(kinked(p0.sides, p1.sides), share_kinked * apart(p0.light, p1.light));
+    l.error = select(grazing(p0.surface, p1.surface, 0.5f * astray) & !kinked(p0.sides, p1.sides), 1.0f, l.error);
+    return l;
+  }
   /// Where the surface turns over between the ends, and nothing else is a kink: each face on its part of the way, lit by a straight line
   /// between what it has at the ends. `sigma_t` at the ends and the middle tells how much is taken on either part; `swerve` as in
   /// straight().
@@ -224,7 +242,7 @@ struct StrideLight {
  private:
   static constexpr float lobe_share = 0.05f, share_least = 1.0f / 64, share_turned = 1.0f / 128, share_kinked = 1.0f / 4;
   static constexpr float share_hollow = 1.0f / 3, share_hidden_half = 1.0f / 24, share_angle = 0.25f;
-  static constexpr float share_uneven = 0.25f, share_hidden = 1.0f / 16;
+  static constexpr float share_uneven = 0.25f, share_hidden = 1.0f / 16, share_front = 0.25f;
   /// The mean of an uneven turn beside that of the parabola through its ends and its middle: a tenth of the cube of how uneven, by
   /// quadrature.
   static HWY_INLINE F beside_parabola(const LitPlace<D>& p0, const LitPlace<D>& p2) {

@@ -35,6 +35,8 @@ constexpr float share_at_first = 0.2f, share_of_length = 0.2f, share_of_light = 
 constexpr double least_lit_tolerance = 1.0 / 1024;
 /// What the light between the ends of the first strides of a ray may be off, of which nothing else is known.
 constexpr float first_error = 0.005f;
+/// Optical depth of two strides from which on their front is looked at, not their middle.
+constexpr float deep_pair = 6;
 /// Radians by which the gradient may turn over two strides, told by Bends.
 constexpr float most_turned = 4;
 /// So much of that a gradient leaves its straight line by, near the edge of a surface: there it may turn over and back.
@@ -201,7 +203,15 @@ class StridingPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
         const F unknown = select(path_.known(), zero, first_error);
         const M unsure = (mul_add(taken, light.error + unknown, error) > allowed) | grazing(here_lit_.surface, lit2.surface, aside);
         const M rough = seen & unsure & !turned;
-        if (any(rough)) light.take(StrideLight<D>::curved(cells_.lighting, here_lit_, lit_at(t1, rough), lit2, s.depth, aside), rough);
+        if (any(rough)) {
+          // Of a deep pair the front is seen: how light goes on there its middle does not tell.
+          const M fronts = rough & (s.depth > deep_pair);
+          const F extinctions[3] = {here_.sigma_t, p1.sigma_t, p2.sigma_t};
+          const F sight = select(fronts, cells_.way_of_depth(extinctions, one / max(s.depth, one)), half);
+          const LitPlace<D> lit1 = lit_at(select(fronts, mul_add(sight, t2 - t, t), t1), rough);
+          light.take(StrideLight<D>::curved(cells_.lighting, here_lit_, lit1, lit2, s.depth, aside), rough);
+          if (any(fronts)) light.take(StrideLight<D>::front(here_lit_, lit1, lit2, sight, s.depth, aside), fronts);
+        }
         // Three places tell little where the gradient may turn right round in between.
         const F gradient = max(here_lit_.surface.weight, lit2.surface.weight);
         const M astray = change > gradient;
