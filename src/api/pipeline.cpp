@@ -31,7 +31,7 @@ struct Pipeline::State {
       if (s.name == name) return s;
       names.push_back(s.name);
     }
-    sg::fail_usage(fmt::format("there is no step '{}'", name), "Pipeline", sg::unknown_name_hint(name, names));
+    sg::fail_usage(fmt::format("unknown step '{}'", name), "Pipeline", sg::unknown_name_hint(name, names));
   }
 };
 
@@ -127,7 +127,10 @@ Pipeline& Pipeline::set(std::string_view name, const Params& params) {
   return guarded([&]() -> Pipeline& {
     auto next = std::make_shared<State>(*state_);
     sg::PipelineFile::Step& step = next->step(name);
-    for (const std::string& word : checked(step, params)) {
+    Params stated_ones;
+    for (const Param& p : params)
+      if (!std::holds_alternative<std::monostate>(p.value.alternatives())) stated_ones.push_back(p);
+    for (const std::string& word : checked(step, stated_ones)) {
       const std::string key = word.substr(0, word.find('=') + 1);
       std::erase_if(step.words, [&](const std::string& w) { return w.starts_with(key); });
       step.words.push_back(word);

@@ -104,6 +104,7 @@ struct Light {
 
 struct Scene {
   std::vector<Item> items;
+  std::vector<uint32_t> shows;  ///< of the first items: the number, from 1, of the entry under `show` that they are of
   std::vector<TextItem> texts;
   std::vector<Light> lights;            ///< empty = one light over the viewer's left shoulder and a weak one from the right
   Vec3f background{1, 1, 1};            ///< sRGB, bottom

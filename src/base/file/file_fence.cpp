@@ -69,7 +69,9 @@ void trust_folder_of(const std::string& path) {
   trusted.insert(std::move(folder));
 }
 
-std::string named_file(std::string_view beside, std::string_view name) {
+namespace {
+
+std::string checked_file(std::string_view beside, std::string_view name, bool trusting) {
   std::string path = path_beside(beside, name);
   const bool plain = !name.empty() && name[0] != '/' && name.find("..") == name.npos && name.find('\0') == name.npos;
   if (plain || anywhere()) return path;  // the quick way: a header may name a million files
@@ -80,10 +82,15 @@ std::string named_file(std::string_view beside, std::string_view name) {
   if (below(at, absolute_folder(folder_of(beside))) || below(at, absolute_folder(""))) return path;
   const std::lock_guard lock(trusted_mutex);
   for (const std::string& folder : trusted)
-    if (below(at, folder)) return path;
+    if (trusting && below(at, folder)) return path;
   fail_data(fmt::format("names the file '{}', which lies neither below its own folder nor below the working folder", name),
             std::string(beside), way_out);
 }
+
+}  // namespace
+
+std::string named_file(std::string_view beside, std::string_view name) { return checked_file(beside, name, true); }
+std::string file_of_recipe(std::string_view picture, std::string_view name) { return checked_file(picture, name, false); }
 
 void set_file_fence(FileFence f) {
   for (std::string& folder : f.read_below) folder = real_folder(folder);

@@ -70,7 +70,7 @@ class Rules {
   bool check_path(const std::string& who, int line, const std::string& path) {
     if (path.empty()) return true;
     try {
-      const std::string at = named_file(picture_, path);
+      const std::string at = file_of_recipe(picture_, path);
       check_may_read(at.substr(0, at.find_first_of("*?{")));  // of a pattern its folder
       return true;
     } catch (const Error& e) {

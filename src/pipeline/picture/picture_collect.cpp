@@ -67,6 +67,7 @@ std::vector<Shown> collect(const PipelineFile& file, const std::vector<StatedSho
       if (have == legends.end()) legends.push_back(legend);
       else if (legend.glyph && (!have->glyph || have->glyph->most < legend.glyph->most)) have->glyph = legend.glyph;
     }
+    s.scene.shows.resize(s.scene.items.size(), uint32_t(i + 1));
     if (!kind->is<VolumeShow>() || s.scene.items.size() == first) continue;
     if (const std::string& path = params.as<VolumeShow>().save; !path.empty())
       save_transfer_file(path_beside(file.origin, path), std::get<VolumeItem>(s.scene.items.back()));

@@ -120,6 +120,7 @@ DrawnPicture draw_picture(const Scene& scene, const Camera& camera, const Stated
   if (beside) frame = placed(frame, scene, camera, options, area, s.width, s.height, context);
   Image image = to_image(frame, scene.transparent);
   annotate(image, with_texts, projection, int(area.x), int(area.y));
+  for (uint32_t& id : frame.ids) id = id > 0 && id <= scene.shows.size() ? scene.shows[id - 1] : 0;
   return {std::move(image), {std::move(frame.depth), std::move(frame.ids)}};
 }
 

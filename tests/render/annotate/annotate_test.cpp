@@ -112,6 +112,11 @@ TEST_CASE("overlay: a place where a line may break takes no room, controls are s
   TextStyle narrow;
   narrow.wrap = 0.7 * plain, narrow.break_words = false;
   CHECK(overlay.measure("velocity_\u200bmagnitude", narrow).lines == 2);
+  // A unit stays whole.
+  TextStyle unit = style;
+  unit.break_words = false, unit.wrap = 0.5 * overlay.measure("mol/l", style).width;
+  CHECK(overlay.measure("mol/l", unit).lines == 2);
+  CHECK(overlay.measure("mol/\u2060l", unit).lines == 1);
 }
 
 TEST_CASE("annotate: the row of every number on a legend has exactly that number's colour") {
