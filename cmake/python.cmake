@@ -30,7 +30,7 @@ file(GLOB python_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/python/sightg
 file(MAKE_DIRECTORY ${python_package})
 foreach(source IN LISTS python_sources)
   get_filename_component(name ${source} NAME)
-  if(NOT IS_DIRECTORY ${source})
+  if(NOT name STREQUAL "__pycache__")
     file(CREATE_LINK ${source} ${python_package}/${name} SYMBOLIC)
   endif()
 endforeach()

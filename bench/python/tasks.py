@@ -2,7 +2,8 @@
 """tasks.py sightglass|pyvista TASK: one task in a process of its own; prints seconds (or bytes), one number.
 
 The same work in both: `import` is the time above numpy's; `hand_over` gives a 512^3 f32 array over (`hand_over_memory`: what the peak of
-memory grows by, in bytes); `small_*` are calls on a mesh of 100 cells; `picture` is the contour of a 256^3 array as the bytes of a PNG,
+memory grows by, in bytes); `small_*` are calls on a mesh of 100 cells; `many` what 10,000 pictures of 320 x 240 add to
+the memory in use after the first 100, in bytes; `picture` is the contour of a 256^3 array as the bytes of a PNG,
 1280 x 720, `process` the same as a whole process.
 """
 import resource
@@ -26,6 +27,11 @@ def median_of(f, runs):
 
 def peak():
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+
+
+def now():
+    """Bytes of memory in use."""
+    return int(open("/proc/self/statm").read().split()[1]) * resource.getpagesize()
 
 
 def volume(n):
@@ -61,6 +67,13 @@ def sightglass(task):
         calls = {"contour": lambda: mesh.contour(values=[12.0]), "threshold": lambda: mesh.threshold(min=10.0),
                  "clip": lambda: mesh.clip(normal=(1, 0, 0)), "slice": lambda: mesh.slice(axis="x"), "gradient": lambda: mesh.gradient()}
         return median_of(calls[task[6:]], 2000)
+    if task == "many":
+        a = volume(48)
+        for n in range(10000):
+            sg.uniform(a, name="v").contour(values=[0.7 + 1e-6 * n]).plot(size=(320, 240)).array.sum()
+            if n == 99:
+                before = now()
+        return now() - before
     a = volume(256)
     return median_of(lambda: sg.uniform(a, name="v").contour(values=[0.7]).plot(size=(1280, 720))._repr_png_(), 7)
 

@@ -132,7 +132,7 @@ void ask_of_lic(const ParamSet& params, const Request&, size_t input, Request& u
 void ask_of_advect(const ParamSet& params, const Request&, size_t input, Request& up) {
   const auto& p = params.as<AdvectParams>();
   if (input > 0) up = Request::only({}, up);
-  if (p.carry.empty() && p.dye.empty()) up.all_fields = true, up.fields.clear();
+  if (p.carry.empty()) up.all_fields = true, up.fields.clear();
   for (const std::string& name : p.carry) add_field(up, name);
 }
 

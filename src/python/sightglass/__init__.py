@@ -20,11 +20,13 @@ from ._meshes import CELL_TYPES, curvilinear, lines, points, rectilinear, surfac
 from ._pipeline import Pipeline, open, pipeline
 from ._progress import set_progress
 from ._scene import Picture, Scene
+from ._wrap import wrap
 
 __version__ = _core.version()
 __all__ = ["CELL_TYPES", "CancelledError", "Data", "DataError", "Error", "InternalError", "Picture", "Pipeline", "Scene", "SightglassWarning",
            "UnknownNameError", "UsageError", "amr", "collection", "curvilinear", "help", "lines", "pipeline", "points", "read", "rectilinear",
-           "scene", "series", "set_memory_limit", "set_progress", "set_threads", "surface", "table", "times", "uniform", "unstructured"]
+           "scene", "series", "set_memory_limit", "set_progress", "set_threads", "surface", "table", "times", "uniform", "unstructured",
+           "wrap"]
 # Not open: `from sightglass import *` leaves Python's own alone.
 
 set_threads = _core.set_threads

@@ -200,6 +200,38 @@ class Data(Methods):
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *_operations.names("operation")]
 
+    # ---- for other libraries (docs/python/conversions.md)
+
+    def to_vtk(self) -> Any:
+        """VTK's object for it, over the same numbers, which VTK must not change."""
+        from ._wrap.vtk import to_vtk
+
+        return to_vtk(self)
+
+    def to_pyvista(self) -> Any:
+        """PyVista's object for it, over the same numbers, which PyVista must not change."""
+        from ._wrap.vtk import to_pyvista
+
+        return to_pyvista(self)
+
+    def to_xarray(self) -> Any:
+        """A Dataset of a uniform or rectilinear grid."""
+        from ._wrap.xarray import to_xarray
+
+        return to_xarray(self)
+
+    def to_pandas(self) -> Any:
+        """A DataFrame of a table; of other data one row per point."""
+        from ._wrap.pandas import to_pandas
+
+        return to_pandas(self)
+
+    def to_meshio(self) -> Any:
+        """A meshio.Mesh."""
+        from ._wrap.meshio import to_meshio
+
+        return to_meshio(self)
+
     # ---- how it looks
 
     def __repr__(self) -> str:
