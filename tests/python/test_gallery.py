@@ -39,7 +39,7 @@ def test_the_first_ten_minutes_run(tmp_path, monkeypatch):
     for block in re.findall(r"```python\n(.*?)```", (DOCS / "README.md").read_text(), re.DOTALL):
         if ">>>" in block:
             continue
-        exec(block.replace("120", "3").replace("1920, 1080", "96, 54"), names)  # noqa: S102
+        exec(block.replace("orbit=360", "orbit=360, frames=3, size=(64, 48)").replace("1920, 1080", "96, 54"), names)  # noqa: S102
     assert (tmp_path / "head.png").exists() and (tmp_path / "turn.webm").exists() and (tmp_path / "0.5.png").exists()
 
 

@@ -57,6 +57,14 @@ def test_films(tmp_path):
     assert (tmp_path / "turn.webm").stat().st_size > 100
 
 
+def test_a_camera_goes_around(tmp_path):
+    scene = sg.scene().add(sg.gyroid(size=12).contour(), "surface")
+    assert scene.movie(tmp_path / "a.gif", size=(64, 48), orbit=360, frames=4) == [0, 90, 180, 270]
+    assert scene.movie(tmp_path / "b_{n}.png", size=(64, 48), orbit=90, frames=3) == [0, 45, 90]
+    with pytest.raises(sg.UsageError, match="times"):
+        scene.movie(tmp_path / "c.gif", orbit=360, times="0:1:2")
+
+
 def test_two_threads_draw_at_once():
     import threading
 

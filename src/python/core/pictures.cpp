@@ -54,6 +54,7 @@ void declare_image(py::module_& m) {
 void declare_scene(py::module_& m) {
   py::class_<Scene>(m, "Scene")
       .def(py::init<>())
+      .def(py::init<const Scene&>())
       .def("show",
            [](Scene& scene, const Data& data, const std::string& way, const py::dict& params) { scene.show(data, way, params_of(params)); })
       .def("camera", [](Scene& scene, const py::dict& params) { scene.camera(params_of(params)); })

@@ -8,6 +8,7 @@ import numpy as np
 
 from . import _core
 from ._data import Data
+from ._errors import usage
 
 
 def _at_values(value: Any) -> Any:
@@ -95,6 +96,19 @@ class Scene:
         """The picture, ``size`` pixels wide and high."""
         return Picture(self._core.render(int(size[0]), int(size[1])))
 
-    def movie(self, path: Any, size: tuple[int, int] = (1280, 720), **params: Any) -> list[float]:
-        """A film of what moves: .webm, .gif or numbered pictures; parameters: see sightglass.help("film"). Returns the times."""
-        return self._core.film(str(path), params, int(size[0]), int(size[1]))
+    def movie(self, path: Any, size: tuple[int, int] = (1280, 720), orbit: float | None = None, frames: int = 120, **params: Any) -> list[float]:
+        """A film of what moves: .webm, .gif or numbered pictures ("a_{n}.png"); parameters: see sightglass.help("film"). Returns the times.
+
+        ``orbit``: the camera goes around by so many degrees, in ``frames`` pictures; 360 comes back to where it began, without showing the
+        first picture twice.
+        """
+        if orbit is None:
+            return self._core.film(str(path), params, int(size[0]), int(size[1]))
+        if "times" in params or frames < 1:
+            raise usage("orbit= and times= say both how long it is" if "times" in params else f"frames={frames}", "movie",
+                        "one of them, and one frame or more")
+        turning = _core.Scene(self._core)
+        turning.camera({"azimuth": "{t}"})
+        last = orbit * (frames - 1) / frames if abs(orbit) == 360 else orbit
+        times = [last * i / max(frames - 1, 1) for i in range(frames)]
+        return turning.film(str(path), {**params, "times": times}, int(size[0]), int(size[1]))

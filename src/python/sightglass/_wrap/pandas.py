@@ -1,53 +1,131 @@
 # SPDX-License-Identifier: Apache-2.0
-"""pandas' frames are tables."""
+"""Frames of pandas as tables, and data as frames."""
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Mapping
 
 import numpy as np
 
-from .. import _groups
 from .._data import Data
-from .._errors import usage
+from .._errors import say, usage
+from .._groups import table
+from .shared import fields_of, meshes_only, needed, unused
+from .times import durations, seconds
 
 
-def wrapped(x: Any, **hints: Any) -> Data:
-    """Numbers as they are, text and categories as words, times as seconds since 1970; an index that says something is the first column."""
-    import pandas as pd
+def wrap(x: Any, units: Mapping[str, str] | None = None, index: bool | None = None) -> Data:
+    """A table: columns of numbers, words (strings, categories), times (as seconds since 1970).
 
-    if hints:
-        raise usage(f"'{next(iter(hints))}' is no hint for frames", "wrap", "they need none")
-    frame = x.to_frame() if isinstance(x, pd.Series) else x
-    if not isinstance(frame, pd.DataFrame):
-        raise usage(f"{type(x).__name__} is not known", "wrap", "frames and series of pandas are")
-    if not isinstance(frame.index, pd.RangeIndex):
-        frame = frame.reset_index()
-    columns, units = {}, {}
-    for name, values in frame.items():
-        if pd.api.types.is_datetime64_any_dtype(values):
-            seconds = values.to_numpy("datetime64[ns]").astype(np.int64) / 1e9
-            columns[str(name)], units[str(name)] = np.where(values.isna(), np.nan, seconds), "s"
-        elif pd.api.types.is_numeric_dtype(values) and not pd.api.types.is_complex_dtype(values):
-            plain = values.to_numpy(float, na_value=np.nan) if pd.api.types.is_extension_array_dtype(values) else values.to_numpy()
-            columns[str(name)] = plain
-        else:
-            columns[str(name)] = [None if pd.isna(v) else str(v) for v in values]
-    return _groups.table(columns, units)
-
-
-def to_pandas(data: Data) -> Any:
-    """A frame of a table; of other data one row per point: x, y, z and the point fields, the components of a field one by one."""
-    import pandas as pd
-
+    Columns of numbers are used where pandas holds them; it keeps those of one type together, so all of them are read-only meanwhile.
+    ``units`` by column; else those in ``frame.attrs["units"]``. ``index``: as columns; default: where it is more than row numbers.
+    """
+    pandas = needed("pandas", "wrap")
+    frame = x.to_frame() if isinstance(x, pandas.Series) else x
+    if not isinstance(frame, pandas.DataFrame):
+        raise usage(f"a pandas.{type(x).__name__} is no table", "wrap", "a DataFrame or a Series")
+    if index or (index is None and not isinstance(frame.index, pandas.RangeIndex)):
+        names = [str(n if n is not None else "index" if frame.index.nlevels == 1 else f"level {i}") for i, n in enumerate(frame.index.names)]
+        taken = {_name(n) for n in frame.columns}
+        levels = [(unused(n, lambda u: u in taken), frame.index.get_level_values(i)) for i, n in enumerate(names)]
+    else:
+        levels = []
+    stated = dict(frame.attrs.get("units", {}), **(units or {}))
     columns: dict[str, Any] = {}
-    if data.kind != "table":
-        columns = {axis: data.points[:, i] for i, axis in enumerate("xyz")}
-    for name in data.keys():
-        if data.kind != "table" and data.on(name) != "points":
-            continue
-        values = data[name]
-        if values.ndim == 1:
-            columns[name] = values
+    for name, values in [*levels, *((_name(frame.columns[i]), frame.iloc[:, i]) for i in range(frame.shape[1]))]:
+        if name in columns:
+            raise usage(f"two columns are named '{name}'", "wrap", "a name of its own for each column: frame.columns = [...]")
+        columns[name], unit = _column(values, f"wrap '{name}'")
+        stated.setdefault(name, unit)
+    if not columns:
+        raise usage("the frame has no columns", "wrap", "one column or more")
+    for name, parts in frame.attrs.get("components", {}).items():
+        _join(columns, stated, str(name), [str(p) for p in parts])
+    return table(columns, {n: u for n, u in stated.items() if n in columns})
+
+
+def _name(column: Any) -> str:
+    return "/".join(str(level) for level in column if str(level)) if isinstance(column, tuple) else str(column)
+
+
+def _join(columns: dict[str, Any], units: dict[str, str], name: str, parts: list[str]) -> None:
+    """Columns that to_pandas made of one column of rows become one again."""
+    if name in columns or not all(p in columns and np.asarray(columns[p]).dtype.kind in "iuf" for p in parts):
+        return
+    units[name] = units.get(parts[0], "")
+    columns[name] = np.column_stack([columns.pop(p) for p in parts])
+
+
+def _column(values: Any, where: str) -> tuple[Any, str]:
+    """Numbers or words as table() takes them, and the unit that follows from their type."""
+    kind = values.dtype
+    if hasattr(kind, "categories") and not hasattr(kind, "closed"):
+        names = [None if c != c else str(c) for c in kind.categories]
+        codes = values.cat.codes if hasattr(values, "cat") else values.codes
+        return np.array([names[c] if c >= 0 else None for c in codes], object), ""
+    if kind.kind == "M":
+        return seconds(_plain_times(values)), "s"
+    if kind.kind == "m":
+        return durations(values.to_numpy()), "s"
+    if isinstance(kind, np.dtype) and kind.kind in "iufb":
+        return values.to_numpy(), ""
+    if kind.kind in "iufb":  # types of pandas that know missing values
+        if values.isna().any():
+            say(False, f"{where}: copied, missing values become NaN")
+            return values.to_numpy(dtype=np.float64, na_value=np.nan), ""
+        return values.to_numpy(dtype=kind.numpy_dtype), ""
+    return _words(values, where), ""
+
+
+def _plain_times(values: Any) -> np.ndarray:
+    """Of a time zone those of UTC."""
+    aware = getattr(values.dtype, "tz", None) is not None
+    if aware:
+        values = values.dt.tz_convert(None) if hasattr(values, "dt") else values.tz_convert(None)
+    return values.to_numpy()
+
+
+def _words(values: Any, where: str) -> np.ndarray:
+    missing = np.asarray(values.isna())
+    words = np.array([None if gone else v for v, gone in zip(values.to_numpy(dtype=object), missing)], object)
+    for row, v in enumerate(words):
+        if v is not None and not isinstance(v, str):
+            raise usage(f"row {row} holds a {type(v).__name__}", where, "numbers, words, categories or times; .astype(str) makes words of anything")
+    return words
+
+
+def to_pandas(data: Data, on: str = "points") -> Any:
+    """A DataFrame: the columns of a table; of a mesh a row for each point (with x, y and z) or cell.
+
+    Numbers are views where pandas allows it, and read-only then. Rows of numbers become the columns "v_0", "v_1", ... Times of the calendar
+    stay seconds since 1970: pandas.to_datetime(frame["t"], unit="s"). ``frame.attrs`` keeps the units ("units") and which columns belong together ("components").
+    """
+    pandas = needed("pandas", "to_pandas")
+    columns: dict[str, Any] = {}
+    units: dict[str, str] = {}
+    together: dict[str, list[str]] = {}
+    if data.kind == "table":
+        found = [(name, data[name], data.unit(name)) for name in data.keys()]
+    else:
+        meshes_only(data, "to_pandas", "one part of it: data.parts[name].to_pandas()")
+        if on not in ("points", "cells"):
+            raise usage(f"on='{on}' is not known", "to_pandas", "'points' or 'cells'")
+        found = [(f.name, f.values, f.unit) for f in fields_of(data) if f.on == on]
+        if on == "points":
+            found[:0] = [(letter, data.points[:, i], "") for i, letter in enumerate("xyz")]
+    for name, values, unit in found:
+        name = unused(name, lambda n: n in columns)
+        if values.ndim == 2:
+            together[name] = [unused(f"{name}_{i}", lambda n: n in columns) for i in range(values.shape[1])]
+            for i, part in enumerate(together[name]):
+                columns[part], units[part] = values[:, i], unit
+        elif values.dtype.kind == "U":
+            columns[name] = np.array([w or None for w in values.tolist()], object)
         else:
-            columns.update({f"{name}_{i}": values[:, i] for i in range(values.shape[1])})
-    return pd.DataFrame(columns)
+            columns[name], units[name] = values, unit
+    frame = pandas.DataFrame({n: pandas.Series(c, copy=False) for n, c in columns.items()}, copy=False)
+    if not columns and data.kind != "table":
+        frame = pandas.DataFrame(index=range(data.n_cells))
+    frame.attrs["units"] = {n: u for n, u in units.items() if u}
+    if together:
+        frame.attrs["components"] = together
+    return frame

@@ -1,277 +1,159 @@
 # SPDX-License-Identifier: Apache-2.0
-"""VTK's objects, and PyVista's, which are VTK's: both share their numbers with data."""
+"""Data sets of VTK and PyVista as data."""
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Callable
 
 import numpy as np
 
-from .. import _groups, _meshes
+from .. import _core
 from .._data import Data
 from .._errors import say, usage
+from .._groups import table
+from .._meshes import _lent_positions, curvilinear, points, rectilinear, surface, uniform, unstructured
+from .vtk_arrays import fields, is_numbers, numbers, unit_of, words
+from .vtk_cells import check_shapes, joined, lists, polyhedra
+from .vtk_out import to_pyvista, to_vtk
+from .shared import unused, with_fields
 
-_by_kind = {"vtkImageData": "uniform", "vtkRectilinearGrid": "rectilinear", "vtkStructuredGrid": "curvilinear", "vtkPolyData": "polydata",
-            "vtkUnstructuredGrid": "unstructured"}
-
-
-def wrapped(x: Any, **hints: Any) -> Data:
-    """vtkImageData, vtkRectilinearGrid, vtkStructuredGrid, vtkPolyData, vtkUnstructuredGrid, their collections, and vtkTable."""
-    if hints:
-        raise usage(f"'{next(iter(hints))}' is no hint for VTK's objects", "wrap", "they need none")
-    kind = next((k for k in _by_kind if x.IsA(k)), None)
-    if kind:
-        return _with_fields(globals()["_" + _by_kind[kind]](x), x)
-    if x.IsA("vtkTable"):
-        columns = {}
-        for i in range(x.GetNumberOfColumns()):
-            column = x.GetColumn(i)
-            words = column.IsA("vtkStringArray")
-            columns[_name(column, i)] = [column.GetValue(j) for j in range(column.GetNumberOfValues())] if words else _numbers(column)
-        return _groups.table(columns)
-    if x.IsA("vtkCompositeDataSet"):
-        return _groups.collection(_parts(x))
-    raise usage(f"{x.GetClassName()} is not known", "wrap", "meshes, their collections and tables are")
+__all__ = ["to_pyvista", "to_vtk", "wrap"]
 
 
-def _parts(x: Any) -> dict[str, Data]:
-    parts: dict[str, Data] = {}
+def wrap(x: Any) -> Data:
+    """Image data, rectilinear, structured and unstructured grids, poly data, tables, and trees of them.
 
-    def add(name: str, part: Data) -> None:
-        unique, n = name, 2
-        while unique in parts:
-            unique, n = f"{name} #{n}", n + 1
-        parts[unique] = part
-
-    if x.IsA("vtkMultiBlockDataSet"):
-        for i in range(x.GetNumberOfBlocks()):
-            block = x.GetBlock(i)
-            name = x.GetMetaData(i).Get(x.NAME()) if x.HasMetaData(i) else None
-            if block is not None:
-                add(name or f"Block-{i:02d}", wrapped(block))
-        return parts
-    it = x.NewIterator()
-    it.InitTraversal()
-    while not it.IsDoneWithTraversal():
-        add(str(len(parts)), wrapped(it.GetCurrentDataObject()))
-        it.GoToNextItem()
-    return parts
-
-
-def _numbers(array: Any) -> np.ndarray:
-    from vtkmodules.util.numpy_support import vtk_to_numpy  # type: ignore[import-not-found]
-
-    return vtk_to_numpy(array)  # holds the array
+    Points, cells and fields are used where VTK holds them. Whoever writes into them through VTK afterwards changes what data hold, and
+    whoever makes VTK move them (InsertNextValue, Resize) takes them away: hand over what is finished.
+    """
+    kinds: dict[str, Callable[[Any], Data]] = {
+        "vtkImageData": _image, "vtkRectilinearGrid": _rectilinear, "vtkStructuredGrid": _structured,
+        "vtkExplicitStructuredGrid": _as_unstructured, "vtkUnstructuredGrid": _unstructured, "vtkPolyData": _poly_data,
+        "vtkPointSet": _points, "vtkTable": _table, "vtkMultiBlockDataSet": _tree, "vtkPartitionedDataSet": _tree,
+        "vtkPartitionedDataSetCollection": _tree,
+    }
+    if hasattr(x, "GetOutputDataObject") and hasattr(x, "Update"):
+        raise usage(f"a {x.GetClassName()} makes data but is none", "wrap", "x.Update(), then wrap(x.GetOutputDataObject(0))")
+    if hasattr(x, "GetClassName"):
+        for base in type(x).__mro__:
+            if base.__name__ in kinds:
+                data = kinds[base.__name__](x)
+                return data if data.kind in ("collection", "table") else _with_its_fields(data, x)
+    name = x.GetClassName() if hasattr(x, "GetClassName") else type(x).__qualname__
+    raise usage(f"a {name} is not known", "wrap", "one of " + ", ".join(kinds) + ", and what is derived from them")
 
 
-def _name(array: Any, number: int) -> str:
-    return array.GetName() or f"Array {number}"
+def _with_its_fields(data: Data, x: Any) -> Data:
+    on_cells = fields(x.GetCellData(), "cells") if data.n_cells or data.kind != "points" else []
+    return with_fields(data, fields(x.GetPointData(), "points") + on_cells + fields(x.GetFieldData(), "whole"))
 
 
-def _uniform(x: Any) -> Data:
-    """Extents that do not begin at 0 move the origin."""
-    direction = np.array([[x.GetDirectionMatrix().GetElement(i, j) for j in range(3)] for i in range(3)])
-    spacing, extent = np.array(x.GetSpacing()), x.GetExtent()
-    origin = np.array(x.GetOrigin()) + direction @ (spacing * extent[::2])
-    return _meshes.uniform(dims=x.GetDimensions(), spacing=spacing, origin=origin, direction=direction)
+def _image(x: Any) -> Data:
+    m = x.GetDirectionMatrix()
+    direction = np.array([[m.GetElement(i, j) for j in range(3)] for i in range(3)])
+    spacing, first = np.array(x.GetSpacing()), np.array(x.GetExtent()[::2])
+    dims = _filled(x)
+    # VTK's origin is where the point 0, 0, 0 lies; its extent may begin at another.
+    return uniform(dims=dims, spacing=spacing, origin=np.array(x.GetOrigin()) + direction @ (spacing * first), direction=direction)
+
+
+def _filled(x: Any) -> tuple[int, int, int]:
+    lo, hi = x.GetExtent()[::2], x.GetExtent()[1::2]
+    nx, ny, nz = (b - a + 1 for a, b in zip(lo, hi))
+    if min(nx, ny, nz) < 1:
+        raise usage(f"it has {nx} x {ny} x {nz} points", f"wrap: {x.GetClassName()}", "one point or more along each axis")
+    return nx, ny, nz
 
 
 def _rectilinear(x: Any) -> Data:
-    return _meshes.rectilinear(*(_numbers(c) for c in (x.GetXCoordinates(), x.GetYCoordinates(), x.GetZCoordinates())))
+    _filled(x)
+    return rectilinear(*(numbers(getattr(x, f"Get{a}Coordinates")(), f"wrap: {a} coordinates") for a in "XYZ"))
 
 
-def _curvilinear(x: Any) -> Data:
-    points = _numbers(x.GetPoints().GetData())
-    return _meshes.curvilinear(points.reshape(*reversed(x.GetDimensions()), 3))
+def _structured(x: Any) -> Data:
+    nx, ny, nz = _filled(x)
+    return curvilinear(_positions(x).reshape(nz, ny, nx, 3))
 
 
-def _points(x: Any) -> np.ndarray:
-    return _numbers(x.GetPoints().GetData()) if x.GetPoints() else np.zeros((0, 3))
+def _positions(x: Any) -> np.ndarray:
+    return numbers(x.GetPoints().GetData(), "wrap: points") if x.GetPoints() else np.empty((0, 3))
 
 
-def _lists(cells: Any) -> tuple[np.ndarray, np.ndarray]:
-    if cells is None or cells.GetNumberOfCells() == 0:
-        return np.zeros(0, np.int64), np.zeros(1, np.int64)
-    return _numbers(cells.GetConnectivityArray()), _numbers(cells.GetOffsetsArray())
-
-
-def _polydata(x: Any) -> Data:
-    kinds = [(1, x.GetVerts()), (3, x.GetLines()), (7, x.GetPolys()), (6, x.GetStrips())]
-    there = [(number, *_lists(cells)) for number, cells in kinds if cells is not None and cells.GetNumberOfCells()]
-    points = _points(x)
-    if not there:
-        return _meshes.points(points)
-    if len(there) == 1 and there[0][0] == 7:
-        ids, offsets = there[0][1:]
-        every = np.diff(offsets) == 3
-        return _meshes.surface(points, ids.reshape(-1, 3)) if every.all() else _meshes.surface(points, ids, offsets)
-    # Cells of several kinds keep VTK's order: vertices, lines, polygons, strips.
-    sizes = np.concatenate([np.diff(offsets) for _, _, offsets in there])
-    types = np.concatenate([np.full(len(offsets) - 1, {1: 2, 3: 4}.get(number, number), np.uint8) for number, _, offsets in there])
-    return _meshes.unstructured(points, (np.concatenate([ids for _, ids, _ in there]), np.concatenate([[0], np.cumsum(sizes)]), types))
+def _points(x: Any) -> Data:
+    return points(_positions(x))
 
 
 def _unstructured(x: Any) -> Data:
-    if x.GetNumberOfCells() == 0:
-        return _meshes.points(_points(x))
-    ids, offsets = _lists(x.GetCells())
-    types = _numbers(x.GetCellTypesArray())
-    if not (types == 42).any():
-        return _meshes.unstructured(_points(x), (ids, offsets, types))
-    stream, begins = _numbers(x.GetFaces()), _numbers(x.GetFaceLocations())
-    face_ids: list[np.ndarray] = []
-    counts = np.zeros(len(types), np.int64)
-    for cell in np.flatnonzero(begins >= 0):
-        at = begins[cell] + 1
-        counts[cell] = stream[at - 1]
-        for _ in range(counts[cell]):
-            face_ids.append(stream[at + 1:at + 1 + stream[at]])
-            at += 1 + stream[at]
-    sizes = np.array([len(f) for f in face_ids])
-    faces = np.concatenate(face_ids), np.concatenate([[0], np.cumsum(sizes)]), np.concatenate([[0], np.cumsum(counts)])
-    return _meshes.unstructured(_points(x), (ids, offsets, types), faces=faces)
+    if not x.GetNumberOfCells():
+        return _points(x)
+    check_shapes(x)
+    types = x.GetCellTypesArray() if hasattr(x, "GetCellTypesArray") else x.GetCellTypes()
+    ids, offsets = lists(x.GetCells())
+    return unstructured(_positions(x), (ids, offsets, numbers(types, "wrap: cell types")), faces=polyhedra(x))
 
 
-def _with_fields(data: Data, x: Any) -> Data:
-    for on, attributes in (("points", x.GetPointData()), ("cells", x.GetCellData()), ("whole", x.GetFieldData())):
-        for i in range(attributes.GetNumberOfArrays()):
-            array = attributes.GetAbstractArray(i)
-            name = _name(array, i)
-            if not hasattr(array, "GetDataTypeSize") or array.IsA("vtkStringArray"):
-                say(True, f"wrap: '{name}' is left out: it holds words")
-            elif array.GetNumberOfTuples():
-                data = data.with_field(name, _numbers(array), on=on)
-    return data
+def _as_unstructured(x: Any) -> Data:
+    cells = x.GetCells()
+    ids, offsets = lists(cells)
+    if x.HasAnyBlankCells():
+        say(True, "wrap: blanked cells of the explicit structured grid are shown")
+    return unstructured(_positions(x), (ids, offsets, np.full(len(offsets) - 1, 12, np.uint8)))
 
 
-# ---- and back
-
-def to_vtk(data: Data) -> Any:
-    """The object of VTK for a mesh; a vtkMultiBlockDataSet for a collection, a vtkTable for a table. Points and fields are shared: VTK must
-    not write into them, and they stay where they are as long as VTK holds them. Lists of cells are copied."""
-    from vtkmodules import vtkCommonDataModel as model  # type: ignore[import-not-found]
-
-    if data.kind == "collection":
-        blocks = model.vtkMultiBlockDataSet()
-        for i, (name, part) in enumerate(data.parts.items()):
-            blocks.SetBlock(i, to_vtk(part))
-            blocks.GetMetaData(i).Set(blocks.NAME(), name)
-        return blocks
-    if data.kind == "table":
-        return _to_table(data)
-    x = _to_mesh(data, model)
-    for name in data.keys():
-        place = {"points": x.GetPointData, "cells": x.GetCellData, "whole": x.GetFieldData}[data.on(name)]()
-        array = _lent(data[name])
-        array.SetName(name)
-        place.AddArray(array)
-    return x
+def _poly_data(x: Any) -> Data:
+    """Polygons alone are a surface, lines alone lines, one vertex for each point (or none) points; mixtures are unstructured."""
+    kinds = [lists(x.GetVerts()), lists(x.GetLines()), lists(x.GetPolys()), lists(x.GetStrips())]
+    filled = [k for k, (_, offsets) in enumerate(kinds) if len(offsets) > 1]
+    xyz = _positions(x)
+    if not filled:
+        return points(xyz)
+    ids, offsets = kinds[filled[0]]
+    if filled == [2]:
+        return surface(xyz, ids, offsets)
+    if filled == [1]:
+        return Data(_core.line_mesh(_lent_positions(xyz), ids, offsets))
+    if filled == [0] and len(ids) == len(xyz) and len(offsets) == len(ids) + 1 and np.array_equal(ids, np.arange(len(ids))):
+        if not x.GetCellData().GetNumberOfArrays():  # points have no place for them
+            return points(xyz)
+    return unstructured(xyz, joined([(kinds[k][0], kinds[k][1], _types(k, np.diff(kinds[k][1]))) for k in filled]))
 
 
-def to_pyvista(data: Data) -> Any:
-    """The object of PyVista for it (see to_vtk)."""
-    import pyvista  # type: ignore[import-not-found]
-
-    return pyvista.wrap(to_vtk(data))
-
-
-def _lent(numbers: np.ndarray, kind: int | None = None) -> Any:
-    """A VTK array over the same memory."""
-    from vtkmodules.util.numpy_support import numpy_to_vtk
-
-    lent = np.ascontiguousarray(numbers)
-    array = numpy_to_vtk(lent, deep=False, array_type=kind)
-    array._sightglass = lent  # held as long as it
-    return array
+def _types(kind: int, sizes: np.ndarray) -> np.ndarray:
+    """VTK's numbers of the types of vertices, lines, polygons and strips of so many points."""
+    if kind == 2:
+        return np.select([sizes == 3, sizes == 4], [5, 9], 7).astype(np.uint8)
+    one, several, least = ((1, 2, 1), (3, 4, 2), (), (6, 6, 0))[kind]
+    return np.where(sizes == least, one, several).astype(np.uint8)
 
 
-def _cell_array(ids: np.ndarray, offsets: np.ndarray) -> Any:
-    from vtkmodules.util.numpy_support import numpy_to_vtk
-    from vtkmodules.util.vtkConstants import VTK_ID_TYPE  # type: ignore[import-not-found]
-    from vtkmodules.vtkCommonDataModel import vtkCellArray
-
-    def list_of(numbers: np.ndarray) -> Any:  # a copy: of lent ones cell arrays take the memory without its owner
-        return numpy_to_vtk(np.ascontiguousarray(numbers, np.int64), deep=True, array_type=VTK_ID_TYPE)
-
-    cells = vtkCellArray()
-    cells.SetData(list_of(offsets), list_of(ids))
-    return cells
-
-
-def _to_mesh(data: Data, model: Any) -> Any:
-    from vtkmodules.vtkCommonCore import vtkPoints  # type: ignore[import-not-found]
-
-    if data.kind == "uniform":
-        x = model.vtkImageData()
-        x.SetDimensions(*data.dims)
-        x.SetSpacing(*data.spacing)
-        x.SetOrigin(*data.origin)
-        x.SetDirectionMatrix(*data.direction.ravel())
-        return x
-    if data.kind == "rectilinear":
-        x = model.vtkRectilinearGrid()
-        x.SetDimensions(*data.dims)
-        for set_axis, axis in zip((x.SetXCoordinates, x.SetYCoordinates, x.SetZCoordinates), data.axes):
-            set_axis(_lent(axis))
-        return x
-    points = vtkPoints()
-    points.SetData(_lent(data.points))
-    if data.kind == "curvilinear":
-        x = model.vtkStructuredGrid()
-        x.SetDimensions(*data.dims)
-    elif data.kind == "points":
-        x = model.vtkPolyData()
-        n = data.n_points
-        x.SetVerts(_cell_array(np.arange(n), np.arange(n + 1)))
-    else:
-        mesh = data if data.kind in ("unstructured", "surface") else data.unstructured()
-        ids, offsets, types = mesh.cells
-        if data.kind == "surface":
-            x = model.vtkPolyData()
-            for numbers, set_cells in (((1, 2), x.SetVerts), ((3, 4), x.SetLines), ((5, 7, 9), x.SetPolys), ((6,), x.SetStrips)):
-                which = np.flatnonzero(np.isin(types, numbers))
-                if len(which):  # they stand together, in this order
-                    begin, end = which[0], which[-1] + 1
-                    set_cells(_cell_array(ids[offsets[begin]:offsets[end]], offsets[begin:end + 1] - offsets[begin]))
+def _table(x: Any) -> Data:
+    columns: dict[str, Any] = {}
+    units: dict[str, str] = {}
+    for i in range(x.GetNumberOfColumns()):
+        array = x.GetColumn(i)
+        name = unused(array.GetName() or f"column {i}", lambda n: n in columns)
+        if is_numbers(array):
+            columns[name], units[name] = numbers(array, f"wrap '{name}'"), unit_of(array)
+        elif array.IsA("vtkStringArray"):
+            columns[name] = np.array(words(array), object)
         else:
-            x = model.vtkUnstructuredGrid()
-            _set_cells(x, mesh, ids, offsets, types)
-    x.SetPoints(points)
-    return x
+            say(False, f"wrap: column '{name}' is left out, a {array.GetClassName()} holds neither numbers nor words")
+    return table(columns, units)
 
 
-def _set_cells(x: Any, mesh: Data, ids: np.ndarray, offsets: np.ndarray, types: np.ndarray) -> None:
-    from vtkmodules.util.vtkConstants import VTK_ID_TYPE, VTK_UNSIGNED_CHAR
-
-    face_ids, face_offsets, of_cells = mesh.polyhedra
-    if not len(face_ids):
-        x.SetCells(_lent(types, VTK_UNSIGNED_CHAR), _cell_array(ids, offsets))
-        return
-    stream: list[int] = []
-    begins = np.full(len(types), -1, np.int64)
-    for cell in np.flatnonzero(np.diff(of_cells)):
-        begins[cell] = len(stream)
-        faces = range(of_cells[cell], of_cells[cell + 1])
-        stream.append(len(faces))
-        for f in faces:
-            points = face_ids[face_offsets[f]:face_offsets[f + 1]]
-            stream += [len(points), *points.tolist()]
-    x.SetCells(_lent(types, VTK_UNSIGNED_CHAR), _cell_array(ids, offsets), _lent(begins, VTK_ID_TYPE),
-               _lent(np.array(stream, np.int64), VTK_ID_TYPE))
-
-
-def _to_table(data: Data) -> Any:
-    from vtkmodules.vtkCommonCore import vtkStringArray
-    from vtkmodules.vtkCommonDataModel import vtkTable
-
-    table = vtkTable()
-    for name in data.keys():
-        values = data[name]
-        if values.dtype.kind == "U":
-            column = vtkStringArray()
-            for word in values.tolist():
-                column.InsertNextValue(word)
-        else:
-            column = _lent(values)
-        column.SetName(name)
-        table.AddColumn(column)
-    return table
+def _tree(x: Any) -> Data:
+    """Blocks by name; the pieces of one partitioned data set have numbers. Empty blocks are left out."""
+    groups = x.IsA("vtkPartitionedDataSetCollection")
+    blocks = x.IsA("vtkMultiBlockDataSet")
+    count = x.GetNumberOfPartitionedDataSets() if groups else x.GetNumberOfBlocks() if blocks else x.GetNumberOfPartitions()
+    found = []
+    for i in range(count):
+        part = x.GetPartitionedDataSet(i) if groups else x.GetBlock(i) if blocks else x.GetPartitionAsDataObject(i)
+        if part is None:
+            continue
+        data = wrap(part)
+        pieces = data.parts if part.IsA("vtkPartitionedDataSet") and not part.IsA("vtkMultiBlockDataSet") else {}
+        if len(pieces) == 1:
+            data = next(iter(pieces.values()))
+        name = x.GetMetaData(i).Get(x.NAME()) if x.HasMetaData(i) and x.GetMetaData(i).Has(x.NAME()) else None
+        found.append((name or str(i), data._core))
+    return Data(_core.collection(found))

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .._errors import say
-from .parts import Field, needed, unused
+from .shared import Field, needed, unused
 
 
 def numbers(array: Any, what: str) -> np.ndarray:
@@ -62,11 +62,6 @@ def array_of(values: np.ndarray, name: str = "", unit: str = "", kind: int | Non
     return array
 
 
-def place_numbers(values: np.ndarray) -> Any:
-    """Point numbers or offsets in the very class that vtkCellArray uses: of another it would take the numbers but not hold them."""
-    core = needed("vtkmodules.vtkCommonCore", "to_vtk")
-    values = np.ascontiguousarray(values)
-    array = core.vtkTypeInt32Array() if values.dtype == np.int32 else core.vtkTypeInt64Array()
-    array.SetVoidArray(values, len(values), 1)
-    array._numpy_reference = values
-    return array
+def hold(array: Any, values: np.ndarray) -> None:
+    """Keeps the memory of an array that VTK made over it: attributes live as long as the object of VTK does, in Python or not."""
+    array._numpy_reference = values  # the name that VTK's numpy_to_vtk uses

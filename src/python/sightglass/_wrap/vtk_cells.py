@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 
 from .._errors import say, usage
-from .parts import begins_of, needed, spread
-from .vtk_arrays import array_of, numbers, place_numbers
+from .shared import begins_of, needed, spread
+from .vtk_arrays import array_of, hold, numbers
+
+_lagrange_quads, _lagrange_solids = (70, 77), (72, 73, 79, 80)  # Lagrange and Bezier: quads; hexahedra and wedges
 
 Triple = tuple[np.ndarray, np.ndarray, np.ndarray]
 
@@ -19,11 +21,13 @@ def lists(cells: Any) -> tuple[np.ndarray, np.ndarray]:
 
 
 def cell_array(ids: np.ndarray, offsets: np.ndarray) -> Any:
-    """A vtkCellArray over both."""
+    """A vtkCellArray over both. It makes arrays of its own over their memory, which have to hold it as well."""
     cells = needed("vtkmodules.vtkCommonDataModel", "to_vtk").vtkCellArray()
-    if ids.dtype != offsets.dtype:  # VTK has one width for both
-        offsets = offsets.astype(ids.dtype)
-    cells.SetData(place_numbers(offsets), place_numbers(ids))
+    ids = np.ascontiguousarray(ids)
+    offsets = np.ascontiguousarray(offsets, ids.dtype)  # VTK has one width for both
+    cells.SetData(array_of(offsets), array_of(ids))
+    hold(cells.GetOffsetsArray(), offsets)
+    hold(cells.GetConnectivityArray(), ids)
     return cells
 
 
@@ -103,9 +107,10 @@ def check_shapes(grid: Any) -> None:
     degrees = grid.GetCellData().GetHigherOrderDegrees()
     if degrees and degrees.GetNumberOfTuples():
         orders = numbers(degrees, "wrap: orders of cells")
-        uneven = np.flatnonzero((orders[:, 0] != orders[:, 1]) | ((orders[:, 2] != orders[:, 0]) & (orders[:, 2] > 0)))
-        uneven = [c for c in uneven if grid.GetCellType(int(c)) in (70, 72, 73, 77, 79, 80)]
-        if uneven:
+        types = np.array([grid.GetCellType(c) for c in range(len(orders))])
+        flat, solid = np.isin(types, _lagrange_quads), np.isin(types, _lagrange_solids)
+        uneven = np.flatnonzero(((flat | solid) & (orders[:, 0] != orders[:, 1])) | (solid & (orders[:, 0] != orders[:, 2])))
+        if len(uneven):
             raise usage(f"cell {uneven[0]} has the orders {orders[uneven[0]].astype(int).tolist()}", "wrap: HigherOrderDegrees",
                         "the same order along all axes; write it as .vtu and read that, files may have others")
     weights = grid.GetPointData().GetRationalWeights()
