@@ -174,7 +174,7 @@ DatasetPtr isolines(const DatasetPtr& in, const IsolinesParams& p, Context& ctx)
   }
   DatasetParts lines = contour(s, c, ctx)->parts();
   const auto& mesh = std::get<SurfaceMesh>(lines.mesh);
-  if (c.values.size() == 1 && !lines.fields.find("contour value", Association::cell)) {
+  if (c.values.size() == 1) {  // in the place of a field of the input's that may be called so
     lines.fields.add(
         {"contour value", Association::cell, Array::from_vector(std::vector<double>(mesh.cell_count(), c.values[0])), "", Role::none});
   }

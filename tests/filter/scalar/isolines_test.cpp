@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <doctest/doctest.h>
+#include <set>
 
 #include "base/parallel.h"
 #include "filter/mesh/mesh_meshes.h"
@@ -39,6 +40,28 @@ TEST_CASE("isolines: circles are closed lines, their length and area converge wi
   }
   CHECK(test::observed_order(h, long_by, 4) == doctest::Approx(2).epsilon(0.1));
   CHECK(test::observed_order(h, area_by, 4) == doctest::Approx(2).epsilon(0.1));
+}
+
+TEST_CASE("isolines: a field of the input's that is called contour value breaks no line") {
+  Context ctx;
+  DatasetParts parts = test::square_grid(21, [](Vec3 p) { return -length(p); })->parts();
+  std::vector<float> other(20 * 20);
+  for (size_t i = 0; i < other.size(); ++i) other[i] = float(i);
+  parts.fields.add({"contour value", Association::cell, Array::from_vector(std::move(other)), "", Role::none});
+  const DatasetPtr d = isolines(make_dataset(std::move(parts)), {.values = {-1}}, ctx);
+  REQUIRE(d->cell_count() == 1);
+  CHECK(cell(*d, "contour value", 0) == -1);
+}
+
+TEST_CASE("contour: as many round values as are asked for") {
+  Context ctx;
+  const DatasetPtr d = contour(test::square_grid(41, [](Vec3 p) { return 10 * p.x; }), {.field = {}, .count = 4, .component = {}}, ctx);
+  const Range r = d->range(d->fields().require("contour value", Association::cell), 0);
+  CHECK(r.lo == -10);  // of -15 to 15: -10, -5, 0, 5, 10
+  CHECK(r.hi == 10);
+  std::set<double> values;
+  for (size_t i = 0; i < d->cell_count(); ++i) values.insert(cell(*d, "contour value", i));
+  CHECK(values == std::set<double>{-10, -5, 0, 5, 10});
 }
 
 TEST_CASE("isolines: open lines end at the border; each value has its own; every segment is used once") {

@@ -78,3 +78,12 @@ TEST_CASE("colours: what is stated, and other fields, stay by themselves") {
   CHECK(stated[0].hi == 2);
   CHECK(stated[1].lo == 0.5);
 }
+
+TEST_CASE("colours: one scale for a field that several things show in the same stated map, each its own in another one") {
+  const auto legends = legends_of({{plane(0, 1), {"map=gray"}}, {plane(2, 5), {"map=gray"}}});
+  REQUIRE(legends.size() == 1);
+  CHECK(legends[0].lo == 0);
+  CHECK(legends[0].hi == 5);
+  CHECK(legends_of({{plane(0, 1), {"map=gray"}}, {plane(2, 5), {"map=viridis"}}}).size() == 2);
+  CHECK(legends_of({{plane(0, 1), {"map=gray", "range=0,1"}}, {plane(2, 5), {"map=gray"}}}).size() == 2);
+}
