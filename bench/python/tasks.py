@@ -81,6 +81,9 @@ def sightglass(task):
 def pyvista(task):
     import pyvista as pv
 
+    if task == "many":
+        raise SystemExit("not measured")
+
     def grid(a):
         g = pv.ImageData(dimensions=a.shape[::-1])
         g.point_data.set_array(a.reshape(-1), "v")

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import Any, Iterable, NamedTuple
+from typing import Any, Callable, Iterable, NamedTuple
 
 import numpy as np
 
 from .._data import Data
-from .._errors import usage
+from .._errors import say, usage
+from .._groups import series
 
 
 class Field(NamedTuple):
@@ -68,3 +69,13 @@ def meshes_only(data: Data, who: str, right: str) -> None:
     """An error for what is no single mesh."""
     if data.kind in ("collection", "table"):
         raise usage(f"it is a {data.kind}", who, right)
+
+
+def over_time(times: np.ndarray, step: Callable[[int], Data], what: str) -> Data:
+    """A series, whatever the order of its times; the first step alone where some are equal or none at all."""
+    order = np.argsort(times, kind="stable")
+    sorted_times = times[order]
+    if not np.isfinite(sorted_times).all() or (np.diff(sorted_times) <= 0).any():
+        say(True, f"{what}: the times of its {len(times)} steps are not all different; the first one is taken")
+        return step(0)
+    return series([float(t) for t in sorted_times], lambda i: step(int(order[i])))

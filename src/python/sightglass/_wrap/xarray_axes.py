@@ -124,18 +124,14 @@ def _turn(x: Any) -> tuple[np.ndarray, np.ndarray] | None:
 
 def _positions(x: Any, dims: Sequence[str]) -> dict[str, Any] | None:
     """Coordinates x and y (and z) that depend on several dimensions, or that list places along the only one."""
-    if sum(own_coordinate(x, d) is not None for d in dims[-2:]) == len(dims[-2:]) and not _is_marked(x, dims):
-        return None
+    if all((own := own_coordinate(x, d)) is not None and own.dtype.kind in "iuf" and letter_of(d, own) for d in dims[-2:]):
+        return None  # its axes say all
     found: dict[str, Any] = {}
     for name, c in x.coords.items():
         on = set(c.dims)
         if name not in x.dims and c.dtype.kind in "iuf" and on and on <= set(dims) and (len(on) > 1 or len(dims) == 1):
             found.setdefault(letter_of(str(name), c), c)
     return found if "x" in found and "y" in found else None
-
-
-def _is_marked(x: Any, dims: Sequence[str]) -> bool:
-    return any(c.ndim == len(dims) and str(c.attrs.get("axis", "")).upper() == "X" and name not in x.dims for name, c in x.coords.items())
 
 
 def _broadcast(x: Any, found: dict[str, Any], dims: Sequence[str]) -> list[np.ndarray]:

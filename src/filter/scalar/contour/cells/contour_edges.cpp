@@ -92,24 +92,30 @@ void EdgeChunk::take(Found& found, size_t point_count) {
 }
 
 EdgePoints::EdgePoints(std::vector<EdgeChunk>& chunks, const Context& context) {
-  for (EdgeChunk& c : chunks) c.numbers.resize(c.keys.size());
+  constexpr size_t few = 4096;
+  size_t all = 0;
+  for (EdgeChunk& c : chunks) c.numbers.resize(c.keys.size()), all += c.keys.size();
+  if (all < few) grain_ = EdgeChunk::parts;
   first_.assign(EdgeChunk::parts + 1, 0);
+  const auto number = [&](size_t part) {
+    thread_local KeyTable table;
+    size_t most = 0;
+    for (const EdgeChunk& c : chunks) most += c.begin[part + 1] - c.begin[part];
+    table.reset(most);
+    auto& keys = keys_[part];
+    keys.reserve(most);
+    for (EdgeChunk& c : chunks)
+      for (size_t i = c.begin[part]; i < c.begin[part + 1]; ++i) {
+        const uint32_t k = table.insert(c.keys[i], uint32_t(keys.size()));
+        if (k == keys.size()) keys.push_back(c.keys[i]);
+        c.numbers[i] = k;
+      }
+    first_[part] = keys.size();
+  };
   parallel_for(
-      EdgeChunk::parts, 1,
-      [&](size_t part, size_t) {
-        thread_local KeyTable table;
-        size_t most = 0;
-        for (const EdgeChunk& c : chunks) most += c.begin[part + 1] - c.begin[part];
-        table.reset(most);
-        auto& keys = keys_[part];
-        keys.reserve(most);
-        for (EdgeChunk& c : chunks)
-          for (size_t i = c.begin[part]; i < c.begin[part + 1]; ++i) {
-            const uint32_t k = table.insert(c.keys[i], uint32_t(keys.size()));
-            if (k == keys.size()) keys.push_back(c.keys[i]);
-            c.numbers[i] = k;
-          }
-        first_[part] = keys.size();
+      EdgeChunk::parts, grain_,
+      [&](size_t begin, size_t end) {
+        for (size_t part = begin; part < end; ++part) number(part);
       },
       &context);
   exclusive_scan(first_);

@@ -35,16 +35,18 @@ class EdgePoints {
   template <class F>
   void each(F&& f, const Context& context) const {
     parallel_for(
-        EdgeChunk::parts, 1,
-        [&](size_t part, size_t) {
-          size_t v = first_[part];
-          for (uint64_t k : keys_[part]) f(v++, uint32_t(k >> 32), uint32_t(k));
+        EdgeChunk::parts, grain_,
+        [&](size_t begin, size_t end) {
+          size_t v = first_[begin];
+          for (size_t part = begin; part < end; ++part)
+            for (uint64_t k : keys_[part]) f(v++, uint32_t(k >> 32), uint32_t(k));
         },
         &context);
   }
 
  private:
   std::vector<uint64_t> keys_[EdgeChunk::parts];
+  size_t grain_ = 1;  // parts in one go: all where there are so few points that waking another thread would take longer
   std::vector<size_t> first_;
 };
 
