@@ -53,8 +53,8 @@ std::vector<double> automatic_values(const Dataset& data, const Field& field, in
   if (count > 1) {
     std::vector<double> values = even_values(range_over_all(data, field, component, context), count);
     if (values.size() > 1) {
-      context.info(fmt::format("{}: {} = {} to {} in steps of {}", who, field.name, short_number(values.front()), short_number(values.back()),
-                               short_number(values[1] - values[0])));
+      context.info(fmt::format("{}: {} = {} to {} in steps of {}", who, field.name, short_number(values.front()),
+                               short_number(values.back()), short_number(values[1] - values[0])));
       return values;
     }
   }

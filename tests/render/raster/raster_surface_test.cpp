@@ -61,7 +61,8 @@ TEST_CASE("raster: small doubles keep their places on a logarithmic scale, whate
   std::vector<double> values;
   std::vector<int32_t> ids;
   for (int i = 0; i <= n; ++i)
-    for (const float y : {-1.0f, 1.0f}) xyz.insert(xyz.end(), {-1 + 2.0f * float(i) / n, y, 0}), values.push_back(std::pow(10.0, 12.0 * i / n - 6));
+    for (const float y : {-1.0f, 1.0f})
+      xyz.insert(xyz.end(), {-1 + 2.0f * float(i) / n, y, 0}), values.push_back(std::pow(10.0, 12.0 * i / n - 6));
   for (int i = 0; i < n; ++i) ids.insert(ids.end(), {2 * i, 2 * i + 2, 2 * i + 3, 2 * i, 2 * i + 3, 2 * i + 1});
   FieldSet f;
   f.add({"v", Association::point, Array::from_vector(std::move(values)), "", Role::none});

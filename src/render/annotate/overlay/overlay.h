@@ -54,7 +54,8 @@ class Overlay {
   int height() const { return height_ - y_; }
   bool dark() const { return dark_; }
 
-  // Texts are any bytes: what would act on a terminal or is not UTF-8 is spelled out (printable()), and after U+200B a line may break, at U+2060 not.
+  // Texts are any bytes: what would act on a terminal or is not UTF-8 is spelled out (printable()), and after U+200B a line may break, at
+  // U+2060 not.
   TextExtent measure(const std::string& text, const TextStyle& style) const;
   /// Top left corner at (x, y). `halo` puts a rim of the background's colour round the letters.
   void text(const std::string& text, double x, double y, const TextStyle& style, bool halo = false);
