@@ -18,7 +18,7 @@ def known(array: Any, what: str) -> np.ndarray:
     """As numbers of a type that the library knows: bool as u8, half floats as f32, this machine's byte order."""
     if isinstance(array, np.ma.MaskedArray) and np.ma.is_masked(array):
         say(False, f"{what}: copied, {int(array.mask.sum())} masked values become NaN")
-        array = array.astype(np.promote_types(array.dtype, np.float32)).filled(np.nan)
+        array = np.ma.filled(array.astype(np.promote_types(array.dtype, np.float32)), np.nan)
     if hasattr(array, "__dlpack__") and not hasattr(array, "__array__") and not hasattr(array, "__array_interface__"):
         array = np.from_dlpack(array)
     a = np.asarray(array)

@@ -33,7 +33,7 @@ def show(fraction: float, doing: str, seconds: float) -> None:
     if not _in_notebook():
         print(f"\r\x1b[K{words}", end="", file=sys.stderr, flush=True)
         return
-    from IPython.display import HTML, display  # type: ignore[import-not-found]
+    from IPython.display import HTML, display  # type: ignore[import]
 
     bar = HTML(f'<progress value="{fraction:.3f}" max="1"></progress> {words}')
     if _bar is None:

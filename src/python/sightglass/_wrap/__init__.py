@@ -13,17 +13,17 @@ from .._meshes import uniform
 # The package that a class comes from, and the module here that takes its objects. Classes derived elsewhere (PyVista's) count as well.
 _takers = {"vtkmodules": "vtk", "xarray": "xarray", "pandas": "pandas", "meshio": "meshio", "nibabel": "nibabel", "openvdb": "openvdb",
            "pyopenvdb": "openvdb"}
-_known = ("data sets of VTK and PyVista, DataArray and Dataset of xarray, DataFrame and Series of pandas, Mesh of meshio, images of nibabel, "
-          "grids of OpenVDB, arrays")
+_known = ("data sets of VTK and PyVista, DataArray and Dataset of xarray, DataFrame and Series of pandas, Mesh of meshio, "
+          "images of nibabel, grids of OpenVDB, arrays")
 
 
-def wrap(x: Any, **hints: Any) -> Data:
+def wrap(x: Any, /, **hints: Any) -> Data:
     """Data of what another library holds: wrap(pyvista_mesh), wrap(xarray_dataset, time="2013-01-01").
 
     Known are data sets of VTK and PyVista, xarray, pandas, meshio, nibabel images and OpenVDB grids; arrays are taken as uniform() does.
     What they hold is used where it lies, if its layout permits, and read-only from then on. Fields keep names, units and places (points,
-    cells, the whole). ``hints`` depend on the library: ``time``, ``components``, ``dims`` and names of dimensions (xarray), ``time`` and ``components`` (nibabel), ``units`` and
-    ``index`` (pandas), ``units`` (meshio), ``box`` (OpenVDB).
+    cells, the whole). ``hints`` depend on the library: ``time``, ``components``, ``dims`` and names of dimensions (xarray), ``time`` and
+    ``components`` (nibabel), ``units`` and ``index`` (pandas), ``units`` (meshio), ``box`` (OpenVDB).
     """
     if isinstance(x, Data):
         return x

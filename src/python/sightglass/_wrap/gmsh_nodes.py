@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The nodes of cells of higher order: meshio keeps them as Gmsh numbers them, VTK and Sightglass number its Lagrange cells otherwise.
 
-Both orders are written down as places on a lattice (corner 1 of a cell of order n lies at n, 0, 0): where the same place stands in each says
-how to reorder. As src/io/gmsh/elements.cpp and src/data/cells/node_lattice.cpp do for files.
+Both orders are written down as places on a lattice (corner 1 of a cell of order n lies at n, 0, 0): where the same place stands in each
+says how to reorder. As src/io/gmsh/elements.cpp and src/data/cells/node_lattice.cpp do for files.
 """
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ __all__ = ["to_meshio", "wrap"]
 _lagrange = {"line": 68, "triangle": 69, "quad": 70, "tetra": 71, "hexahedron": 72, "wedge": 73}
 
 
-def wrap(x: Any, units: Mapping[str, str] | None = None) -> Data:
+def wrap(x: Any, /, units: Mapping[str, str] | None = None) -> Data:
     """An unstructured mesh with the cells in the order of the blocks; sets of cells and points are fields of 0 and 1.
 
     Points and fields of points are used where they lie, and so are cells and their fields where there is one block. ``units`` by field;
@@ -63,8 +63,8 @@ def _add(made: _Lists, name: str, cells: Any) -> None:
         shape = name.rstrip("0123456789")
         number, order = _lagrange.get(shape), order_of(shape, a.shape[1]) if shape in _lagrange else None
         if number is None or order is None:
-            raise usage(f"cells of type '{name}' are not known", "wrap", "one of " + ", ".join(common.meshio_to_vtk_type) + ", or of higher order: "
-                        "triangle10, tetra20, hexahedron64, ...")
+            known = ", ".join(common.meshio_to_vtk_type)
+            raise usage(f"cells of type '{name}' are not known", "wrap", f"one of {known}, or of higher order: triangle10, tetra20, ...")
     made.add(number, a if order is None else a[:, order], where)
 
 
@@ -72,7 +72,7 @@ def _fields(x: Any, data: Data) -> Iterable[Field]:
     for name, values in x.point_data.items():
         yield Field(name, "points", values)
     counts = [len(block.data) for block in x.cells]
-    for name, blocks in x.cell_data.items():
+    for name, blocks in x.cell_data.items() if counts else ():
         if [len(b) for b in blocks] != counts:
             raise usage(f"it has values for {[len(b) for b in blocks]} cells", f"wrap: cell data '{name}'", f"the blocks have {counts}")
         yield Field(name, "cells", np.asarray(blocks[0]) if len(blocks) == 1 else np.concatenate([np.asarray(b) for b in blocks]))

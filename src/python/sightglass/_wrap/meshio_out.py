@@ -11,14 +11,15 @@ from .._errors import say, usage
 from .shared import begins_of, fields_of, meshes_only, needed, spread
 from .vtk_cells import Triple
 
-_strip, _voxel, _several_vertices, _poly_line = 6, 11, 2, 4
+_strip, _pixel, _voxel, _several_vertices, _poly_line = 6, 8, 11, 2, 4
 
 
 def to_meshio(data: Data) -> Any:
     """A Mesh: a block for each run of cells of one type and size, so that they keep their order.
 
-    What meshio does not have becomes what it has: poly-lines lines, strips triangles, voxels hexahedra. Points and fields are views,
-    read-only; point numbers too, for a mesh of one block. Fields of the whole are ``field_data``; ``mesh.info["units"]`` keeps the units.
+    What meshio does not have becomes what it has: poly-lines lines, strips triangles, pixels quads, voxels hexahedra. Points and fields are
+    views, read-only; point numbers too, except where they are reordered. Fields of the whole are ``field_data``; ``mesh.info["units"]``
+    keeps the units.
     """
     meshes_only(data, "to_meshio", "to_pandas()" if data.kind == "table" else "one part of it: data.parts[name].to_meshio()")
     meshio = needed("meshio", "to_meshio")
@@ -37,14 +38,18 @@ def to_meshio(data: Data) -> Any:
         if f.on == "cells":
             values = f.values if source is None else f.values[source]
             cell_data[f.name] = [values[a:b] for a, b in runs]
-    return meshio.Mesh(data.points, blocks, point_data={f.name: f.values for f in fields if f.on == "points"}, cell_data=cell_data,
-                       field_data={f.name: f.values for f in fields if f.on == "whole"}, info={"units": {f.name: f.unit for f in fields if f.unit}})
+    try:
+        return meshio.Mesh(data.points, blocks, point_data={f.name: f.values for f in fields if f.on == "points"}, cell_data=cell_data,
+                           field_data={f.name: f.values for f in fields if f.on == "whole"},
+                           info={"units": {f.name: f.unit for f in fields if f.unit}})
+    except KeyError as e:  # 5.0 reads wedge15, pyramid13 and hexahedron24 but has no mesh of them
+        raise usage(f"meshio {meshio.__version__} knows no mesh with cells of type {e}", "to_meshio", "a newer one, or tessellate()") from e
 
 
 def _block(ids: np.ndarray, offsets: np.ndarray, number: int, a: int, b: int, faces: Triple) -> tuple[str, Any]:
     common = needed("meshio._vtk_common", "to_meshio")
     if number not in common.vtk_to_meshio_type:
-        raise usage(f"cell {a} is of VTK's type {number}", "to_meshio", "types that meshio has; triangulate() or tetrahedralize() make simpler ones")
+        raise usage(f"cell {a} is of VTK's type {number}", "to_meshio", "types that meshio has; tessellate() makes linear ones")
     name = common.vtk_to_meshio_type[number]
     size = int(offsets[a + 1] - offsets[a])
     if name == "polyhedron":
@@ -59,7 +64,7 @@ def _block(ids: np.ndarray, offsets: np.ndarray, number: int, a: int, b: int, fa
 def _known_to_meshio(cells: Triple) -> tuple[Triple, np.ndarray | None]:
     """Cells that meshio has in place of others, and which cell each comes from (None: they are the same)."""
     ids, offsets, types = cells
-    if not np.isin(types, (_several_vertices, _poly_line, _strip, _voxel)).any():
+    if not np.isin(types, (_several_vertices, _poly_line, _strip, _pixel, _voxel)).any():
         return cells, None
     sizes = np.diff(offsets)
     split = {_several_vertices: (1, 1), _poly_line: (3, 2), _strip: (5, 3)}  # the type of the pieces, and their size
@@ -74,10 +79,12 @@ def _known_to_meshio(cells: Triple) -> tuple[Triple, np.ndarray | None]:
     odd = begins[:-1][(types[source] == _strip) & (number % 2 == 1)]  # every other triangle of a strip runs backwards
     made[odd], made[odd + 1] = made[odd + 1], made[odd].copy()
     new_types = piece[source]
-    boxes = begins[:-1][new_types == _voxel]
-    for i, j in ((2, 3), (6, 7)):  # rows of a voxel run the same way, around a hexahedron they run to and fro
-        made[boxes + i], made[boxes + j] = made[boxes + j], made[boxes + i].copy()
-    new_types = np.where(new_types == _voxel, 12, new_types).astype(np.uint8)
+    # The rows of pixels and voxels run the same way, those of quads and hexahedra to and fro.
+    for old, new, swaps in ((_pixel, 9, ((2, 3),)), (_voxel, 12, ((2, 3), (6, 7)))):
+        boxes = begins[:-1][new_types == old]
+        for i, j in swaps:
+            made[boxes + i], made[boxes + j] = made[boxes + j], made[boxes + i].copy()
+        new_types = np.where(new_types == old, np.uint8(new), new_types)
     if (counts != 1).any():
         say(False, f"to_meshio: {len(types)} cells become {len(source)}, as poly-lines and strips are split")
     return (made, begins, new_types), source if (counts != 1).any() else None

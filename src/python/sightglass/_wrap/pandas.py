@@ -13,7 +13,7 @@ from .shared import fields_of, meshes_only, needed, unused
 from .times import durations, seconds
 
 
-def wrap(x: Any, units: Mapping[str, str] | None = None, index: bool | None = None) -> Data:
+def wrap(x: Any, /, units: Mapping[str, str] | None = None, index: bool | None = None) -> Data:
     """A table: columns of numbers, words (strings, categories), times (as seconds since 1970).
 
     Columns of numbers are used where pandas holds them; it keeps those of one type together, so all of them are read-only meanwhile.
@@ -23,8 +23,12 @@ def wrap(x: Any, units: Mapping[str, str] | None = None, index: bool | None = No
     frame = x.to_frame() if isinstance(x, pandas.Series) else x
     if not isinstance(frame, pandas.DataFrame):
         raise usage(f"a pandas.{type(x).__name__} is no table", "wrap", "a DataFrame or a Series")
+    if not frame.shape[1] and not index:
+        raise usage("the frame has no columns", "wrap", "one column or more")
     if index or (index is None and not isinstance(frame.index, pandas.RangeIndex)):
-        names = [str(n if n is not None else "index" if frame.index.nlevels == 1 else f"level {i}") for i, n in enumerate(frame.index.names)]
+        names = [f"level {i}" if n is None else str(n) for i, n in enumerate(frame.index.names)]
+        if frame.index.nlevels == 1 and frame.index.name is None:
+            names = ["index"]
         taken = {_name(n) for n in frame.columns}
         levels = [(unused(n, lambda u: u in taken), frame.index.get_level_values(i)) for i, n in enumerate(names)]
     else:
@@ -36,8 +40,6 @@ def wrap(x: Any, units: Mapping[str, str] | None = None, index: bool | None = No
             raise usage(f"two columns are named '{name}'", "wrap", "a name of its own for each column: frame.columns = [...]")
         columns[name], unit = _column(values, f"wrap '{name}'")
         stated.setdefault(name, unit)
-    if not columns:
-        raise usage("the frame has no columns", "wrap", "one column or more")
     for name, parts in frame.attrs.get("components", {}).items():
         _join(columns, stated, str(name), [str(p) for p in parts])
     return table(columns, {n: u for n, u in stated.items() if n in columns})
@@ -89,7 +91,8 @@ def _words(values: Any, where: str) -> np.ndarray:
     words = np.array([None if gone else v for v, gone in zip(values.to_numpy(dtype=object), missing)], object)
     for row, v in enumerate(words):
         if v is not None and not isinstance(v, str):
-            raise usage(f"row {row} holds a {type(v).__name__}", where, "numbers, words, categories or times; .astype(str) makes words of anything")
+            raise usage(f"row {row} holds a {type(v).__name__}", where,
+                        "numbers, words, categories or times; .astype(str) makes words of anything")
     return words
 
 
@@ -97,14 +100,15 @@ def to_pandas(data: Data, on: str = "points") -> Any:
     """A DataFrame: the columns of a table; of a mesh a row for each point (with x, y and z) or cell.
 
     Numbers are views where pandas allows it, and read-only then. Rows of numbers become the columns "v_0", "v_1", ... Times of the calendar
-    stay seconds since 1970: pandas.to_datetime(frame["t"], unit="s"). ``frame.attrs`` keeps the units ("units") and which columns belong together ("components").
+    stay seconds since 1970: pandas.to_datetime(frame["t"], unit="s"). ``frame.attrs`` keeps the units ("units") and which columns belong
+    together ("components").
     """
     pandas = needed("pandas", "to_pandas")
     columns: dict[str, Any] = {}
     units: dict[str, str] = {}
     together: dict[str, list[str]] = {}
     if data.kind == "table":
-        found = [(name, data[name], data.unit(name)) for name in data.keys()]
+        found = [(name, _of_words(data, name) if data._core.words(name) else data[name], data.unit(name)) for name in data.keys()]
     else:
         meshes_only(data, "to_pandas", "one part of it: data.parts[name].to_pandas()")
         if on not in ("points", "cells"):
@@ -118,8 +122,6 @@ def to_pandas(data: Data, on: str = "points") -> Any:
             together[name] = [unused(f"{name}_{i}", lambda n: n in columns) for i in range(values.shape[1])]
             for i, part in enumerate(together[name]):
                 columns[part], units[part] = values[:, i], unit
-        elif values.dtype.kind == "U":
-            columns[name] = np.array([w or None for w in values.tolist()], object)
         else:
             columns[name], units[name] = values, unit
     frame = pandas.DataFrame({n: pandas.Series(c, copy=False) for n, c in columns.items()}, copy=False)
@@ -129,3 +131,8 @@ def to_pandas(data: Data, on: str = "points") -> Any:
     if together:
         frame.attrs["components"] = together
     return frame
+
+
+def _of_words(table: Data, column: str) -> np.ndarray:
+    """None where there is none: its number is -1."""
+    return np.array([*table._core.words(column), None], object)[table._core.field(column)[3]]

@@ -19,7 +19,7 @@ from .shared import unused, with_fields
 __all__ = ["to_pyvista", "to_vtk", "wrap"]
 
 
-def wrap(x: Any) -> Data:
+def wrap(x: Any, /) -> Data:
     """Image data, rectilinear, structured and unstructured grids, poly data, tables, and trees of them.
 
     Points, cells and fields are used where VTK holds them. Whoever writes into them through VTK afterwards changes what data hold, and
@@ -121,7 +121,7 @@ def _types(kind: int, sizes: np.ndarray) -> np.ndarray:
     """VTK's numbers of the types of vertices, lines, polygons and strips of so many points."""
     if kind == 2:
         return np.select([sizes == 3, sizes == 4], [5, 9], 7).astype(np.uint8)
-    one, several, least = ((1, 2, 1), (3, 4, 2), (), (6, 6, 0))[kind]
+    one, several, least = {0: (1, 2, 1), 1: (3, 4, 2), 3: (6, 6, 0)}[kind]
     return np.where(sizes == least, one, several).astype(np.uint8)
 
 

@@ -13,11 +13,16 @@ from .shared import Field, needed, unused
 def numbers(array: Any, what: str) -> np.ndarray:
     """A view that holds the array. Arrays that are computed, or whose components lie apart, are copied."""
     support = needed("vtkmodules.util.numpy_support", "wrap")
+    constants = needed("vtkmodules.util.vtkConstants", "wrap")
     if not array.HasStandardMemoryLayout():
         say(False, f"{what}: copied, a {array.GetClassName()} does not hold its numbers one after the other")
         plain = array.CreateDataArray(array.GetDataType())
         plain.DeepCopy(array)
         array = plain
+    if array.GetDataType() == constants.VTK_BIT:
+        bytes_of_bits = needed("vtkmodules.vtkCommonCore", "wrap").vtkUnsignedCharArray()
+        bytes_of_bits.DeepCopy(array)
+        array = bytes_of_bits
     return support.vtk_to_numpy(array)
 
 
@@ -54,7 +59,11 @@ def fields(attributes: Any, on: str) -> list[Field]:
 def array_of(values: np.ndarray, name: str = "", unit: str = "", kind: int | None = None) -> Any:
     """An array of VTK over these numbers; it holds them as long as it lives."""
     support = needed("vtkmodules.util.numpy_support", "to_vtk")
-    array = support.numpy_to_vtk(values, deep=False, array_type=kind)
+    array = support.create_vtk_array(support.get_vtk_array_type(values.dtype) if kind is None else kind)
+    values = np.ascontiguousarray(values)
+    array.SetNumberOfComponents(values.shape[1] if values.ndim == 2 else 1)
+    array.SetVoidArray(values.reshape(-1), values.size, 1)
+    hold(array, values)
     if name:
         array.SetName(name)
     if unit:
@@ -63,5 +72,16 @@ def array_of(values: np.ndarray, name: str = "", unit: str = "", kind: int | Non
 
 
 def hold(array: Any, values: np.ndarray) -> None:
-    """Keeps the memory of an array that VTK made over it: attributes live as long as the object of VTK does, in Python or not."""
-    array._numpy_reference = values  # the name that VTK's numpy_to_vtk uses
+    """Keeps the memory of an array that VTK made over it, until that is deleted, whoever has it then. An attribute (numpy_to_vtk uses one)
+    would be let go only when Python drops another object of VTK later on, and the numbers would stay read-only until then."""
+    array.AddObserver("UserEvent", _Holder(values))  # which nobody sends
+
+
+class _Holder:
+    __slots__ = ("values",)
+
+    def __init__(self, values: np.ndarray):
+        self.values = values
+
+    def __call__(self, *event: Any) -> None:
+        """Nothing happens."""

@@ -20,7 +20,7 @@ _of_components = ("component", "components")
 _on_cells = "_cell"  # to_xarray ends the names of the dimensions of cells so
 
 
-def wrap(x: Any, time: Any = None, components: str | None = None, dims: Sequence[str] | None = None, **chosen: Any) -> Data:
+def wrap(x: Any, /, time: Any = None, components: str | None = None, dims: Sequence[str] | None = None, **chosen: Any) -> Data:
     """A grid whose axes are the dimensions, with the variables as fields; several grids are a collection, several times a series.
 
     Even, growing coordinates make a uniform grid, others a rectilinear one, longitudes and latitudes of two dimensions a curvilinear one,
@@ -44,7 +44,8 @@ def wrap(x: Any, time: Any = None, components: str | None = None, dims: Sequence
         x = _nearest(x, name, value)
     clock = next((d for d, letter in letters(x).items() if letter == "t" and d not in (dims or ())), None)
     if clock is None and time is not None:
-        raise usage("it has no dimension of time", "wrap", "one named time, or with a coordinate of times; it has " + ", ".join(map(str, x.dims)))
+        names = ", ".join(map(str, x.dims))
+        raise usage("it has no dimension of time", "wrap", f"one named time, or with a coordinate of times; it has {names}")
     if clock is not None and time is not None:
         x = _nearest(x, clock, time)
     elif clock is not None and x.sizes[clock] > 1:

@@ -16,12 +16,13 @@ def to_xarray(data: Data) -> Any:
 
     Coordinates are those of the points along the axes, and of the middles of the cells; a curvilinear grid has positions at each point.
     A turned grid has coordinates along its own axes and the attributes ``direction`` (3 x 3, row by row) and ``origin``, on the Dataset and
-    each variable: a point lies at origin + direction @ (x, y, z). Units are the attribute ``units``; what belongs to no point has the attribute ``on``. Values are views,
-    read-only.
+    each variable: a point lies at origin + direction @ (x, y, z). Units are the attribute ``units``; what belongs to no point has the
+    attribute ``on``. Values are views, read-only.
     """
     xarray = needed("xarray", "to_xarray")
     if data.kind not in ("uniform", "rectilinear", "curvilinear"):
-        right = {"table": "to_pandas()", "collection": "one part of it: data.parts[name].to_xarray()"}.get(data.kind, "resample() makes a grid of it")
+        others = {"table": "to_pandas()", "collection": "one part of it: data.parts[name].to_xarray()"}
+        right = others.get(data.kind, "resample() makes a grid of it")
         raise usage(f"data of kind '{data.kind}' have no axes", "to_xarray", right)
     shape = data.dims[::-1]
     cell_shape = tuple(max(n - 1, 1) for n in shape)
@@ -41,17 +42,20 @@ def to_xarray(data: Data) -> Any:
             if any(f.on == "cells" for f in fields_of(data)):
                 coordinates[f"{d}_cell"] = (f"{d}_cell", (at[1:] + at[:-1]) / 2 if len(at) > 1 else at, {"axis": d.upper()})
     variables: dict[str, Any] = {}
+    variable: tuple[tuple[str, ...], np.ndarray]
     for f in fields_of(data):
         rows = f.values.shape[1:]
         if f.on == "whole":
-            on, values = (f"{f.name}_row",), f.values
+            variable = (f"{f.name}_row",), f.values
+        elif f.on == "points":
+            variable = dims, f.values.reshape(*shape, *rows)
         else:
-            on, values = (dims, f.values.reshape(*shape, *rows)) if f.on == "points" else (cell_dims, f.values.reshape(*cell_shape, *rows))
+            variable = cell_dims, f.values.reshape(*cell_shape, *rows)
         notes = {**({"units": f.unit} if f.unit else {}), **({"on": f.on} if f.on != "points" else {}), **attributes}
         name = unused(f.name, lambda n: n in variables or n in coordinates or n in dims)
         # Vectors of other lengths cannot share a dimension.
         last = ("component",) if rows in ((), (3,)) else (f"component_{rows[0]}",)
-        variables[name] = ((*on, *(last if rows else ())), values, notes)
+        variables[name] = ((*variable[0], *(last if rows else ())), variable[1], notes)
     if data.time is not None:
         attributes["time"] = data.time
     return xarray.Dataset(variables, coordinates, attributes)
