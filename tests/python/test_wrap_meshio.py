@@ -57,7 +57,9 @@ def test_one_block_is_shared():
 def test_points_in_a_plane_and_without_cells():
     ds = sg.wrap(meshio.Mesh(FIVE[:, :2], [("line", [[0, 1]])]))
     assert np.array_equal(ds.points[:, 2], np.zeros(5)) and ds.n_cells == 1
-    assert sg.wrap(meshio.Mesh(FIVE, [])).kind == "points"
+    bare = meshio.Mesh(FIVE, [], point_data={"p": np.arange(5.0)})
+    bare.cell_data = {"c": []}
+    assert sg.wrap(bare).kind == "points" and sg.wrap(bare).keys() == ["p"]
 
 
 @pytest.mark.parametrize("name, corners, volume", [

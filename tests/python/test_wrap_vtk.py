@@ -112,6 +112,14 @@ def test_partitions_are_parts(tetra):
     assert list(sg.wrap(all_of_them).parts) == ["0", "wing/0", "wing/1"] and sg.wrap(all_of_them).n_cells == 6
 
 
+def test_patches_become_cells_and_times_are_told():
+    ds = sg.amr([(1.0, [((0, 0), np.ones((4, 4)))]), (0.5, [((2, 2), np.full((4, 4), 3.0))])], name="rho")
+    grid = ds.to_vtk()
+    assert grid.GetClassName() == "vtkUnstructuredGrid" and grid.GetCellData().GetArray("rho").GetNumberOfTuples() == grid.GetNumberOfCells()
+    step = sg.series([0.5, 2], lambda i: sg.uniform(np.full((2, 2, 2), float(i)))).at(2).to_vtk()
+    assert step.GetInformation().Get(step.DATA_TIME_STEP()) == 2
+
+
 def test_tables_have_numbers_words_and_units():
     ds = sg.table({"t": [0.0, 1.0], "site": ["south", "north"], "v": np.arange(6.0).reshape(2, 3)}, units={"t": "s"})
     there = ds.to_vtk()

@@ -167,5 +167,5 @@ def _field(x: Any, name: str, v: Any, order: Sequence[str], components: str | No
 
 
 def _unit(v: Any) -> str:
-    unit = str(v.attrs.get("units", ""))
+    unit = next((str(u) for k, u in v.attrs.items() if str(k).lower() in ("units", "unit")), "")
     return "" if unit in ("1", "none") else unit
