@@ -113,7 +113,7 @@ Array Array::make_raw(ElementType type, size_t count, int components, std::byte*
 
 bool Array::packed() const {
   const auto size = ptrdiff_t(element_size(type_));
-  return component_stride_ == size && stride_ == size * components_;
+  return (components_ == 1 || component_stride_ == size) && stride_ == size * components_;  // of one there is no next component
 }
 
 double Array::get(size_t i, int c) const {

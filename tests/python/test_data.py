@@ -81,3 +81,10 @@ def test_collections_have_parts_and_tables_have_columns(volume):
     assert sum(p.n_cells for p in both.parts.values()) == both.n_cells
     table = ds.statistics()
     assert table.kind == "table" and len(table[table.keys()[0]]) == 1
+
+
+def test_whole_numbers_of_scans_are_seen_where_they_lie(tmp_path):
+    values = np.arange(60, dtype=np.int16).reshape(3, 4, 5)
+    sg.uniform(values, name="v").save(tmp_path / "a.nii")
+    back = sg.read(tmp_path / "a.nii")
+    assert back[back.keys()[0]].dtype == np.int16

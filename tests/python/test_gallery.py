@@ -16,7 +16,7 @@ DOCS = pathlib.Path(__file__).resolve().parents[2] / "docs" / "python"
 @pytest.mark.parametrize("script", sorted((DOCS / "gallery").glob("*.py")), ids=lambda p: p.stem)
 def test_a_script_of_the_gallery_makes_its_picture(script, tmp_path):
     env = {**os.environ, "PYTHONPATH": str(pathlib.Path(sg.__file__).parent.parent.absolute())}
-    done = subprocess.run([sys.executable, script], cwd=tmp_path, env=env, capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-B", script], cwd=tmp_path, env=env, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     pictures = sorted(tmp_path.glob(script.stem + "*.png"))
     assert pictures

@@ -17,5 +17,5 @@ def test_data_and_arrays_are_taken_and_others_refused(volume):
 
 def test_other_libraries_are_not_imported_before_they_are_needed():
     code = "import sys, sightglass; print([m for m in ('vtkmodules', 'xarray', 'pandas', 'meshio', 'nibabel', 'IPython') if m in sys.modules])"
-    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True,
+    assert subprocess.run([sys.executable, "-B", "-c", code], capture_output=True, text=True, check=True,
                           env={"PYTHONPATH": str(__import__("pathlib").Path(sg.__file__).parent.parent.absolute())}).stdout.strip() == "[]"

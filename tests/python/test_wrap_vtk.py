@@ -115,7 +115,8 @@ def test_partitions_are_parts(tetra):
 def test_patches_become_cells_and_times_are_told():
     ds = sg.amr([(1.0, [((0, 0), np.ones((4, 4)))]), (0.5, [((2, 2), np.full((4, 4), 3.0))])], name="rho")
     grid = ds.to_vtk()
-    assert grid.GetClassName() == "vtkUnstructuredGrid" and grid.GetCellData().GetArray("rho").GetNumberOfTuples() == grid.GetNumberOfCells()
+    assert grid.GetClassName() == "vtkUnstructuredGrid"
+    assert grid.GetCellData().GetArray("rho").GetNumberOfTuples() == grid.GetNumberOfCells()
     step = sg.series([0.5, 2], lambda i: sg.uniform(np.full((2, 2, 2), float(i)))).at(2).to_vtk()
     assert step.GetInformation().Get(step.DATA_TIME_STEP()) == 2
 

@@ -220,11 +220,11 @@ class Data(Methods):
 
         return to_xarray(self)
 
-    def to_pandas(self) -> Any:
-        """A DataFrame of a table; of other data one row per point."""
+    def to_pandas(self, on: str = "points") -> Any:
+        """A DataFrame: the columns of a table; of a mesh a row for each point (with x, y and z) or cell."""
         from ._wrap.pandas import to_pandas
 
-        return to_pandas(self)
+        return to_pandas(self, on)
 
     def to_meshio(self) -> Any:
         """A meshio.Mesh."""

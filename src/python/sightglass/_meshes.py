@@ -100,7 +100,7 @@ def unstructured(points: Data | Any, cells: Mapping[str | int, Any] | Sequence[A
     if cells is not None and not isinstance(cells, Mapping):
         if len(cells) != 3:
             raise usage(f"{len(cells)} lists of cells", "unstructured", "a mapping from types to point numbers, or ids, offsets and types")
-        ids, offsets, types = whole(cells[0], "ids"), whole(cells[1], "offsets"), known(cells[2], "types").astype(np.uint8)
+        ids, offsets, types = whole(cells[0], "ids"), whole(cells[1], "offsets"), known(cells[2], "types").astype(np.uint8, copy=False)
         of_faces = None if faces is None or len(faces[2]) == 0 else tuple(whole(f, "faces") for f in faces)
         return Data(_core.unstructured_mesh(_lent_positions(points), ids, offsets, types, of_faces))
     if not cells:
