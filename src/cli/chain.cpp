@@ -53,6 +53,11 @@ struct Words {
     rest.insert(rest.end(), kept.begin(), kept.end());
     return value;
   }
+  /// "contour values=1 name=iso" is "iso: contour values=1", where the operation has no parameter of that name.
+  void take_name() {
+    const Operation* op = known_operation(first);
+    if (label.empty() && op && !op->make_params().schema.find("name")) label = take("name");
+  }
 };
 
 void add_picture_words(const Options& o, PipelineFile& file) {
@@ -83,6 +88,7 @@ class Chains {
     chain.push_back(std::move(begin));
     for (size_t i = 0; i < o_.filters.size(); ++i) {
       Words words(o_.filters[i], "-f");
+      words.take_name();
       PipelineFile::Step step;
       step.operation = words.first;
       step.name = words.label.empty() ? fmt::format("{}_{}{}", base, words.first, i + 1) : fmt::format("{}_{}", base, words.label);

@@ -125,7 +125,9 @@ void add_pipeline(CLI::App& a, Options& o) {
   a.add_option(
        "-f,--filter", o.filters,
        "An operation and its parameters, e.g. 'contour field=T values=300,400'; repeat to chain operations. with=X adds a further input: a "
-       "file, or a step of the chain by its operation or its name ('seeds: topology_seeds' names a step). on=STEP takes that step as input "
+       "file, or a step of the chain by its operation or its name ('seeds: topology_seeds' or 'topology_seeds name=seeds' names a step: -f "
+       "'skin: contour values=500' -f 'bone: contour values=1150 on=input' --show 'surface of=skin opacity=0.3' --show 'surface of=bone'). "
+       "on=STEP takes that step as input "
        "instead of the previous one; 'input' is the data read (calc on=cell: its cells, unless a step has that name)")
       ->allow_extra_args(false);
   a.add_option("-s,--source", o.source, "Compute the data instead of reading a file, e.g. 'gyroid size=128'");

@@ -95,4 +95,9 @@ TEST_CASE("command line: of=OPERATION is the step without a name, where one with
   const auto small = drawn({"--show", "surface of=contour"}), big = drawn({"--show", "surface of=big"});
   CHECK(small != big);
   CHECK(big == drawn({"--show", "surface"}));
+  // name=NAME says the same as NAME: before an operation that has no such parameter.
+  must({"render", "--source", "sphere size=12", "-f", "contour values=0", "-f", "contour on=input values=0.3 name=large", "--show",
+        "surface of=large", "--size", "80x60", "--camera", "position=0,-6,0 target=0,0,0", "-o", "named.png"});
+  const std::string named = bytes_of("named.png");
+  CHECK(big == decode_png(std::as_bytes(std::span(named)), "named.png").pixels);
 }
