@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The library for C++ programs: time series that the program makes.
+#include <cmath>
 #include <set>
 #include <stdexcept>
 
