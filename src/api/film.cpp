@@ -32,12 +32,7 @@ sg::FilmParams film_params(const std::string& output, Params params, std::initia
 // May a film show it otherwise at other times?
 bool may_move(const Made& made, sg::Context& context) {
   if (sg::step_kind(made.operation) == sg::StepKind::memory) return false;
-  if (sg::step_kind(made.operation) == sg::StepKind::read) {
-    sg::ReadParams params;
-    sg::Schema schema = sg::schema_of(params);
-    sg::set_params(schema, made.words, "read");
-    return !params.options.time && params.options.step < 0 && !sg::file_times(params.path, params.options, context).empty();
-  }
+  if (sg::step_kind(made.operation) == sg::StepKind::read) return !open_times(made, context).empty();
   const sg::Operation& operation = sg::find_operation(made.operation);
   const sg::ParamDecl* time = sg::make_params(operation, made.words).schema.find("time");
   const bool of_itself = operation.run_series || operation.shows_moment || made.inputs.empty();

@@ -7,6 +7,8 @@
 
 #include "base/parallel.h"
 #include "data/memory/memory_budget.h"
+#include "io/io.h"
+#include "io/options.h"
 #include "io/plugin.h"
 #include "pipeline/catalog/catalog.h"
 #include "pipeline/operation/operation.h"
@@ -127,6 +129,23 @@ void add_memory(const std::shared_ptr<const Made>& made, StepsOf& steps, sg::Ste
     sg::fail_usage("follows time, and of what lies above it numbers from memory are gone (" + made->words.at(0) + ")", std::string(where),
                    "keep the Data that hold them");
   results.insert_or_assign(steps.add(made), held->data);
+}
+
+sg::Data run_steps(const std::shared_ptr<const Made>& made, std::string_view where, sg::Context& context) {
+  StepsOf steps;
+  steps.add(made);
+  sg::StepResults results;
+  add_memory(made, steps, results, where);
+  const sg::PipelineGraph built = sg::build_graph(steps.file, {}, results);
+  return built.graph.evaluate(built.last, {}, context);
+}
+
+std::vector<double> open_times(const Made& read, sg::Context& context) {
+  sg::ReadParams params;
+  sg::Schema schema = sg::schema_of(params);
+  sg::set_params(schema, read.words, "read");
+  if (params.options.time || params.options.step >= 0) return {};
+  return sg::file_times(params.path, params.options, context);
 }
 
 }  // namespace sightglass

@@ -96,6 +96,11 @@ class StepsOf {
   std::vector<std::pair<const Made*, std::string>> names_;
 };
 
+/// The result of the last of these steps, all of which run, from numbers of the caller's on. Throws as add_memory().
+sg::Data run_steps(const std::shared_ptr<const Made>& made, std::string_view where, sg::Context& context);
+/// The times of what a "read" step reads, where it states none itself; else none.
+std::vector<double> open_times(const Made& read, sg::Context& context);
+
 struct Scene::State {
   struct Shown {
     Data data;

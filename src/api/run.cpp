@@ -26,12 +26,7 @@ std::string absolute(const std::string& path) {
 
 // Has it other values at other times, for operations that follow time?
 bool varies(const Made& made, sg::Context& context) {
-  if (sg::step_kind(made.operation) == sg::StepKind::read) {
-    sg::ReadParams params;
-    sg::Schema schema = sg::schema_of(params);
-    sg::set_params(schema, made.words, "read");
-    return !params.options.time && params.options.step < 0 && sg::file_times(params.path, params.options, context).size() > 1;
-  }
+  if (sg::step_kind(made.operation) == sg::StepKind::read) return open_times(made, context).size() > 1;
   if (sg::step_kind(made.operation) == sg::StepKind::memory) return false;
   if (made.inputs.empty()) {
     const sg::ParamSet params = sg::make_params(sg::find_operation(made.operation), made.words);
@@ -39,16 +34,6 @@ bool varies(const Made& made, sg::Context& context) {
     return time && !time->stated;
   }
   return std::any_of(made.inputs.begin(), made.inputs.end(), [&](const auto& input) { return varies(*input, context); });
-}
-
-// An operation that follows time, on all steps of what lies above it.
-sg::Data run_over_time(const std::shared_ptr<const Made>& made, sg::Context& context) {
-  StepsOf steps;
-  steps.add(made);
-  sg::StepResults results;
-  add_memory(made, steps, results, "run()");
-  const sg::PipelineGraph built = sg::build_graph(steps.file, {}, results);
-  return built.graph.evaluate(built.last, {}, context);
 }
 
 sg::Data run_now(const sg::Operation& operation, const sg::ParamSet& params, const std::vector<const Data::Held*>& inputs,
@@ -73,7 +58,7 @@ Data run_on(std::string_view name, const Params& stated, const std::vector<const
   for (const Data* d : inputs) held.push_back(&held_by(*d)), made->inputs.push_back(held.back()->made);
   sg::Context& core = context.state().core;
   const bool over_time = operation.run_series && !held.empty() && varies(*held[0]->made, core);
-  return make_data(over_time ? run_over_time(made, core) : run_now(operation, params, held, core), made);
+  return make_data(over_time ? run_steps(made, "run()", core) : run_now(operation, params, held, core), made);
 }
 
 }  // namespace

@@ -14,13 +14,7 @@ namespace {
 
 // Of the first series above.
 std::vector<double> times_above(const Made& made, sg::Context& context) {
-  if (sg::step_kind(made.operation) == sg::StepKind::read) {
-    sg::ReadParams params;
-    sg::Schema schema = sg::schema_of(params);
-    sg::set_params(schema, made.words, "read");
-    const bool moves = !params.options.time && params.options.step < 0;
-    return moves ? sg::file_times(params.path, params.options, context) : std::vector<double>();
-  }
+  if (sg::step_kind(made.operation) == sg::StepKind::read) return open_times(made, context);
   for (const auto& input : made.inputs)
     if (auto times = times_above(*input, context); !times.empty()) return times;
   return {};
@@ -84,12 +78,7 @@ Data Data::at(double time, const Context& context) const {
     sg::Context& core = context.state().core;
     const auto made = made_at(held_by(*this).made, time, core);
     if (!made) sg::fail_usage("does not come from a time series", "at()", "read a series, or make one with series()");
-    StepsOf steps;
-    steps.add(made);
-    sg::StepResults results;
-    add_memory(made, steps, results, "at()");
-    const sg::PipelineGraph built = sg::build_graph(steps.file, {}, results);
-    return make_data(built.graph.evaluate(built.last, {}, core), made);
+    return make_data(run_steps(made, "at()", core), made);
   });
 }
 
