@@ -168,7 +168,7 @@ TEST_CASE("property: curved cells of every order keep the volume of a box that s
     }
     // z is as it was: every cut across it has area 4, what lies below has 4 times its height.
     const double level = random.in(-0.9, 0.9);
-    CHECK(measure_of(contour(d, {{"f"}, {level}, true, 1e-4}, context), 2) == doctest::Approx(4).epsilon(1e-2));
+    CHECK(measure_of(contour(d, {.field = {"f"}, .values = {level}, .tolerance = 1e-4}, context), 2) == doctest::Approx(4).epsilon(1e-2));
     ClipParams c;
     c.field.name = "f", c.value = level, c.keep = ClipSide::outside, c.tolerance = 1e-3;
     CHECK(measure_of(single_dataset(clip(d, c, context), "test"), 3) == doctest::Approx(4 * (level + 1)).epsilon(2e-2));
