@@ -7,6 +7,7 @@
 #include "data/cells/mesh_dimension.h"
 #include "data/cells/plane_normal.h"
 #include "data/lattice.h"
+#include "data/patient/modality.h"
 #include "data/patient/patient_frame.h"
 #include "filter/tensor/tensor_field.h"
 #include "io/y_up.h"
@@ -16,7 +17,9 @@
 #include "scene/choose/shown_range.h"
 #include "scene/choose/signed_distance.h"
 #include "scene/choose/telling_field.h"
+#include "scene/choose/viewpoint.h"
 #include "scene/choose/volume/look.h"
+#include "scene/choose/volume/visible_box.h"
 #include "scene/show/labels.h"
 #include "scene/show/points.h"
 #include "scene/show/surface.h"
@@ -94,6 +97,33 @@ bool has_polygons(const Dataset& d) {
   return true;
 }
 
+// What magnetic resonance and the like measure has no opacity of its own: three slices through the middle, as on a console, in grey.
+bool look_at_scan(const Dataset& d, const Field& f, Look& look) {
+  double offset = 0;
+  const Range r = d.range(f);
+  if (!is_scanned(d, f) || r.empty() || two_sided(f, r) || modality_of(d, f) == Modality::ct || looks_like_ct(d, f, &offset)) return false;
+  look.filter = {"slice", "planes=xyz"};
+  SurfaceShow slices;
+  slices.coloring.field.name = f.name;
+  add_show(look, slices, false);
+  look.camera.direction = {0.8, -1.0, 0.65};
+  look.reason = fmt::format("'{}' is a scan: three slices through its middle; --show volume shows it as a body", f.name);
+  return true;
+}
+
+// So few cells that each can be told from the next: a body with their edges, as there is nothing between them to see through.
+bool look_at_few_cells(const Dataset& d, const Field& f, Look& look) {
+  constexpr size_t few = 10;  // along each axis
+  const auto dims = lattice_dims(d.mesh());
+  if (*std::max_element(dims.begin(), dims.end()) > few + 1 || in_patient_frame(d) || f.look.shows != FieldLook::Shows::any) return false;
+  SurfaceShow surface;
+  surface.edges = true;
+  surface.coloring.field.name = f.name;
+  add_show(look, surface, true);
+  look.reason = fmt::format("'{}' on a grid of few cells: its outer surface with cell edges; --show volume sees through it", f.name);
+  return true;
+}
+
 // A 3D scalar image or box grid: seen through, or for labels its voxel faces.
 void look_at_grid(const Dataset& d, const Field& f, Look& look) {
   const bool image = d.as<UniformGrid>() || (d.as<RectilinearGrid>() && f.role == Role::labels);
@@ -106,6 +136,7 @@ void look_at_grid(const Dataset& d, const Field& f, Look& look) {
         fmt::format("'{}' has few integer values in connected regions: taken as labels, shown as surfaces with one colour each", f.name);
     return;
   }
+  if ((d.as<UniformGrid>() && look_at_scan(d, f, look)) || look_at_few_cells(d, f, look)) return;
   VolumeShow volume;
   volume.coloring.field.name = f.name;
   if (f.look.shows == FieldLook::Shows::fibres)
@@ -117,6 +148,8 @@ void look_at_grid(const Dataset& d, const Field& f, Look& look) {
   VolumeItem item;
   item.color = choose_scale(d, f, params, quiet);
   const std::string why = choose_volume_look(d, f, params, item);
+  if (double offset = 0; !in_patient_frame(d) && !looks_like_ct(d, f, &offset))
+    look.frame = visible_box(d, f, params.component, item.opacity);
   look.reason = fmt::format("scalar field '{}' on a 3D grid: shown as a volume; {}", f.name, why);
 }
 
@@ -135,6 +168,28 @@ bool look_at_tensors(const Dataset& d, Look& look) {
   }
   look.reason =
       fmt::format("tensors '{}': a glyph for each; --show surface shows the {} mesh and its other fields", tensors->name, d.kind());
+  return true;
+}
+
+// Values along one axis alone: their curve, with the values along the other axis of the picture.
+bool look_at_profile(const Dataset& d, const Field& f, Look& look) {
+  if (!is_lattice(d.mesh()) || in_patient_frame(d) || f.association != Association::point || f.components() != 1) return false;
+  const auto dims = lattice_dims(d.mesh());
+  const Vec3 size = d.bounds().size();
+  const Range r = d.range(f);
+  const int along = dims[0] > 1 ? 0 : dims[1] > 1 ? 1 : 2;
+  if (dims[0] * dims[1] * dims[2] != dims[size_t(along)] || dims[size_t(along)] < 3 || !(r.lo < r.hi) || !(size[along] > 0)) return false;
+  constexpr double height = 0.6;  // of the curve, as a share of its length
+  const int values = along == 0 ? 1 : 0;
+  Vec3 direction, stretch{1, 1, 1};
+  direction[values] = 1, stretch[values] = height * size[along] / (r.hi - r.lo);
+  look.filter = {"warp", "field=" + f.name, fmt::format("direction={},{},0", direction.x, direction.y), "scale=1"};
+  SurfaceShow curve;
+  curve.coloring.color = "steelblue";
+  add_show(look, curve, false);
+  look.picture = {fmt::format("stretch={},{},1", stretch.x, stretch.y),
+                  fmt::format("{}_title={}{}", "xyz"[values], f.name, f.unit.empty() ? "" : fmt::format(" [{}]", f.unit))};
+  look.reason = fmt::format("'{}' along one axis: its curve", f.name);
   return true;
 }
 
@@ -200,7 +255,7 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
   const bool colors = scalar && scalar->role == Role::colors && scalar->components() >= 3;
 
   if (field.empty() && look_at_tensors(d, look)) return look;
-  if (scalar && look_at_level_set(d, *scalar, look)) return look;
+  if (scalar && (look_at_profile(d, *scalar, look) || look_at_level_set(d, *scalar, look))) return look;
   if (grid3 && box_grid && scalar && !colors) {
     look_at_grid(d, *scalar, look);
     return look;
@@ -244,6 +299,17 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
   look.reason =
       fmt::format("{} mesh: {}{}, {}", d.kind(), seen[size_t(dimension)], show_edges ? " with cell edges" : "", field_reason(d, field));
   return look;
+}
+
+void face_detail(Look& look, std::span<const DatasetPtr> parts, const std::string& extension) {
+  if (look.camera.parallel || !look.filter.empty()) return;
+  std::vector<const SurfaceMesh*> surfaces;
+  for (const DatasetPtr& d : parts) {
+    const auto* mesh = d->as<SurfaceMesh>();
+    if (!mesh || in_patient_frame(*d) || (!y_points_up(extension) && automatic_field(*d))) return;
+    surfaces.push_back(mesh);
+  }
+  look.camera.direction = telling_direction(surfaces, look.camera.direction, look.camera.up);
 }
 
 void cut_open(Look& look, const DatasetPtr& data, const std::string& field, Context& context) {

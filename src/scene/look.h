@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Good without options: looks at a dataset and chooses how to show it and from where.
 #pragma once
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,12 +21,16 @@ struct Look {
   };
   std::vector<Show> shows;
   CameraDefaults camera;
-  std::string reason;  ///< one line for the user: what was chosen and why
+  std::vector<std::string> picture;  ///< words for it, where they are not stated
+  std::optional<Box3> frame;         ///< the part in which something is seen; empty = all
+  std::string reason;                ///< one line for the user: what was chosen and why
 };
 
 /// `field`: what the user wants to see; "" = the data decides. `extension`: of the file the data came from ("obj"); surfaces
 /// made for graphics have y up.
 Look choose_look(const Dataset& data, const std::string& field, const std::string& extension);
+/// Turns the view of surfaces made for graphics, and of others without a field, to the side that shows most of them.
+void face_detail(Look& look, std::span<const DatasetPtr> parts, const std::string& extension);
 /// A solid whose outer surface tells nothing of what it is coloured by is cut open along the middle, with the half away from the viewer
 /// kept.
 void cut_open(Look& look, const DatasetPtr& data, const std::string& field, Context& context);

@@ -36,7 +36,7 @@ Box3 scene_bounds(const Scene& scene) {
 
 std::vector<Light> lights_of(const Scene& scene) {
   if (!scene.lights.empty()) return scene.lights;
-  return {{{-0.35, 0.45, 1.0}, true, 0.85f}, {{0.9, 0.1, 0.5}, true, 0.22f}};
+  return {{{-0.4, 0.75, 1.0}, true, 0.9f}, {{0.9, 0.1, 0.5}, true, 0.22f}};
 }
 
 }  // namespace sg

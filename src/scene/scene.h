@@ -39,7 +39,7 @@ struct SurfaceItem {
   /// A SurfaceMesh whose lines are drawn instead (of curved cells: see Skin), or where it has polygons their edges; null = the edges of
   /// the polygons drawn.
   DatasetPtr edge_lines;
-  std::optional<Vec3f> edge_color;    ///< sRGB; empty = that of the surface under it, darker, or lighter where it is dark
+  std::optional<Vec3f> edge_color;    ///< sRGB; empty = that of the surface under it, darker, or lighter on a dark surface
   std::optional<SurfaceTexture> lic;  ///< directions of a vector field as a texture
 };
 

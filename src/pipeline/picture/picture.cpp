@@ -29,6 +29,14 @@ void describe(Schema& s, PictureParams& p) {
     "Factors by which x, y and z are drawn longer than they are, negative ones the other way round; numbers at the axes stay those of the "
     "data. Default: 1,1,1, but for maps in degrees (longitudes as long as at the middle latitude, heights 0.3 times the map's "
     "width), depths and pressures, which grow downwards. The camera's position and target are where things are drawn.");
+  s("x_title", p.x_title, "Title of the x axis; default: what the data says of it, else x.");
+  s("y_title", p.y_title, "Title of the y axis.");
+  s("z_title", p.z_title, "Title of the z axis.");
+  s("frame", p.frame,
+    "The box that the picture is of: x0,x1,y0,y1,z0,z1 in the data's coordinates. Axes and camera are those of the box; what lies outside "
+    "of it "
+    "is drawn where it comes into view. Default: all of the data, or of a volume shown without options the part in which something is "
+    "seen.");
   s("layout", p.layout,
     "Several panels in one picture, with one legend: columns x rows as 2x1, or 'auto'. Each input has its own, or each of 'views'.");
   s("views", p.views, "Named views of the same data side by side, e.g. front,left,top,iso; layout 'auto' where none is stated.");
@@ -85,6 +93,8 @@ StatedPicture stated_in(const PipelineFile& file) {
   set_params(camera, camera_words(camera_list), "camera");
   parse_size(s.picture.size, s.width, s.height);
   s.notes = parse_notes(s.picture.note);
+  if (const std::vector<double>& f = s.picture.frame; !f.empty() && !(f.size() == 6 && f[0] <= f[1] && f[2] <= f[3] && f[4] <= f[5]))
+    fail_usage("frame needs the lower and the upper end along x, y and z", "frame", "like frame=0,1,0,1,0,0.5");
   if (s.picture.background == "transparent") {
     s.transparent = true;
   } else {
@@ -210,6 +220,7 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   Picture picture;
   Context computing(context, 0, 0.5), drawing(context, 0.5, 1);
   Look look = choose_looks(file, options, cache, held, picture.notes, computing);
+  stated = stated_in(file);  // with what was chosen of it
   const std::vector<StatedShow> shows = stated_shows(file);
 
   GraphOptions graph_options;

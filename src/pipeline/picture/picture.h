@@ -22,6 +22,8 @@ struct PictureParams {
   std::string title;
   bool legend = true, axes = true, triad = true, letters = true;
   std::optional<Vec3> stretch;
+  std::vector<double> frame;  ///< of the data's coordinates: x0,x1,y0,y1,z0,z1
+  std::string x_title, y_title, z_title;
   bool scale_bar = false;
   std::string caption, note;
   std::string layout;

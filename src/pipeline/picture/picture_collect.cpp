@@ -18,7 +18,8 @@ namespace sg {
 namespace {
 
 // What the axes measure, as the first dataset that tells it has it.
-void take_axis_titles(const std::vector<DatasetPtr>& data, Shown& s) {
+void take_axis_titles(const std::vector<DatasetPtr>& data, const PictureParams& stated, Shown& s) {
+  s.axis_titles[0] = stated.x_title, s.axis_titles[1] = stated.y_title, s.axis_titles[2] = stated.z_title;
   for (const DatasetPtr& d : data) {
     for (int a = 0; a < 3; ++a)
       if (const auto note = axis_note(*d, a); note && s.axis_titles[a].empty()) s.axis_titles[a] = note->title();
@@ -50,12 +51,17 @@ std::vector<Shown> collect(const PipelineFile& file, const std::vector<StatedSho
     });
   }
   Box3 box;
-  for (Shown& s : panels) take_axis_titles(all, s), box.add(s.box);
+  for (Shown& s : panels) take_axis_titles(all, stated, s), box.add(s.box);
   if (const Vec3 stretch = stated.stretch.value_or(chosen_stretch(all, over_all(box, context))); stretch != Vec3{1, 1, 1}) {
     for (Shown& s : panels) s.box = {}, s.stretch = stretch;
     for (size_t i = 0; i < shown.size(); ++i)
       for (DatasetPtr& d : shown[i].parts) d = stretched(d, stretch, context), panels[panel_of[i]].box.add(d->bounds());
   }
+  if (const std::vector<double>& f = stated.frame; !f.empty())
+    for (Shown& s : panels) {
+      s.box = {};
+      for (const Vec3 corner : {Vec3{f[0], f[2], f[4]}, Vec3{f[1], f[3], f[5]}}) s.box.add(corner * s.stretch);
+    }
   const std::vector<std::vector<DatasetPtr>> beside = colored_alike(shown);
   for (size_t i = 0; i < shown.size(); ++i) {
     const auto& [kind, params] = shows[i];

@@ -4,9 +4,13 @@
 
 #include "base/error.h"
 #include "base/file/file.h"
+#include "base/text/text.h"
 #include "pipeline/picture/picture_parts.h"
 #include "scene/choose/scale.h"
+#include "scene/choose/shown_range.h"
+#include "scene/choose/telling_field.h"
 #include "scene/show/surface.h"
+#include "scene/show/volume.h"
 
 namespace sg {
 
@@ -78,6 +82,19 @@ std::string field_telling_parts(const Data& data, const Context& context) {
   return "";
 }
 
+// Surfaces, lines and points: of a volume the scale is its opacity, too.
+bool takes_decades(const Data& data, const std::string& name, const Look& look, const Context& context) {
+  if (look.shows.size() != 1 || look.shows[0].kind->is<VolumeShow>() || !look.shows[0].kind->coloring) return false;
+  std::vector<FieldOf> fields;
+  for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
+    const Field* f = name.empty() ? automatic_field(*d) : d->fields().find(name);
+    if (f && (fields.empty() || f->name == fields[0].field->name) && f->association != Association::whole) fields.push_back({d.get(), f});
+  });
+  return !fields.empty() && spans_decades(fields, context);
+}
+
+bool states_scale(const PipelineFile::Show& s) { return word_value(s.words, "scale") || word_value(s.words, "range"); }
+
 // What suits the result of a step, as entries under `show`; the filters that it needs are added to the steps.
 Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file, std::vector<PipelineFile::Show>& shows,
                 std::vector<std::string>& notes, Context& context) {
@@ -86,8 +103,10 @@ Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file,
   leave_out_sets(file, end, data, stated.empty() ? std::vector<std::string>() : std::vector{stated}, notes, context);
   // The largest part speaks for all; one with values before one with a mask or a numbering alone.
   DatasetPtr largest;
+  std::vector<DatasetPtr> parts;
   bool has_values = false;
   for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
+    parts.push_back(d);
     const Field* f = automatic_field(*d);
     const bool values = f && f->role != Role::labels;
     if (!largest || (values && !has_values) || (values == has_values && d->point_count() > largest->point_count()))
@@ -101,9 +120,14 @@ Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file,
   if (field != stated) coloring.push_back("field=" + field);
   Look look = choose_look(*largest, field, extension_of(origin));
   // What is seen of a volume was told for the scale that is chosen.
-  if (word_value(wanted.words, "scale") || word_value(wanted.words, "range"))
+  if (states_scale(wanted))
     if (const size_t at = look.reason.find("shown as a volume;"); at != look.reason.npos) look.reason.resize(look.reason.find(';', at));
+  face_detail(look, parts, extension_of(origin));
   cut_open(look, largest, field, context);
+  if (takes_decades(data, field, look, context) && !states_scale(wanted) && !word_value(wanted.words, "map")) {
+    coloring.push_back("scale=log");
+    look.reason += ", on a logarithmic scale, as most values are far below the largest (scale=linear is the other)";
+  }
   const std::string result =
       look.filter.empty() ? end : added_step(file, look.filter[0], {look.filter.begin() + 1, look.filter.end()}, end);
   for (const Look::Show& s : look.shows) {
@@ -175,7 +199,20 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::
     notes.push_back(open > 1 ? fmt::format("{}: {}", input.name, look.reason) : look.reason);
     if (first.shows.empty()) first = look;
   }
-  if (!in_panels(stated_in(file).picture)) see_through(inputs, shows, notes);
+  const StatedPicture stated = stated_in(file);
+  if (!in_panels(stated.picture)) see_through(inputs, shows, notes);
+  if (shows.size() == 1) {
+    for (const std::string& word : first.picture)
+      if (!word_value(file.picture, std::string_view(word).substr(0, word.find('=')))) file.picture.push_back(word);
+    const bool own_camera = stated.camera.position || stated.camera.target;
+    if (first.frame && stated.picture.frame.empty() && !own_camera && !states_scale(shows[0])) {
+      const Box3& b = *first.frame;
+      std::vector<std::string> ends;
+      for (int a = 0; a < 3; ++a) ends.insert(ends.end(), {short_number(b.lo[a], 4), short_number(b.hi[a], 4)});
+      file.picture.push_back(fmt::format("frame={}", fmt::join(ends, ",")));
+      notes.push_back(fmt::format("the rest of the volume is transparent: the picture is of {}", file.picture.back()));
+    }
+  }
   file.show = std::move(shows);
   return first;
 }

@@ -174,6 +174,21 @@ constexpr Material line_material{0.18f, 0.82f, 0.30f, 40, true};
 /// Edges of cells where there is no surface under them, at its outline.
 constexpr Vec3f outline_color{0.1f, 0.1f, 0.1f};
 
+float luminance(const float* linear) { return 0.2126f * linear[0] + 0.7152f * linear[1] + 0.0722f * linear[2]; }
+
+/// Edges that stand out from most of a surface.
+PreparedItem::Contrast contrast_to(const ColorSource& surface) {
+  constexpr size_t most_samples = 4096;
+  constexpr float dark = 0.1f;
+  using Kind = ColorSource::Kind;
+  size_t samples = 0, dark_ones = 0;
+  const auto see = [&](const float* color) { ++samples, dark_ones += luminance(color) < dark; };
+  const size_t n = surface.kind == Kind::constant ? 0 : surface.values.count(), step = std::max<size_t>(1, n / most_samples);
+  if (n == 0) see(&surface.constant.x);
+  for (size_t i = 0; i < n; i += step) see(surface.kind == Kind::direct ? surface.data() + 4 * i : &surface.of(surface.data()[i]).x);
+  return 2 * dark_ones > samples ? PreparedItem::Contrast::lighter : PreparedItem::Contrast::darker;
+}
+
 class Preparation {
  public:
   Preparation(PreparedScene& out, Context& context) : out_(out), context_(context) {}
@@ -198,11 +213,12 @@ class Preparation {
     if (s.lic && s.lic->strength > 0) take_texture(*s.lic, p);
     const Array positions = p.triangles.positions;
     const Vec3 origin = p.triangles.origin;
+    const auto contrast = s.edges && !s.edge_color ? contrast_to(p.color) : PreparedItem::Contrast::none;
     if (p.triangles.count > 0) push(std::move(p), p.triangles.count);
     if (!s.edges || !any) return;
     PreparedItem e = start(PreparedItem::Kind::lines, s.data, s.opacity);
     e.color = color_source(s.data, std::nullopt, s.edge_color.value_or(outline_color), "surface");
-    e.contrasts = !s.edge_color;
+    e.contrast = contrast;
     e.width = 1;
     if (const DatasetPtr of = s.edge_lines ? s.edge_lines : s.data; of == s.data) {
       e.segments = derived(of, "edges", [&] { return polygon_edges(*of, mesh); });

@@ -85,11 +85,13 @@ struct PreparedItem {
   float lic_least = 0;  ///< vectors whose largest component is not above this have no direction
   // lines
   std::shared_ptr<const SegmentSet> segments;
-  double width = 1;        ///< pixels; also the points' size
-  bool shaded = false;     ///< points as little spheres, lines by their tangents
-  bool contrasts = false;  ///< lines take the colour of the surface under them, darker or lighter
-  double halo = 0;         ///< pixels
-  Vec3f halo_color;        ///< linear
+  double width = 1;     ///< pixels; also the points' size
+  bool shaded = false;  ///< points as little spheres, lines by their tangents
+  /// Lines in the colour of the surface under them, made darker or lighter; the same all over, as a line that changes in the middle looks
+  /// like two.
+  enum class Contrast { none, darker, lighter } contrast = Contrast::none;
+  double halo = 0;   ///< pixels
+  Vec3f halo_color;  ///< linear
   // lines and points
   std::shared_ptr<const std::vector<uint32_t>> points;  ///< numbers of the dots that are drawn; null (discs only): all
   Array positions;                                      ///< f32 x 3 packed

@@ -8,6 +8,7 @@
 
 #include "base/all_ranks.h"
 #include "base/text/text.h"
+#include "color/css_colors.h"
 #include "color/map_files/colormap_file.h"
 #include "color/parse_color.h"
 #include "data/fields/label_names.h"
@@ -15,7 +16,9 @@
 #include "data/patient/modality.h"
 #include "data/patient/patient_frame.h"
 #include "data/ranks/over_all.h"
+#include "scene/choose/histogram.h"
 #include "scene/choose/shown_range.h"
+#include "scene/choose/telling_field.h"
 
 namespace sg {
 
@@ -74,6 +77,21 @@ void color_by_number(ColorScale& s) {
   for (const double v : s.labels) s.map.colors.push_back(v == 0 ? Vec3f{0.70f, 0.70f, 0.72f} : palette[size_t(v) - 1]);
 }
 
+// What is called red is red: where half of the names are those of colours, these have them.
+void color_by_name(ColorScale& s) {
+  std::vector<const CssColor*> named;
+  for (const std::string& name : s.label_names) {
+    const auto* at =
+        std::find_if(std::begin(css_colors), std::end(css_colors), [&](const CssColor& c) { return c.name == to_lower(name); });
+    named.push_back(at == std::end(css_colors) ? nullptr : at);
+  }
+  const size_t n = named.size(), have = n - size_t(std::count(named.begin(), named.end(), nullptr));
+  if (n == 0 || n != s.labels.size() || 2 * have < n || s.map.colors.empty()) return;
+  const std::vector<Vec3f> palette = s.map.colors;
+  s.map.colors.clear();
+  for (size_t i = 0; i < n; ++i) s.map.colors.push_back(named[i] ? parse_color(named[i]->name, "label") : palette[i % palette.size()]);
+}
+
 // The colours of a map between two of its places.
 Colormap part_of(const Colormap& map, double from, double to) {
   constexpr size_t samples = 257;
@@ -123,10 +141,11 @@ bool names_its_labels(const Dataset& d, const Field& field) {
          std::any_of(d.notes().begin(), d.notes().end(), [&](const auto& note) { return note.first == "labels of " + field.name; });
 }
 
-// What may name things: small integers of one component.
-bool may_be_labels(const Field& field, const Range& r) {
+// What may name things: small integers of one component, or any that number parts.
+bool may_be_labels(const Dataset& d, const Field& field, const Range& r) {
   return holds_whole_numbers(field) && field.components() == 1 && field.role != Role::global_ids && field.role != Role::colors &&
-         !r.empty() && r.lo >= 0 && r.hi - r.lo <= 10000;
+         !r.empty() && r.lo >= 0 &&
+         (r.hi - r.lo <= 10000 || telling(d, field) == Telling::divisions || telling(d, field) == Telling::numbering);
 }
 
 // The point field whose values lie within the limits of every polygon's band: what the bands are of. Null when there is none.
@@ -212,7 +231,7 @@ ColorScale band_scale(const Dataset& d, const Field& band, const ColoringParams&
 bool looks_like_labels(const Dataset& data, const Field& field, const Context& context) {
   if (!holds_whole_numbers(field) || field.components() != 1) return false;  // before anything is read
   const uint64_t count = all_sum(uint64_t(field.array.count()), context.communicator);
-  if (!may_be_labels(field, range_over_all(data, field, -1, context)) || count < 2) return false;
+  if (!may_be_labels(data, field, range_over_all(data, field, -1, context)) || count < 2) return false;
   const auto values = distinct_values(field, most_labels, context);
   if (values.size() > most_labels || values.size() < 2) return false;
   if (std::any_of(values.begin(), values.end(), [](double v) { return v != std::round(v); })) return false;
@@ -235,7 +254,8 @@ Labels labels_of(std::span<const FieldOf> fields, bool categorical, const Contex
   for (const FieldOf& f : fields) {
     const Range r = range_over_all(*f.data, *f.field, -1, context);
     if (r.empty()) continue;
-    if (!categorical && !(may_be_labels(*f.field, r) && (r.lo == r.hi || looks_like_labels(*f.data, *f.field, context)))) return {};
+    if (!categorical && !(may_be_labels(*f.data, *f.field, r) && (r.lo == r.hi || looks_like_labels(*f.data, *f.field, context))))
+      return {};
     const auto values = distinct_values(*f.field, most_legend_labels, context);
     labels.values.insert(labels.values.end(), values.begin(), values.end());
     add_noted_names(*f.data, *f.field, known);
@@ -326,6 +346,9 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
       s.lo = std::max(s.lo, window.lo), s.hi = std::min(s.hi, window.hi);
     } else if (automatic && !labels && ct && window.empty() && s.lo < -1024 && s.hi > -500) {
       s.lo = -1024, s.hi = std::min(s.hi, 2000.0);  // from air to bone; what lies below was never measured
+    } else if (automatic && !labels && !ct && !is_signed && window.empty() && s.lo == r.lo && s.hi == r.hi && is_scanned(data, field)) {
+      s.hi = std::min(s.hi, foreground(field, p.component, r.lo, r.hi, context).hi);  // a few bright vessels must not darken the rest
+      if (s.hi < r.hi) s.above = s.map.at(1);
     }
   }
   const bool chosen = p.range.empty() || !p.range_of.empty();  // not stated by a user
@@ -347,7 +370,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
     if (file) take_categories(*file, field, s, context);
     else s.label_names = found.names;
     if (!s.labels.empty()) s.lo = s.labels.front(), s.hi = std::max(s.labels.back(), s.lo + 1);
-    if (s.map.name == "labels" && !file) color_by_number(s);
+    if (s.map.name == "labels" && !file) color_by_number(s), color_by_name(s);
   }
   if (file) {
     s.below = file->below, s.above = file->above;

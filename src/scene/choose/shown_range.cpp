@@ -107,4 +107,19 @@ void take_shown_range(const ShownRange& shown, const Range& whole, const std::st
                            short_number(whole.lo, 3), short_number(whole.hi, 3), short_number(whole.lo, 4), short_number(whole.hi, 4)));
 }
 
+bool spans_decades(std::span<const FieldOf> fields, const Context& context) {
+  constexpr double few = 0.5, crowded = 0.9, decade = 10;
+  for (const FieldOf& f : fields)
+    if (!is_float(f.field->array.type()) || f.field->components() != 1 || (f.field->role != Role::scalars && f.field->role != Role::none) ||
+        f.field->look.tailed || f.field->look.shows != Shows::any)
+      return false;
+  std::vector<double> v = samples_of(fields, 0, context);
+  const size_t all = v.size();
+  if (std::any_of(v.begin(), v.end(), [](double x) { return x < 0; })) return false;
+  std::erase(v, 0.0);
+  if (v.size() < 200 || double(v.size()) < (1 - few) * double(all)) return false;
+  const double most = *std::max_element(v.begin(), v.end()), high = quantile(v, crowded);
+  return high < 0.1 * most && high > decade * quantile(v, 1 - crowded);
+}
+
 }  // namespace sg

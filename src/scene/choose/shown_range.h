@@ -27,4 +27,9 @@ ShownRange shown_range(std::span<const FieldOf> fields, int component, bool symm
 /// Takes the range; the legend gets a triangle at cut ends, and the log a line.
 void take_shown_range(const ShownRange& shown, const Range& whole, const std::string& name, ColorScale& scale, Context& context);
 
+/// Whether nine of ten values lie in the lowest tenth of a linear scale, and a logarithmic one would tell them apart: positive floats that
+/// spread over more than a decade, zeros, which may be half of all, aside. False for negative values and for fields that know how they are
+/// shown.
+bool spans_decades(std::span<const FieldOf> fields, const Context& context = Context());
+
 }  // namespace sg

@@ -7,6 +7,7 @@
 #include "base/text/text.h"
 #include "color/parse_color.h"
 #include "data/ranks/over_all.h"
+#include "scene/choose/histogram.h"
 #include "scene/choose/volume/look.h"
 
 namespace sg {

@@ -10,6 +10,7 @@
 #include "color/parse_color.h"
 #include "filter/scalar/bands.h"
 #include "scene/choose/chosen_scale.h"
+#include "scene/choose/histogram.h"
 #include "scene/choose/volume/look.h"
 #include "support/test.h"
 

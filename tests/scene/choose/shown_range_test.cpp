@@ -6,6 +6,7 @@
 
 #include "data/fields/known_looks.h"
 #include "scene/choose/chosen_scale.h"
+#include "scene/choose/histogram.h"
 #include "scene/choose/volume/look.h"
 #include "scene/look.h"
 #include "scene/show/glyphs.h"

@@ -181,9 +181,9 @@ void MarkTile::add(const Cover& c, uint32_t group, double joint, std::vector<Cov
 namespace {
 
 // An edge in the colour of what it lies on, but darker, is seen without hiding the field; on dark colours it must be lighter.
-void stand_out(const float* under, float* rgb) {
-  constexpr float dark = 0.1f, shade = 0.25f, lift = 0.1f;  // linear luminance, share that is left, share of white
-  const bool lighter = 0.2126f * under[0] + 0.7152f * under[1] + 0.0722f * under[2] < dark;
+void stand_out(PreparedItem::Contrast contrast, const float* under, float* rgb) {
+  constexpr float shade = 0.25f, lift = 0.1f;  // share that is left, share of white
+  const bool lighter = contrast == PreparedItem::Contrast::lighter;
   for (int k = 0; k < 3; ++k) rgb[k] = lighter ? under[k] + lift * (1 - under[k]) : shade * under[k];
 }
 
@@ -226,7 +226,7 @@ void color_mark(const PreparedItem& item, const std::vector<Lamp>& lights, const
   }
   c.alpha *= rgba.w * item.opacity;
   for (int k = 0; k < 3; ++k) c.rgb[k] = rgba[k] * light + gloss;
-  if (item.contrasts && under[3] >= 1) stand_out(under, c.rgb);
+  if (item.contrast != PreparedItem::Contrast::none && under[3] >= 1) stand_out(item.contrast, under, c.rgb);
 }
 
 }  // namespace sg::raster

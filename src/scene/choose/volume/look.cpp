@@ -3,38 +3,16 @@
 
 #include <fmt/core.h>
 
-#include "base/all_ranks.h"
 #include "base/text/text.h"
-#include "data/field_ops.h"
 #include "data/lattice.h"
 #include "data/patient/modality.h"
 #include "data/patient/patient_frame.h"
 #include "data/ranks/over_all.h"
+#include "scene/choose/histogram.h"
 #include "scene/choose/scale.h"
 #include "scene/choose/shown_range.h"
 
 namespace sg {
-
-std::vector<size_t> histogram(const Field& field, int component, double lo, double hi, size_t bins, const Context& context) {
-  std::vector<size_t> h(bins);
-  if (!(lo < hi)) return h;
-  const double scale = double(bins) / (hi - lo);
-  const size_t step = std::max<size_t>(1, field.array.count() / 2000000);
-  const bool magnitude = component < 0 && field.components() > 1;
-  dispatch(field.array, [&](auto v) {
-    for (size_t i = 0; i < v.count; i += step) {
-      double x = double(v(i, std::max(component, 0)));
-      if (magnitude) {
-        x = 0;
-        for (int c = 0; c < v.components; ++c) x += double(v(i, c)) * double(v(i, c));
-        x = std::sqrt(x);
-      }
-      if (x >= lo && x <= hi) ++h[std::min(bins - 1, size_t((x - lo) * scale))];
-    }
-  });
-  all_sum(std::span<size_t>(h), context.communicator);
-  return h;
-}
 
 bool looks_like_ct(const Dataset& data, const Field& field, double* offset, const Context& context) {
   const ElementType t = field.array.type();
@@ -61,31 +39,6 @@ bool looks_like_ct(const Dataset& data, const Field& field, double* offset, cons
 
 namespace {
 
-// Value below which the share q of the histogram's samples lies.
-double quantile(const std::vector<size_t>& h, double lo, double hi, double q) {
-  size_t all = 0;
-  for (size_t n : h) all += n;
-  double sum = 0;
-  for (size_t b = 0; b < h.size(); ++b) {
-    sum += double(h[b]);
-    if (sum >= q * double(all)) return lo + (double(b) + 1) / double(h.size()) * (hi - lo);
-  }
-  return hi;
-}
-
-// The fullest bin of the stretch of a twentieth of the range that holds most samples: a spike of one value (saturation, letters burnt in)
-// is less than the spread of a background.
-size_t fullest(const std::vector<size_t>& h) {
-  const size_t n = h.size(), width = std::max<size_t>(1, n / 20);
-  size_t sum = 0, most = 0, begin = 0;
-  for (size_t b = 0; b < n; ++b) {
-    sum += h[b];
-    if (b >= width) sum -= h[b - width];
-    if (sum > most) most = sum, begin = b + 1 >= width ? b + 1 - width : 0;
-  }
-  return size_t(std::max_element(h.begin() + ptrdiff_t(begin), h.begin() + ptrdiff_t(std::min(n, begin + width))) - h.begin());
-}
-
 // Fields of which it is known what matters in them: crests, troughs or strands. "" when it is not.
 std::string known_look(const Dataset& data, const Field& field, const Range& r, int component, VolumeItem& item, const Context& context) {
   using Shows = FieldLook::Shows;
@@ -105,7 +58,7 @@ std::string known_look(const Dataset& data, const Field& field, const Range& r, 
   }
   const bool low = shows == Shows::low;
   // From what most of the volume holds to the end that matters; zero and what lies beyond it is no crest.
-  const double end = low ? r.lo : r.hi, most = quantile(h, r.lo, r.hi, low ? 0.25 : 0.75);
+  const double end = low ? r.lo : r.hi, most = histogram_quantile(h, r.lo, r.hi, low ? 0.25 : 0.75);
   double start = most;
   if (r.lo < 0 && r.hi > 0 && two_sided(field, r)) start = low ? std::min(most, 0.0) : std::max(most, 0.0);
   start += 0.06 * (end - start);
@@ -158,20 +111,6 @@ void scan_look(const Dataset& data, const Field& field, int component, const Ran
 
 }  // namespace
 
-Range foreground(const Field& field, int component, double lo, double hi, const Context& context) {
-  auto h = histogram(field, component, lo, hi, 1024, context);
-  const double width = hi - lo;
-  const size_t peak = fullest(h);
-  Range r{lo, hi};
-  if (peak < h.size() / 2) {
-    const size_t end = std::min(h.size() - 1, peak + 1 + h.size() / 50);
-    r.lo = lo + double(end) / double(h.size()) * width;
-    std::fill(h.begin(), h.begin() + ptrdiff_t(end), size_t(0));
-  }
-  r.hi = std::max(quantile(h, lo, hi, 0.999), r.lo + 0.01 * width);
-  return r;
-}
-
 std::string choose_volume_look(const Dataset& data, const Field& field, const ColoringParams& params, VolumeItem& item, bool anatomy,
                                const Context& context) {
   const Range r{item.color.lo, item.color.hi};
@@ -208,17 +147,17 @@ std::string choose_volume_look(const Dataset& data, const Field& field, const Co
   }
   // What most samples have about is taken for the background; opacity follows the quantiles away from it.
   const auto h = histogram(field, params.component, r.lo, r.hi, 256, context);
-  const size_t peak = fullest(h);
+  const size_t peak = fullest_bin(h);
   if (peak > h.size() / 2) {  // bright background: see the low values
-    const double q50 = quantile(h, r.lo, r.hi, 0.5), q10 = quantile(h, r.lo, r.hi, 0.1);
+    const double q50 = histogram_quantile(h, r.lo, r.hi, 0.5), q10 = histogram_quantile(h, r.lo, r.hi, 0.1);
     item.opacity.points = {{r.lo, 0.5}, {std::min(q10, 0.5 * (r.lo + q50)), 0.10}, {q50, 0}, {r.hi, 0}};
     std::sort(item.opacity.points.begin(), item.opacity.points.end(), [](Vec2 a, Vec2 b) { return a.x < b.x; });
     return "the background is bright: low values are shown";
   }
   const double width = r.hi - r.lo, peak_value = r.lo + (double(peak) + 1) / double(h.size()) * width;
   // Where the foreground begins: past the background peak, and past what most of the volume holds.
-  const double start = std::max(peak_value + 0.02 * width, std::min(quantile(h, r.lo, r.hi, 0.6), r.lo + 0.35 * width));
-  const double middle = std::max(start + 0.15 * width, quantile(h, r.lo, r.hi, 0.95));
+  const double start = std::max(peak_value + 0.02 * width, std::min(histogram_quantile(h, r.lo, r.hi, 0.6), r.lo + 0.35 * width));
+  const double middle = std::max(start + 0.15 * width, histogram_quantile(h, r.lo, r.hi, 0.95));
   item.opacity.points = {{r.lo, 0}, {start, 0}, {std::min(middle, 0.5 * (start + r.hi)), 0.12}, {r.hi, 0.7}};
   return fmt::format("values above {} are shown, the background below is left out", short_number(start, 3));
 }

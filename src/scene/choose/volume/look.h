@@ -11,16 +11,9 @@ namespace sg {
 
 // With a communicator in the context all pieces of a volume on other ranks count too, and each rank calls with its own.
 
-/// Bins over [lo, hi] of one component (magnitude for -1 of several); finite values only. Large fields are sampled evenly.
-std::vector<size_t> histogram(const Field& field, int component, double lo, double hi, size_t bins, const Context& context = Context());
-
 /// CT of a body: 16-bit integers with an air peak at the low end and a range of soft tissue and bone. `offset`: what to add
 /// to Hounsfield units to get values (0 or 1024).
 bool looks_like_ct(const Dataset& data, const Field& field, double* offset, const Context& context = Context());
-
-/// From the end of the background (the most frequent low value and its surroundings) to what one value in a thousand of the others exceeds.
-/// Never empty when lo < hi.
-Range foreground(const Field& field, int component, double lo, double hi, const Context& context = Context());
 
 /// Fills item.opacity (and item.color for CT when map is auto, unless `anatomy` is false); returns one line that says what was chosen and
 /// why.

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/choose/histogram.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/all_ranks.h"
+#include "data/field_ops.h"
+
+namespace sg {
+
+std::vector<size_t> histogram(const Field& field, int component, double lo, double hi, size_t bins, const Context& context) {
+  std::vector<size_t> h(bins);
+  if (!(lo < hi)) return h;
+  const double scale = double(bins) / (hi - lo);
+  const size_t step = std::max<size_t>(1, field.array.count() / 2000000);
+  const bool magnitude = component < 0 && field.components() > 1;
+  dispatch(field.array, [&](auto v) {
+    for (size_t i = 0; i < v.count; i += step) {
+      double x = double(v(i, std::max(component, 0)));
+      if (magnitude) {
+        x = 0;
+        for (int c = 0; c < v.components; ++c) x += double(v(i, c)) * double(v(i, c));
+        x = std::sqrt(x);
+      }
+      if (x >= lo && x <= hi) ++h[std::min(bins - 1, size_t((x - lo) * scale))];
+    }
+  });
+  all_sum(std::span<size_t>(h), context.communicator);
+  return h;
+}
+
+double histogram_quantile(const std::vector<size_t>& h, double lo, double hi, double q) {
+  size_t all = 0;
+  for (size_t n : h) all += n;
+  double sum = 0;
+  for (size_t b = 0; b < h.size(); ++b) {
+    sum += double(h[b]);
+    if (sum >= q * double(all)) return lo + (double(b) + 1) / double(h.size()) * (hi - lo);
+  }
+  return hi;
+}
+
+size_t fullest_bin(const std::vector<size_t>& h) {
+  const size_t n = h.size(), width = std::max<size_t>(1, n / 20);
+  size_t sum = 0, most = 0, begin = 0;
+  for (size_t b = 0; b < n; ++b) {
+    sum += h[b];
+    if (b >= width) sum -= h[b - width];
+    if (sum > most) most = sum, begin = b + 1 >= width ? b + 1 - width : 0;
+  }
+  return size_t(std::max_element(h.begin() + ptrdiff_t(begin), h.begin() + ptrdiff_t(std::min(n, begin + width))) - h.begin());
+}
+
+Range foreground(const Field& field, int component, double lo, double hi, const Context& context) {
+  auto h = histogram(field, component, lo, hi, 1024, context);
+  const double width = hi - lo;
+  const size_t peak = fullest_bin(h);
+  Range r{lo, hi};
+  if (peak < h.size() / 2) {
+    const size_t end = std::min(h.size() - 1, peak + 1 + h.size() / 50);
+    r.lo = lo + double(end) / double(h.size()) * width;
+    std::fill(h.begin(), h.begin() + ptrdiff_t(end), size_t(0));
+  }
+  r.hi = std::max(histogram_quantile(h, lo, hi, 0.999), r.lo + 0.01 * width);
+  return r;
+}
+
+}  // namespace sg
