@@ -46,7 +46,11 @@ struct Image::Held {
   sg::PipelineFile file;  ///< completed with what was chosen
   std::vector<std::string> notes;
   sg::Seen seen = {};
+  std::vector<Legend> legends = {};
 };
+
+/// Of those of a picture, what the library tells.
+std::vector<Legend> told_legends(const std::vector<sg::Legend>& legends);
 
 /// What leaves the library is sightglass::Error, or what the program itself has thrown.
 template <class F>

@@ -115,8 +115,8 @@ Image Scene::render(int width, int height, const Context& context) const {
     // What is shown is at hand, so nothing above it runs.
     for (const auto& step : file.steps) options.results.try_emplace(step.name, sg::DatasetPtr());
     sg::Picture picture = sg::make_picture(file, options, context.state().core);
-    return Image(std::make_shared<const Image::Held>(
-        Image::Held{std::move(picture.image), std::move(file), std::move(picture.notes), std::move(picture.seen)}));
+    return Image(std::make_shared<const Image::Held>(Image::Held{std::move(picture.image), std::move(file), std::move(picture.notes),
+                                                                 std::move(picture.seen), told_legends(picture.legends)}));
   });
 }
 
@@ -127,6 +127,7 @@ int Image::channels() const { return held_->image.channels; }
 std::span<const uint8_t> Image::pixels() const { return held_->image.pixels; }
 std::span<const float> Image::depth() const { return {held_->seen.depth.data(), held_->seen.depth.size()}; }
 std::span<const uint32_t> Image::ids() const { return {held_->seen.show.data(), held_->seen.show.size()}; }
+const std::vector<Legend>& Image::legends() const { return held_->legends; }
 const std::vector<std::string>& Image::notes() const { return held_->notes; }
 
 std::string Image::recipe() const {

@@ -371,6 +371,21 @@ SIGHTGLASS_API Data collection(const std::vector<std::pair<std::string, Data>>& 
 /// The data at hand are those of the first step. `times` ascend.
 SIGHTGLASS_API Data series(std::vector<double> times, std::function<Data(size_t step)> load, const Context& context = {});
 
+/// What a legend of a picture says.
+struct Legend {
+  struct Entry {
+    double value;
+    std::string name;              ///< "" where only the number is known
+    std::array<uint8_t, 3> color;  ///< sRGB
+  };
+  std::string title, unit;
+  std::string scale;  ///< how values are mapped to colours: "linear", "log" or "symlog"
+  double low = 0, high = 1;
+  std::vector<std::array<uint8_t, 3>> colors;      ///< sRGB, 256 evenly along the bar from `low` to `high`; none where there are entries
+  std::vector<Entry> entries;                      ///< of labels and bands
+  std::vector<std::pair<double, double>> opacity;  ///< of volumes: values and opacities, linear in between
+};
+
 /// Pixels: 8 bits, sRGB, rows from the top, tightly packed.
 class SIGHTGLASS_API Image {
  public:
@@ -383,6 +398,8 @@ class SIGHTGLASS_API Image {
   std::span<const float> depth() const;
   /// Which of what was shown is seen: 1 is that of the first show(), 0 nothing, legends or axes. Empty for the pictures of a film.
   std::span<const uint32_t> ids() const;
+  /// What the legends say, each once. Empty without legends and for the pictures of a film.
+  const std::vector<Legend>& legends() const;
   /// What was chosen and why, one line each.
   const std::vector<std::string>& notes() const;
   /// The pipeline that makes this picture again (`sightglass run`, `sightglass open`), as YAML. Numbers from memory are not in it: there it

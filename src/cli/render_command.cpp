@@ -27,6 +27,7 @@
 #include "pipeline/film/film.h"
 #include "pipeline/graph/slabs.h"
 #include "pipeline/picture/picture.h"
+#include "pipeline/picture/picture_sets.h"
 
 namespace sg {
 
@@ -295,7 +296,13 @@ int run_convert(const Options& o, Context& context) {
   if (format.write == write_zarr && o.filters.empty() && o.read.pieces == 1) return convert_slabs(file, o, write, context);
   const PipelineGraph built = build_graph(file);
   check_memory(built, o);
-  const Data data = built.graph.evaluate(built.last, {}, context);
+  Data data = built.graph.evaluate(built.last, {}, context);
+  if (!(format.honours & writes_parts)) {
+    std::string last = file.steps.back().name;
+    std::vector<std::string> notes;
+    leave_out_sets(file, last, data, {}, notes, context);
+    for (const std::string& note : notes) context.info(note);
+  }
   write_data(o.output, in_pieces(data, write.pieces, context), write, context);
   if (!o.quiet)
     for_each_dataset(data, [&](const std::string& part, const DatasetPtr& d) {

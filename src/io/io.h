@@ -93,8 +93,9 @@ Series open_series(const std::string& path, const ReadOptions& options, Context&
 size_t chosen_step(const std::vector<double>& times, const ReadOptions& options, const std::string& path, size_t otherwise = 0);
 
 /// What a reader does itself; the rest is done behind it, on all that it read.
-/// `may_be_empty`: an empty file is right, because it only marks its folder. `names_others`: a file refers to further files.
-enum Honours : unsigned { honours_region = 1, honours_pieces = 2, may_be_empty = 4, names_others = 8 };
+/// `writes_parts`: collections, too. `may_be_empty`: an empty file is right, because it only marks its folder. `names_others`: a file
+/// refers to further files.
+enum Honours : unsigned { honours_region = 1, honours_pieces = 2, may_be_empty = 4, names_others = 8, writes_parts = 32 };
 
 /// One format: what it is called, how to know it, how to read and write it. The table is in formats.def.
 struct Format {

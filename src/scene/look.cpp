@@ -3,14 +3,18 @@
 
 #include <fmt/core.h>
 
+#include <numeric>
+
 #include "base/text/text.h"
 #include "data/cells/mesh_dimension.h"
 #include "data/cells/plane_normal.h"
 #include "data/lattice.h"
 #include "data/patient/modality.h"
 #include "data/patient/patient_frame.h"
+#include "filter/mesh/surface.h"
 #include "filter/tensor/tensor_field.h"
 #include "io/y_up.h"
+#include "scene/choose/histogram.h"
 #include "scene/choose/open_side.h"
 #include "scene/choose/scale.h"
 #include "scene/choose/seen_outside.h"
@@ -101,7 +105,11 @@ bool has_polygons(const Dataset& d) {
 bool look_at_scan(const Dataset& d, const Field& f, Look& look) {
   double offset = 0;
   const Range r = d.range(f);
+  constexpr double cut_out = 0.7;
   if (!is_scanned(d, f) || r.empty() || two_sided(f, r) || modality_of(d, f) == Modality::ct || looks_like_ct(d, f, &offset)) return false;
+  // What was cut out of its surroundings has a surface to be seen: a brain without its skull, vessels alone.
+  const std::vector<size_t> bins = histogram(f, -1, r.lo, r.hi, 1024);
+  if (double(bins.front()) > cut_out * double(std::accumulate(bins.begin(), bins.end(), size_t(0)))) return false;
   look.filter = {"slice", "planes=xyz"};
   SurfaceShow slices;
   slices.coloring.field.name = f.name;
@@ -111,16 +119,27 @@ bool look_at_scan(const Dataset& d, const Field& f, Look& look) {
   return true;
 }
 
-// So few cells that each can be told from the next: a body with their edges, as there is nothing between them to see through.
-bool look_at_few_cells(const Dataset& d, const Field& f, Look& look) {
+// Whether all values are about equally frequent, as those of a ramp: none is what others stand before.
+bool has_no_background(const Dataset& d, const Field& f) {
+  constexpr double even = 1.6;  // times as many as a twentieth of the range has on average
+  const Range r = d.range(f);
+  const auto bins = histogram(f, -1, r.lo, r.hi, 20);
+  const size_t all = std::accumulate(bins.begin(), bins.end(), size_t(0));
+  return double(*std::max_element(bins.begin(), bins.end())) < even * double(all) / double(bins.size());
+}
+
+// So few cells that each can be told from the next, or values that hide nothing: a body, as there is nothing to see through.
+bool look_at_body(const Dataset& d, const Field& f, Look& look) {
   constexpr size_t few = 10;  // along each axis
   const auto dims = lattice_dims(d.mesh());
-  if (*std::max_element(dims.begin(), dims.end()) > few + 1 || in_patient_frame(d) || f.look.shows != FieldLook::Shows::any) return false;
+  const bool few_cells = *std::max_element(dims.begin(), dims.end()) <= few + 1;
+  if (in_patient_frame(d) || f.look.shows != FieldLook::Shows::any || !(few_cells || has_no_background(d, f))) return false;
   SurfaceShow surface;
-  surface.edges = true;
+  surface.edges = few_cells;
   surface.coloring.field.name = f.name;
   add_show(look, surface, true);
-  look.reason = fmt::format("'{}' on a grid of few cells: its outer surface with cell edges; --show volume sees through it", f.name);
+  look.reason = fmt::format("'{}' on a grid{}: its outer surface{}; --show volume sees through it", f.name,
+                            few_cells ? " of few cells" : ", all values alike frequent", few_cells ? " with cell edges" : "");
   return true;
 }
 
@@ -136,7 +155,7 @@ void look_at_grid(const Dataset& d, const Field& f, Look& look) {
         fmt::format("'{}' has few integer values in connected regions: taken as labels, shown as surfaces with one colour each", f.name);
     return;
   }
-  if ((d.as<UniformGrid>() && look_at_scan(d, f, look)) || look_at_few_cells(d, f, look)) return;
+  if ((d.as<UniformGrid>() && look_at_scan(d, f, look)) || look_at_body(d, f, look)) return;
   VolumeShow volume;
   volume.coloring.field.name = f.name;
   if (f.look.shows == FieldLook::Shows::fibres)
@@ -301,12 +320,17 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
   return look;
 }
 
-void face_detail(Look& look, std::span<const DatasetPtr> parts, const std::string& extension) {
+void face_detail(Look& look, std::span<const DatasetPtr> parts, const std::string& extension, Context& context) {
+  constexpr size_t few_cells = 1000;
   if (look.camera.parallel || !look.filter.empty()) return;
+  std::vector<DatasetPtr> outer;
   std::vector<const SurfaceMesh*> surfaces;
   for (const DatasetPtr& d : parts) {
-    const auto* mesh = d->as<SurfaceMesh>();
-    if (!mesh || in_patient_frame(*d) || (!y_points_up(extension) && automatic_field(*d))) return;
+    if (in_patient_frame(*d) || (!y_points_up(extension) && automatic_field(*d))) return;
+    const bool few_solids = !is_lattice(d->mesh()) && mesh_dimension(*d) == 3 && d->cell_count() <= few_cells;
+    outer.push_back(few_solids ? surface_of(d, context) : d);
+    const auto* mesh = outer.back()->as<SurfaceMesh>();
+    if (!mesh) return;
     surfaces.push_back(mesh);
   }
   look.camera.direction = telling_direction(surfaces, look.camera.direction, look.camera.up);

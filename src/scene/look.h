@@ -29,8 +29,8 @@ struct Look {
 /// `field`: what the user wants to see; "" = the data decides. `extension`: of the file the data came from ("obj"); surfaces
 /// made for graphics have y up.
 Look choose_look(const Dataset& data, const std::string& field, const std::string& extension);
-/// Turns the view of surfaces made for graphics, and of others without a field, to the side that shows most of them.
-void face_detail(Look& look, std::span<const DatasetPtr> parts, const std::string& extension);
+/// Turns the view of surfaces made for graphics, and of others and of few solid cells without a field, to the side that shows most of them.
+void face_detail(Look& look, std::span<const DatasetPtr> parts, const std::string& extension, Context& context);
 /// A solid whose outer surface tells nothing of what it is coloured by is cut open along the middle, with the half away from the viewer
 /// kept.
 void cut_open(Look& look, const DatasetPtr& data, const std::string& field, Context& context);

@@ -165,3 +165,19 @@ TEST_CASE("library: help of an operation is that of the program") {
   CHECK(contains(help(), "streamlines"));
   CHECK(contains(refused([] { help("nosuch"); }), "unknown operation"));
 }
+
+TEST_CASE("library: legends of a picture are told as numbers") {
+  const Data grid = ball(12);
+  const std::vector<Legend> volume =
+      Scene().show(grid, "volume", {{"range", {-1.0, 2.0}}, {"map", "gray"}, {"opacity", "0:0,1:0.5"}}).render(64, 48).legends();
+  REQUIRE(volume.size() == 1);
+  CHECK(volume[0].low == -1);
+  CHECK(volume[0].high == 2);
+  CHECK(volume[0].scale == "linear");
+  REQUIRE(volume[0].colors.size() == 256);
+  CHECK(volume[0].colors.front() == std::array<uint8_t, 3>{0, 0, 0});
+  CHECK(volume[0].colors.back() == std::array<uint8_t, 3>{255, 255, 255});
+  CHECK(volume[0].entries.empty());
+  CHECK(volume[0].opacity == std::vector<std::pair<double, double>>{{-1, 0}, {2, 0.5}});
+  CHECK(Scene().show(grid, "volume", {{"legend", false}}).render(64, 48).legends().empty());
+}

@@ -65,3 +65,26 @@ TEST_CASE("colour maps of files: in a picture, its recipe, and the listing") {
   CHECK(bad.status != 0);
   CHECK(contains(bad.err, "none.cpt"));
 }
+
+TEST_CASE("convert: sets of sides are left out, with a word, where one mesh is to be written, and kept where parts are") {
+  const std::string f = fresh_folder("sets");
+  for (const auto& [name, size] : {std::pair("block", "3"), std::pair("set", "2")})
+    REQUIRE(sightglass({"convert", "-s", std::string("gyroid size=") + size, "-o", std::string(name) + ".vti", "-q"}, f).status == 0);
+  const auto group = [](const std::string& name, const std::string& file) {
+    return "<Block name=\"" + name + "\"><DataSet name=\"one\" file=\"" + file + "\"/></Block>";
+  };
+  write_file(f + "both.vtm", "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet>" +
+                                 group("Element Blocks", "block.vti") + group("Side Sets", "set.vti") +
+                                 "</vtkMultiBlockDataSet></VTKFile>");
+  const auto line = sightglass({"convert", "both.vtm", "-f", "probe_at from=-1,0,0 to=1,0,0 count=5", "-o", "line.csv"}, f);
+  INFO(line.err);
+  CHECK(line.status == 0);
+  CHECK(contains(line.err, "sets of sides and nodes"));
+  const auto one = sightglass({"convert", "both.vtm", "-o", "one.vti"}, f);
+  CHECK(one.status == 0);
+  CHECK(contains(sightglass({"info", "one.vti"}, f).out, "27 points"));
+  const auto parts = sightglass({"convert", "both.vtm", "-o", "all.vtm"}, f);
+  CHECK(parts.status == 0);
+  CHECK_FALSE(contains(parts.err, "sets of sides"));
+  CHECK(contains(sightglass({"info", "all.vtm"}, f).out, "8 points"));
+}

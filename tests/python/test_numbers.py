@@ -133,3 +133,15 @@ def test_lengths_have_to_fit(volume):
     with pytest.raises(sg.UsageError, match="there are 120 points and 60 cells"):
         ds.with_field("x", np.zeros(7))
     assert sg.uniform(volume).with_field("c", np.zeros(60)).on("c") == "cells"
+
+
+def test_several_fields_at_once():
+    grid = sg.uniform(np.zeros((3, 4, 5), np.float32), name="zero")
+    a, b = np.arange(60.0), np.arange(24, dtype=np.float32)
+    ds = grid.with_fields({"a": (a, "K"), "b": b, "ab": np.stack([a, a], 1)})
+    assert list(ds.keys()) == ["zero", "a", "b", "ab"]
+    assert ds.unit("a") == "K" and ds.unit("b") == "" and ds.on("a") == "points" and ds.on("b") == "cells"
+    assert np.shares_memory(ds["a"], a) and np.shares_memory(ds["zero"], grid["zero"])
+    assert list(grid.keys()) == ["zero"]
+    with pytest.raises(sg.UsageError, match="7 values"):
+        grid.with_fields({"ok": a, "short": np.zeros(7)})

@@ -85,3 +85,20 @@ def test_depth_and_what_is_seen(volume):
     above = sg.scene().add(flat, "surface").camera(view="top", projection="parallel").picture(axes=False).render((80, 60))
     on = above.ids == 1
     assert on.sum() > 500 and np.ptp(above.depth[on]) < 1e-4 * above.depth[on].max()
+
+
+def test_legends_say_what_is_drawn(volume):
+    ds = sg.uniform(volume, name="T", unit="K")
+    legend, = ds.plot(size=(80, 60)).legend
+    assert (legend.title, legend.unit, legend.scale) == ("T", "K", "linear")
+    assert legend.colors.shape == (256, 3) and legend.colors.dtype == np.uint8 and legend.entries == []
+    assert legend.opacity.shape[1] == 2 and (np.diff(legend.opacity[:, 0]) >= 0).all()
+    cut = ds.slice(axis="z")
+    said, = sg.scene().add(cut, "surface", range=[1, 100], scale="log", map="gray").render((80, 60)).legend
+    assert said.range == (1, 100) and said.scale == "log" and said.opacity.shape == (0, 2)
+    assert tuple(said.colors[0]) < tuple(said.colors[-1])
+    assert sg.scene().add(cut, "surface", legend=False).render((80, 60)).legend == []
+    parts = np.repeat(np.array([0, 3, 7], np.uint8), 9 * 3).reshape(3, 9, 3)
+    named, = sg.uniform(parts, name="part").slice(axis="y").plot(size=(80, 60)).legend
+    assert [e.value for e in named.entries] == [0, 3, 7] and named.colors.shape == (0, 3)
+    assert len({e.color for e in named.entries}) == 3

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/text/text.h"
+#include "data/patient/patient_frame.h"
 
 namespace sg {
 
@@ -49,6 +50,12 @@ void note_axis(std::vector<std::pair<std::string, std::string>>& notes, int axis
   if (!note.positive.empty()) text.append(positive_words).append(note.positive);
   if (note.in_degrees()) text += flat;
   notes.emplace_back(note_name(axis), text);
+}
+
+std::string length_unit(const Dataset& data) {
+  for (const auto& [key, text] : data.notes())
+    if (key == "length unit") return text;
+  return in_patient_frame(data) ? "mm" : "";
 }
 
 std::optional<AxisNote> axis_note(const Dataset& data, int axis) {

@@ -23,6 +23,9 @@ struct AxisNote {
 /// Adds the note of an axis (0 to 2): "depth, m, positive down".
 void note_axis(std::vector<std::pair<std::string, std::string>>& notes, int axis, const AxisNote& note);
 
+/// The unit of all three axes: the note "length unit", or that of the patient frame, mm. "" where none is known.
+std::string length_unit(const Dataset& data);
+
 /// What the note of an axis says; nothing where there is none.
 std::optional<AxisNote> axis_note(const Dataset& data, int axis);
 

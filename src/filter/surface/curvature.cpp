@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "data/fields/axis_notes.h"
 #include "data/fields/known_looks.h"
 #include "filter/surface/polygons.h"
 
@@ -124,7 +125,12 @@ DatasetPtr curvature(const DatasetPtr& in, const CurvatureParams& p, Context& ct
     for (auto* v : {&gaussian, &mean}) average_inside(*v, edges, place, sums);
   fill_border(gaussian, edges, place);
   fill_border(mean, edges, place);
-  auto add = [&](const char* name, std::vector<double> v, const char* unit = "") {
+  if (const auto none = std::count(place.begin(), place.end(), uint8_t(beyond)))
+    ctx.info(fmt::format("curvature: {} of {} points have none (NaN): more than two triangles meet in an edge there, or they have no area",
+                         none, n));
+  const std::string of_axes = length_unit(*in);
+  const auto per_length = [&](const char* power) { return of_axes.empty() ? "" : "1/" + of_axes + power; };
+  auto add = [&](const char* name, std::vector<double> v, const std::string& unit) {
     out.fields.add({name, Association::point, Array::from_vector(std::move(v)), unit, Role::none, known_look(name)});
   };
   if (p.principal) {
@@ -133,11 +139,11 @@ DatasetPtr curvature(const DatasetPtr& in, const CurvatureParams& p, Context& ct
       const double apart = std::sqrt(std::max(mean[i] * mean[i] - gaussian[i], 0.0));  // umbilic up to rounding: 0
       largest[i] = mean[i] + apart, smallest[i] = mean[i] - apart;
     }
-    add("largest curvature", std::move(largest));
-    add("smallest curvature", std::move(smallest));
+    add("largest curvature", std::move(largest), per_length(""));
+    add("smallest curvature", std::move(smallest), per_length(""));
   }
-  if (p.gaussian) add("Gaussian curvature", std::move(gaussian));
-  if (p.mean) add("mean curvature", std::move(mean));
+  if (p.gaussian) add("Gaussian curvature", std::move(gaussian), per_length("^2"));
+  if (p.mean) add("mean curvature", std::move(mean), per_length(""));
   if (p.angle_defect) add("angle defect", std::move(defect), "rad");
   mark_result(out.fields, "mean curvature", Association::point);
   out.mesh = std::move(mesh);

@@ -255,6 +255,7 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
     if (look.shows.empty()) look.camera = choose_view(shown[0].box, extension_of(origin_of(file, first)), shown[0].patient);
     face_cut(file, first, look.camera);
   }
+  picture.legends = shown[0].legends;
   for (Shown& s : shown) s.box = with_room(s.box);  // after the choice of a view, which tells by the box what is flat
   if (!in_panels(stated.picture)) {
     const Panel panel = panel_of(shown[0], look, stated, stated.camera);

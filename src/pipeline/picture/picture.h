@@ -10,6 +10,7 @@
 
 #include "base/context.h"
 #include "base/schema/schema.h"
+#include "color/legend_content.h"
 #include "image/image.h"
 #include "pipeline/file/pipeline_file.h"
 
@@ -72,6 +73,7 @@ struct Seen {
 struct Picture {
   Image image;
   Seen seen;
+  std::vector<Legend> legends;       ///< each once, as drawn
   std::vector<std::string> notes;    ///< what was chosen and why, one line each
   std::vector<PictureDraft> drafts;  ///< with on_draft: of each that was made, this one last
 };

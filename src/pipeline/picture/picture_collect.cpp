@@ -23,10 +23,8 @@ void take_axis_titles(const std::vector<DatasetPtr>& data, const PictureParams& 
   for (const DatasetPtr& d : data) {
     for (int a = 0; a < 3; ++a)
       if (const auto note = axis_note(*d, a); note && s.axis_titles[a].empty()) s.axis_titles[a] = note->title();
-    for (const auto& [key, text] : d->notes())
-      if (key == "length unit" && s.length_unit.empty()) s.length_unit = text;
+    if (s.length_unit.empty()) s.length_unit = length_unit(*d);
   }
-  if (s.length_unit.empty() && s.patient) s.length_unit = "mm";
 }
 
 }  // namespace

@@ -122,7 +122,7 @@ Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file,
   // What is seen of a volume was told for the scale that is chosen.
   if (states_scale(wanted))
     if (const size_t at = look.reason.find("shown as a volume;"); at != look.reason.npos) look.reason.resize(look.reason.find(';', at));
-  face_detail(look, parts, extension_of(origin));
+  face_detail(look, parts, extension_of(origin), context);
   cut_open(look, largest, field, context);
   if (takes_decades(data, field, look, context) && !states_scale(wanted) && !word_value(wanted.words, "map")) {
     coloring.push_back("scale=log");

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pipeline/picture/picture.h"
+#include "pipeline/picture/picture_sets.h"
 #include "render/annotate/annotate.h"
 #include "scene/camera_params.h"
 #include "scene/look.h"
@@ -84,12 +85,7 @@ struct StatedShow {
 
 /// Puts a filter at the end of the steps, under a name that is free; returns that.
 std::string added_step(PipelineFile& file, const std::string& operation, std::vector<std::string> words, const std::string& from);
-/// Of data in blocks with sets of sides and nodes the blocks alone, unless parts were chosen by name on the way to `step` or one of
-/// `fields` is in none of the blocks: `data` and `step` become those after a step that extracts them (in `file`), and a note tells of it.
-/// False where nothing changes.
-bool leave_out_sets(PipelineFile& file, std::string& step, Data& data, const std::vector<std::string>& fields,
-                    std::vector<std::string>& notes, Context& context);
-/// The same for all that is shown; `results` are those of the shows.
+/// leave_out_sets() of picture_sets.h for all that is shown; `results` are those of the shows.
 void leave_out_sets(PipelineFile& file, const std::vector<StatedShow>& shows, std::vector<Data>& results, std::vector<std::string>& notes,
                     Context& context);
 

@@ -69,7 +69,7 @@ bool leave_out_sets(PipelineFile& file, std::string& step, Data& data, const std
   const auto made =
       std::find_if(file.steps.begin(), file.steps.end(), [&](const auto& s) { return extracts(s) && s.words == words && s.from == from; });
   step = made != file.steps.end() ? made->name : added_step(file, "extract", words, step);
-  const char* said = "sets of sides and nodes lie upon the blocks and are left out: -f 'extract blocks=\"Side Sets\"' shows them";
+  const char* said = "sets of sides and nodes lie upon the blocks and are left out: -f 'extract blocks=\"Side Sets\"' takes them";
   if (std::find(notes.begin(), notes.end(), said) == notes.end()) notes.emplace_back(said);
   return true;
 }

@@ -2,6 +2,8 @@
 // Scenes and what is drawn of them.
 #include <pybind11/stl.h>
 
+#include <cstring>
+
 #include "python/core/calls.h"
 #include "python/core/module.h"
 #include "python/core/numbers.h"
@@ -34,6 +36,22 @@ py::array plane_of(const Image& image, std::span<const T> (Image::*plane)() cons
   return r;
 }
 
+template <size_t N>
+py::array_t<uint8_t> colors_of(const std::vector<std::array<uint8_t, N>>& colors) {
+  py::array_t<uint8_t> r({py::ssize_t(colors.size()), py::ssize_t(N)});
+  if (!colors.empty()) std::memcpy(r.mutable_data(), colors.data(), N * colors.size());
+  return r;
+}
+
+// Title, unit, scale, low, high, colours, entries (value, name, colour), opacity.
+py::tuple legend_of(const Legend& l) {
+  py::list entries, opacity;
+  for (const Legend::Entry& e : l.entries)
+    entries.append(py::make_tuple(e.value, e.name, py::make_tuple(e.color[0], e.color[1], e.color[2])));
+  for (const auto& [value, share] : l.opacity) opacity.append(py::make_tuple(value, share));
+  return py::make_tuple(l.title, l.unit, l.scale, l.low, l.high, colors_of(l.colors), entries, opacity);
+}
+
 void declare_image(py::module_& m) {
   py::class_<Image>(m, "Image")
       .def_property_readonly("width", &Image::width)
@@ -41,6 +59,12 @@ void declare_image(py::module_& m) {
       .def("pixels", &pixels_of)
       .def("depth", [](const Image& image) { return plane_of(image, &Image::depth); })
       .def("ids", [](const Image& image) { return plane_of(image, &Image::ids); })
+      .def("legends",
+           [](const Image& image) {
+             py::list r;
+             for (const Legend& l : image.legends()) r.append(legend_of(l));
+             return r;
+           })
       .def("notes", &Image::notes)
       .def("recipe", &Image::recipe)
       .def("png",

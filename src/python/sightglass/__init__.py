@@ -19,11 +19,11 @@ from ._groups import amr, collection, series, table
 from ._meshes import CELL_TYPES, curvilinear, lines, points, rectilinear, surface, uniform, unstructured
 from ._pipeline import Pipeline, open, pipeline
 from ._progress import set_progress
-from ._scene import Picture, Scene
+from ._scene import Legend, Picture, Scene
 from ._wrap import wrap
 
 __version__ = _core.version()
-__all__ = ["CELL_TYPES", "CancelledError", "Data", "DataError", "Error", "InternalError", "Picture", "Pipeline", "Scene", "SightglassWarning",
+__all__ = ["CELL_TYPES", "CancelledError", "Data", "DataError", "Error", "InternalError", "Legend", "Picture", "Pipeline", "Scene", "SightglassWarning",
            "UnknownNameError", "UsageError", "amr", "collection", "curvilinear", "help", "lines", "pipeline", "points", "read", "rectilinear",
            "scene", "series", "set_memory_limit", "set_progress", "set_threads", "surface", "table", "times", "uniform", "unstructured",
            "wrap"]

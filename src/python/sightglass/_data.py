@@ -2,7 +2,7 @@
 """Data: a mesh with its fields, a collection of named parts, or a table."""
 from __future__ import annotations
 
-from typing import Any, Iterator
+from typing import Any, Iterator, Mapping
 
 import numpy as np
 
@@ -154,6 +154,14 @@ class Data(Methods):
             if on is None:
                 raise usage(f"{n} values", where, f"there are {self.n_points} points and {self.n_cells} cells")
         return Data(self._core.with_field(name, on, lent(array, values), unit))
+
+    def with_fields(self, fields: Mapping[str, Any], on: str | None = None, order: str | None = None) -> Data:
+        """Several fields at once: ``{"T": values, "v": (values, "m/s")}``, each as in with_field()."""
+        data = self
+        for name, given in fields.items():
+            values, unit = given if isinstance(given, tuple) and len(given) == 2 and isinstance(given[1], str) else (given, "")
+            data = data.with_field(name, values, unit, on, order)
+        return data
 
     # ---- time
 

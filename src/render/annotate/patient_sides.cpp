@@ -15,8 +15,6 @@ void draw_patient_letters(Overlay& o, const Projection& p, double font, std::vec
   TextStyle style;
   style.size = 1.25 * font;
   style.bold = true;
-  constexpr int most_steps = 24;
-  constexpr double clear = 1.5;  // of other texts, in heights of the font
   // The picture reaches to the legends; a title is above all of it.
   const double width = p.width, height = p.height, margin = 0.6 * font;
   double top = 0;
@@ -29,18 +27,14 @@ void draw_patient_letters(Overlay& o, const Projection& p, double font, std::vec
   } edges[] = {{sides.left, 0, 0.5}, {sides.right, 1, 0.5}, {sides.top, 0.5, 0}, {sides.bottom, 0.5, 1}};
   for (const auto& e : edges) {
     const TextExtent size = o.measure(e.letters, style);
-    const bool upright = e.y == 0.5;
-    // In the middle of its edge, or as near to it as it keeps clear of the other texts.
-    for (int step = 0; step <= most_steps; ++step) {
-      const double aside = 0.5 * font * double(step % 2 ? -(step + 1) / 2 : step / 2);
-      const Rect r{margin + e.x * (width - size.width - 2 * margin) + (upright ? 0 : aside),
-                   top + margin + e.y * (height - top - size.height - 2 * margin) + (upright ? aside : 0), size.width, size.height};
-      const Rect room = r.grown(clear * font);
-      if (std::any_of(taken.begin(), taken.end(), [&](const Rect& t) { return t.overlaps(room); })) continue;
-      o.text(e.letters, r.x, r.y, style, true);
-      taken.push_back(r.grown(0.2 * font));
-      break;
-    }
+    const Rect r{margin + e.x * (width - size.width - 2 * margin), top + margin + e.y * (height - top - size.height - 2 * margin),
+                 size.width, size.height};
+    if (std::any_of(taken.begin(), taken.end(), [&](const Rect& t) { return t.overlaps(r); })) continue;
+    o.text(e.letters, r.x, r.y, style, true);
+    // Titles of axes keep so far from them along the edge that they are not read together.
+    const double along = 3 * font, across = 0.5 * font;
+    const double dx = e.y == 0.5 ? across : along, dy = e.y == 0.5 ? along : across;
+    taken.push_back({r.x - dx, r.y - dy, r.width + 2 * dx, r.height + 2 * dy});
   }
 }
 

@@ -52,7 +52,7 @@ size_t fullest_bin(const std::vector<size_t>& h) {
   return size_t(std::max_element(h.begin() + ptrdiff_t(begin), h.begin() + ptrdiff_t(std::min(n, begin + width))) - h.begin());
 }
 
-Range foreground(const Field& field, int component, double lo, double hi, const Context& context) {
+Range foreground(const Field& field, int component, double lo, double hi, const Context& context, double bright) {
   auto h = histogram(field, component, lo, hi, 1024, context);
   const double width = hi - lo;
   const size_t peak = fullest_bin(h);
@@ -62,7 +62,7 @@ Range foreground(const Field& field, int component, double lo, double hi, const 
     r.lo = lo + double(end) / double(h.size()) * width;
     std::fill(h.begin(), h.begin() + ptrdiff_t(end), size_t(0));
   }
-  r.hi = std::max(histogram_quantile(h, lo, hi, 0.999), r.lo + 0.01 * width);
+  r.hi = std::max(histogram_quantile(h, lo, hi, 1 - bright), r.lo + 0.01 * width);
   return r;
 }
 

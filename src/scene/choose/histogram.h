@@ -19,8 +19,8 @@ double histogram_quantile(const std::vector<size_t>& bins, double lo, double hi,
 /// is less than the spread of a background.
 size_t fullest_bin(const std::vector<size_t>& bins);
 
-/// From the end of the background (the most frequent low value and its surroundings) to what one value in a thousand of the others exceeds.
-/// Never empty when lo < hi.
-Range foreground(const Field& field, int component, double lo, double hi, const Context& context = Context());
+/// From the end of the background (the most frequent low value and its surroundings) to what all of the others but a share `bright` stay
+/// below. Never empty when lo < hi.
+Range foreground(const Field& field, int component, double lo, double hi, const Context& context = Context(), double bright = 0.001);
 
 }  // namespace sg

@@ -347,7 +347,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
     } else if (automatic && !labels && ct && window.empty() && s.lo < -1024 && s.hi > -500) {
       s.lo = -1024, s.hi = std::min(s.hi, 2000.0);  // from air to bone; what lies below was never measured
     } else if (automatic && !labels && !ct && !is_signed && window.empty() && s.lo == r.lo && s.hi == r.hi && is_scanned(data, field)) {
-      s.hi = std::min(s.hi, foreground(field, p.component, r.lo, r.hi, context).hi);  // a few bright vessels must not darken the rest
+      s.hi = std::min(s.hi, foreground(field, p.component, r.lo, r.hi, context, 0.01).hi);  // a few bright vessels must not darken the rest
       if (s.hi < r.hi) s.above = s.map.at(1);
     }
   }

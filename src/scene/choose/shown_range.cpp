@@ -85,7 +85,10 @@ ShownRange shown_range(std::span<const FieldOf> fields, int component, bool symm
   if (v.size() < 200) return s;
   const double most = tailed ? inside_tailed : inside, high = quantile(v, most);
   if (symmetric) {
-    const double end = rounded(high);
+    double far = high;
+    if (tailed && shows == Shows::any)  // curvatures, whose tails are the noise of a surface, not the crests of a flow
+      if (const double usual = quantile(v, 0.9); far > 3 * usual) far = usual;
+    const double end = rounded(far);
     if (end > 0 && reach > (tailed ? 1.5 : 4) * end) s.range = {-end, end};
     s.cut_low = whole.lo<s.range.lo, s.cut_high = whole.hi> s.range.hi;
     return s;

@@ -48,6 +48,8 @@ class DepthBuffer {
     return p.depth >= depths_[size_t(y) * side + size_t(x)] - 1;
   }
 
+  Vec3 towards() const { return towards_; }
+
  private:
   Vec3 middle_, towards_, right_, up_;
   double scale_;
@@ -72,12 +74,15 @@ size_t polygons_seen(Parts parts, const Box3& box, size_t step, Vec3 direction, 
   for_polygons(parts, step, [&](size_t n, auto at) {
     for (size_t k = 1; k + 1 < n; ++k) buffer.cover(buffer.corner(at(0)), buffer.corner(at(k)), buffer.corner(at(k + 1)));
   });
+  constexpr double least_cosine = 0.2;
   size_t seen = 0;
   for_polygons(parts, step, [&](size_t n, auto at) {
     if (n < 3) return;
     Vec3 middle;
     for (size_t k = 0; k < n; ++k) middle += at(k) * (1 / double(n));
-    seen += buffer.seen(buffer.corner(middle));  // the far side of a solid lies behind its near one
+    const Vec3 normal = cross(at(1) - at(0), at(2) - at(0));
+    const bool edge_on = !(std::abs(dot(normal, buffer.towards())) > least_cosine * length(normal));
+    seen += !edge_on && buffer.seen(buffer.corner(middle));  // the far side of a solid lies behind its near one
   });
   return seen;
 }

@@ -118,3 +118,22 @@ TEST_CASE("curvature: averaging calms the thin triangles of a contour") {
   CHECK(worst(6) < 0.25);
   CHECK(worst(6) < 0.5 * worst(0));
 }
+
+TEST_CASE("curvature: its unit is that of the axes, and points that have none are told") {
+  std::string told;
+  Context ctx;
+  ctx.on_log = [&](LogLevel, std::string_view text) { told += std::string(text) + "\n"; };
+  DatasetParts parts = sphere(2).dataset()->parts();
+  CHECK(curvature(make_dataset(DatasetParts(parts)), {}, ctx)->fields().require("mean curvature").unit.empty());
+  parts.notes.emplace_back("length unit", "um");
+  const DatasetPtr d = curvature(make_dataset(std::move(parts)), {}, ctx);
+  CHECK(d->fields().require("mean curvature").unit == "1/um");
+  CHECK(d->fields().require("Gaussian curvature").unit == "1/um^2");
+  CHECK(told.empty());
+  // Three triangles that meet in one edge.
+  SurfaceMesh m;
+  m.points.xyz = Array::from_vector<float>({0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 1, 0, -1, -1, 0}, 3);
+  m.polygons = {Array::from_vector<int32_t>({0, 1, 2, 0, 1, 3, 0, 1, 4}), {}, 3};
+  curvature(make_dataset(m), {}, ctx);
+  CHECK(told.find("2 of 5 points have none (NaN)") != std::string::npos);
+}

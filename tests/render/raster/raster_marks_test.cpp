@@ -227,6 +227,29 @@ TEST_CASE("raster edges: without a colour of their own they are darker than brig
   }
 }
 
+TEST_CASE("raster edges: darker or lighter all over, as suits most of the surface") {
+  // Two dark squares and a bright one, or one and two: the same edge is the same on all.
+  for (const bool mostly_dark : {false, true}) {
+    SurfaceMesh m = triangle_mesh({-90, -30, 0, -30, -30, 0, 30, -30, 0, 90, -30, 0, -90, 30, 0, -30, 30, 0, 30, 30, 0, 90, 30, 0}, {});
+    m.polygons = {Array::from_vector<int32_t>({0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6}), {}, 4};
+    const uint8_t middle = mostly_dark ? 20 : 200;
+    FieldSet fields;
+    fields.add(
+        {"rgb", Association::cell, Array::from_vector<uint8_t>({20, 20, 20, middle, middle, middle, 200, 200, 200}, 3), "", Role::colors});
+    SurfaceItem q = item(make_dataset(m, fields), {1, 1, 1}, false);
+    q.color_by = FieldColor{"rgb", Association::cell, -1, {}, true};
+    q.edges = true;
+    Scene s;
+    s.items = {q};
+    const Picture p = draw(s, front_parallel(200), 200, 200, 2);
+    const auto red = [&](int x, int y) { return p.rgba(x, y)[0]; };
+    CAPTURE(mostly_dark);
+    const double on_dark = red(40, 70) - red(40, 100), on_bright = red(160, 70) - red(160, 100);  // edge less face
+    CHECK((on_dark > 0) == mostly_dark);
+    CHECK((on_bright > 0) == mostly_dark);
+  }
+}
+
 TEST_CASE("raster edges: where most cells are too small for edges, the others have none either") {
   // Squares of 20 pixels on the left; on the right as many columns, or none, of squares of 2.
   const auto left_edge = [](int small) {

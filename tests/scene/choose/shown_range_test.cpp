@@ -225,3 +225,17 @@ TEST_CASE("shown range: specks of noise do not take the scale of a curvature, an
   CHECK(s.map.kind == MapKind::diverging);
   CHECK(s.above);
 }
+
+TEST_CASE("shown range: a curvature with long tails is cut where nine of ten values lie, a criterion of vortices is not") {
+  const auto shown = [](const char* name) {
+    std::vector<float> v(20000);  // the quantiles of Cauchy's distribution
+    for (size_t i = 0; i < v.size(); ++i) v[i] = float(0.1 * std::tan(M_PI * ((double(i) + 0.5) / double(v.size()) - 0.5)));
+    UniformGrid g;
+    g.dims = {v.size(), 1, 1};
+    FieldSet fields;
+    fields.add({name, Association::point, Array::from_vector(v), "", Role::none, known_look(name)});
+    return test::chosen_scale(make_dataset(g, fields)).hi;
+  };
+  CHECK(shown("mean curvature") == doctest::Approx(0.1 * std::tan(0.45 * M_PI)).epsilon(0.02));
+  CHECK(shown("Q") > 5 * shown("mean curvature"));
+}

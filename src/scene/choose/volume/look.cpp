@@ -109,6 +109,16 @@ void scan_look(const Dataset& data, const Field& field, int component, const Ran
   item.color.lo = window ? std::max(stated.lo, r.lo) : r.lo, item.color.hi = window ? std::min(stated.hi, r.hi) : f.hi;
 }
 
+// Where the colours of what is seen end: few values far above all others, as of a density about its nuclei, would leave most of them
+// unused.
+double end_of_foreground(std::vector<size_t> h, const Range& r, double start) {
+  constexpr double bright = 0.005, far = 0.75;
+  const double width = r.hi - r.lo;
+  std::fill(h.begin(), h.begin() + ptrdiff_t(std::clamp((start - r.lo) / width, 0.0, 1.0) * double(h.size())), size_t(0));
+  const double end = *parse_double(short_number(histogram_quantile(h, r.lo, r.hi, 1 - bright), 2));
+  return end > start && end - r.lo < far * width ? end : r.hi;
+}
+
 }  // namespace
 
 std::string choose_volume_look(const Dataset& data, const Field& field, const ColoringParams& params, VolumeItem& item, bool anatomy,
@@ -158,7 +168,9 @@ std::string choose_volume_look(const Dataset& data, const Field& field, const Co
   // Where the foreground begins: past the background peak, and past what most of the volume holds.
   const double start = std::max(peak_value + 0.02 * width, std::min(histogram_quantile(h, r.lo, r.hi, 0.6), r.lo + 0.35 * width));
   const double middle = std::max(start + 0.15 * width, histogram_quantile(h, r.lo, r.hi, 0.95));
-  item.opacity.points = {{r.lo, 0}, {start, 0}, {std::min(middle, 0.5 * (start + r.hi)), 0.12}, {r.hi, 0.7}};
+  const double end = params.range.empty() ? end_of_foreground(h, r, start) : r.hi;
+  if (end < r.hi) item.color.hi = end, item.color.above = item.color.above.value_or(item.color.map.at(1));
+  item.opacity.points = {{r.lo, 0}, {start, 0}, {std::min(middle, 0.5 * (start + end)), 0.12}, {end, 0.7}};
   return fmt::format("values above {} are shown, the background below is left out", short_number(start, 3));
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "data/lattice.h"
 
@@ -12,28 +13,38 @@ namespace sg {
 namespace {
 
 constexpr size_t most_samples = 4000000;
-constexpr double haze = 0.1;  // of the largest opacity
 
 // Indices of samples along each axis: first and last.
 using Extent = std::array<std::array<size_t, 2>, 3>;
 
+// Between which all of the opacity lies, but for a thousandth on each side.
 std::optional<Extent> visible_extent(const Field& field, int component, std::array<size_t, 3> n, const OpacityCurve& opacity) {
-  double most = 0;
-  for (const Vec2& p : opacity.points) most = std::max(most, p.y);
+  constexpr double left_out = 0.001;
   // Rows are taken whole, of the others every few.
   const size_t step = size_t(std::ceil(std::sqrt(std::max(1.0, double(n[0]) * double(n[1]) * double(n[2]) / most_samples))));
-  Extent e{{{n[0], 0}, {n[1], 0}, {n[2], 0}}};
+  std::array<std::vector<double>, 3> sums;
+  for (size_t a = 0; a < 3; ++a) sums[a].resize(n[a]);
+  double all = 0;
   dispatch(field.array, [&](auto v) {
     const int c = v.components > 1 ? std::max(component, 0) : 0;
     for (size_t k = 0; k < n[2]; k += step)
-      for (size_t j = 0; j < n[1]; j += step)
+      for (size_t j = 0; j < n[1]; j += step) {
+        double row = 0;
         for (size_t i = 0; i < n[0]; ++i) {
-          if (!(opacity.at(double(v(i + n[0] * (j + n[1] * k), c))) > haze * most)) continue;
-          const size_t at[3] = {i, j, k};
-          for (size_t a = 0; a < 3; ++a) e[a] = {std::min(e[a][0], at[a]), std::max(e[a][1], at[a])};
+          const double value = double(v(i + n[0] * (j + n[1] * k), c)), o = std::isfinite(value) ? opacity.at(value) : 0;
+          sums[0][i] += o, row += o;
         }
+        sums[1][j] += row, sums[2][k] += row, all += row;
+      }
   });
-  if (e[0][0] > e[0][1]) return {};
+  if (!(all > 0)) return {};
+  Extent e;
+  for (size_t a = 0; a < 3; ++a) {
+    size_t first = 0, last = n[a] - 1;
+    for (double sum = 0; first < last && (sum += sums[a][first]) <= left_out * all;) ++first;
+    for (double sum = 0; last > first && (sum += sums[a][last]) <= left_out * all;) --last;
+    e[a] = {first, last};
+  }
   for (size_t a = 1; a < 3; ++a) e[a] = {e[a][0] - std::min(e[a][0], step - 1), std::min(e[a][1] + step - 1, n[a] - 1)};
   return e;
 }

@@ -8,7 +8,7 @@
 
 namespace sg {
 
-/// On a uniform or rectilinear grid: the box around all samples that are not nearly transparent, with a margin; along an
+/// On a uniform or rectilinear grid: the box that holds all of the opacity but for a thousandth on each side, with a margin; along an
 /// axis that it nearly fills, all of it. Nothing where that leaves out less than half of the volume, or where nothing is seen at all. Large
 /// fields are sampled evenly.
 std::optional<Box3> visible_box(const Dataset& data, const Field& field, int component, const OpacityCurve& opacity);

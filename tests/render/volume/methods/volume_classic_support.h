@@ -9,10 +9,13 @@ namespace sg::test {
 
 using Method = std::function<volume::Layer(const volume::LayerInput&)>;
 
+/// Lamps of these tests: distances between methods depend on how steep the light is.
+inline std::vector<Light> classic_lights() { return {{{-0.35, 0.45, 1.0}, true, 0.85f}, {{0.9, 0.1, 0.5}, true, 0.22f}}; }
+
 inline volume::Layer draw_layer(const VolumeItem& item, const Projection& p, const Method& method, const Frame* opaque = nullptr) {
   const Frame nothing(p.width, p.height);
   Context context;
-  const std::vector<Light> lights = lights_of(Scene{});
+  const std::vector<Light> lights = classic_lights();
   return method({item, p, opaque ? *opaque : nothing, lights, context});
 }
 
@@ -47,7 +50,9 @@ inline Frame ray_cast(VolumeItem item, const Projection& p, double step) {
   item.sampling.step = step;
   volume::Knobs knobs;
   knobs.stop_below = 0;
-  return draw(scene_of({item}), p, knobs);
+  Scene scene = scene_of({item});
+  scene.lights = classic_lights();
+  return draw(scene, p, knobs);
 }
 inline Distance from_rays(const VolumeItem& item, const Projection& p, const Method& method, double step) {
   return distance(draw_layer(item, p, method).rgba, ray_cast(item, p, step).rgba);

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a picture is of: frames, titles of axes, and what is chosen of both.
+#include "pipeline/picture/picture.h"
+#include "support/test.h"
+
+using namespace sg;
+
+namespace {
+
+struct Made {
+  PipelineFile file;
+  Picture picture;
+};
+
+Made made(const std::string& steps, const std::string& picture, const Data* data = nullptr, std::vector<std::string> coloring = {}) {
+  Made m;
+  m.file =
+      parse_pipeline("sightglass: 1\nsteps:\n  a: {" + steps + "}\npicture: {size: 120x90" + picture + "}\n", "", picture_vocabulary());
+  PictureOptions options;
+  options.coloring = std::move(coloring);
+  if (data) options.results["a"] = *data;
+  Context context;
+  m.picture = make_picture(m.file, options, context);
+  return m;
+}
+
+// 1 in a corner of a grid of 30^3 samples, falling to nothing within a few.
+Data corner() {
+  UniformGrid g;
+  g.dims = {30, 30, 30};
+  std::vector<float> v;
+  for (int k = 0; k < 30; ++k)
+    for (int j = 0; j < 30; ++j)
+      for (int i = 0; i < 30; ++i) v.push_back(std::exp(-0.1f * float(i * i + j * j + k * k)));
+  FieldSet fields;
+  fields.add({"v", Association::point, Array::from_vector(std::move(v)), "", Role::scalars});
+  return Data(make_dataset(g, fields));
+}
+
+}  // namespace
+
+TEST_CASE("frame: a stated one is seen as all of the data would be, in stretched coordinates, too") {
+  // A cube is drawn as a crop of a larger one is, framed.
+  const auto pixels = [](const std::string& step, const std::string& more) {
+    Made m = made(step, ", legend: false, axes: false, triad: false" + more);
+    return m.picture.image.pixels;
+  };
+  const std::string tangle = "tangle: {size: 8}";
+  CHECK(pixels(tangle, ", frame: \"-1,1,-1,1,-1,1\"") != pixels(tangle, ""));
+  const Made whole = made(tangle, "");
+  CHECK_FALSE(word_value(whole.file.picture, "frame"));
+  for (const char* bad : {"1,2", "0,1,0,1,1,0", "0,1,0,1,0"}) {
+    CAPTURE(bad);
+    CHECK_THROWS_WITH_AS(made(tangle, std::string(", frame: \"") + bad + "\""), doctest::Contains("frame"), Error);
+  }
+}
+
+TEST_CASE("frame: chosen where the rest of a volume is clear, said, kept in the recipe, and left where something is stated") {
+  const Data data = corner();
+  const Made m = made("read: given.vti", "", &data);
+  const auto frame = word_value(m.file.picture, "frame");
+  REQUIRE(frame);
+  CHECK(std::any_of(m.picture.notes.begin(), m.picture.notes.end(),
+                    [&](const std::string& n) { return n.find("frame=" + *frame) != n.npos; }));
+  PipelineFile again = m.file;
+  PictureOptions options;
+  options.results["a"] = data;
+  Context context;
+  CHECK(make_picture(again, options, context).image.pixels == m.picture.image.pixels);
+  CHECK(word_value(made("read: given.vti", ", frame: \"0,29,0,29,0,29\"", &data).file.picture, "frame") == "0,29,0,29,0,29");
+  CHECK_FALSE(word_value(made("read: given.vti", ", camera: {position: [90, -90, 60]}", &data).file.picture, "frame"));
+  CHECK_FALSE(word_value(made("read: given.vti", "", &data, {"range=0,1"}).file.picture, "frame"));
+}
+
+TEST_CASE("axes: stated titles are written, and a curve has the name of its field") {
+  const auto pixels = [](const std::string& more) { return made("tangle: {size: 8}", more).picture.image.pixels; };
+  CHECK(pixels("") == pixels(", x_title: x, y_title: y, z_title: z"));
+  CHECK(pixels("") != pixels(", x_title: east"));
+  UniformGrid g;
+  g.dims = {5, 1, 1};
+  FieldSet fields;
+  fields.add({"height", Association::point, Array::from_vector<float>({1, 3, 2, 5, 4}), "m", Role::scalars});
+  const Data line(make_dataset(g, fields));
+  const Made curve = made("read: given.vti", "", &line);
+  CHECK(word_value(curve.file.picture, "y_title") == "height [m]");
+  CHECK(word_value(curve.file.picture, "stretch") == "1,0.6,1");
+  CHECK(word_value(made("read: given.vti", ", y_title: depth", &line).file.picture, "y_title") == "depth");
+}
