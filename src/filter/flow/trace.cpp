@@ -57,6 +57,11 @@ void check_way(const FlowField& flow, double duration, double most, const TraceO
                fmt::format("use larger steps: {:.4g} would cross one cell in that number", goal / double(o.max_steps)));
 }
 
+double usual_steps(const FlowField& flow, double duration, const TraceOptions& o) {
+  const double step = o.scheme == Scheme::dormand_prince ? o.max_step : o.step, way = flow.usual_speed() * std::abs(duration);
+  return (o.unit == StepUnit::cells ? way / flow.usual_cell() : o.unit == StepUnit::length ? way : std::abs(duration)) / step;
+}
+
 namespace {
 
 void begin_line(TracedLines& out, Vec3 x, Vec3 v) {

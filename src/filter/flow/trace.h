@@ -63,6 +63,9 @@ TraceOptions trace_options(const IntegrationParams& integration, const StopParam
 /// is finite).
 void check_way(const FlowField& flow, double duration, double most, const TraceOptions& options, std::string_view who);
 
+/// How many steps of the largest size a particle of the usual speed takes in `duration`.
+double usual_steps(const FlowField& flow, double duration, const TraceOptions& options);
+
 /// Points of many lines, one line after the other; `time` grows with the flow (falls when traced backwards from 0).
 struct TracedLines {
   std::vector<size_t> begin{0};  ///< lines + 1

@@ -321,8 +321,9 @@ FittedGaps derive(const DatasetPtr& d, Association on, const Array& values, size
   const auto f = values.view<double>();
   const auto n = size_t(f.components);
   std::atomic<size_t> alone{0}, slopes{0}, bends{0};
+  constexpr size_t places_per_task = 64;  // a fit takes some microseconds
   parallel_for(
-      count, 512,
+      count, places_per_task,
       [&](size_t begin, size_t end) {
         Worker w(Surroundings(reader, on, cells, dimensions ? &*dimensions : nullptr, positions), f);
         for (size_t i = begin; i < end; ++i) w.derive(at(i), gradient + 3 * n * i, hessian ? hessian + 6 * n * i : nullptr);

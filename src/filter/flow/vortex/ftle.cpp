@@ -200,6 +200,9 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
   if (!integration.max_step) integration.max_step = 8 * integration.step;
   const TraceOptions options = trace_options(integration, stop, flow.largest_speed());
   check_way(flow.steps()[flow.base()], duration, most_cells_passed, options, "ftle");
+  if (const double steps = usual_steps(flow.steps()[flow.base()], duration, options); steps > double(most_steps))
+    fail_usage(fmt::format("a particle would take {:.3g} steps to the end of its way, more than {}", steps, most_steps), "ftle step",
+               fmt::format("use steps {:.2g} times as large, or more", steps / double(most_steps)));
   ResampleParams r;
   r.dims = p.dims, r.size = p.size == 0 ? 256 : std::max<int64_t>(p.size, 2), r.bounds = p.bounds;
   const Dataset& shape = *flow.steps()[flow.base()].dataset();

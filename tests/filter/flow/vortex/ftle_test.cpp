@@ -212,3 +212,22 @@ TEST_CASE("ftle: how many particles leave is told, and none when all stay") {
   CHECK(still->stats(still->fields().require("ftle")).nan == 0);
   CHECK(log.find("particles") == std::string::npos);
 }
+
+TEST_CASE("ftle: steps so small that no particle would arrive are refused at once, with how large they must be") {
+  Context context;
+  UniformGrid g = test::even_grid({11, 6, 6}, {0, 0, 0}, 1);
+  FieldSet fields;
+  std::vector<float> v;
+  for (int i = 0; i < 11 * 6 * 6; ++i) v.insert(v.end(), {0, 2, 0});
+  fields.add({"wind", Association::point, Array::from_vector(std::move(v), 3), "", Role::vectors});
+  const auto series = test::steady_series(make_dataset(Mesh(g), std::move(fields)));
+  FtleParams p;
+  p.duration = 2;  // a way of 4 cells
+  for (const auto& [unit, step] : {std::pair(StepUnit::cells, 1e-6), {StepUnit::length, 1e-6}, {StepUnit::time, 1e-6}}) {
+    p.integration.integrator = Scheme::rk4, p.integration.step = step, p.integration.step_unit = unit;
+    CAPTURE(int(unit));
+    CHECK_THROWS_WITH_AS(ftle(series, p, context), doctest::Contains("use steps"), Error);
+  }
+  p.integration.step = 1e-3, p.integration.step_unit = StepUnit::cells, p.size = 4;
+  CHECK(ftle(series, p, context)->point_count() > 0);
+}
