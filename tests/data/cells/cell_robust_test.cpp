@@ -59,6 +59,29 @@ TEST_CASE("cell map: garbage cells of every type neither crash nor hang") {
   }
 }
 
+TEST_CASE("cell map: every point of a linear solid is found, however it is folded over itself") {
+  using enum CellType;
+  for (CellType type : {tetra, pyramid, wedge, hexahedron}) {
+    const size_t nodes = size_t(cell_type_info(type).points);
+    const CellShape& shape = *CellShape::find(type, nodes, {});
+    size_t lost = 0;
+    for (uint64_t cell = 0; cell < 400; ++cell) {
+      std::vector<Vec3> at;
+      for (size_t k = 0; k < nodes; ++k) at.push_back(shape.node(k) + test::random_vector(cell, k) * (cell % 2 ? 1.5 : 4.0));
+      CellMap m(test::one_cell(type, at));
+      m.open(0);
+      for (uint64_t p = 0; p < 20; ++p) {
+        const Vec3 x = m.position(test::random_place(shape, 1000 * cell + p));
+        CellPlace place;
+        if (!m.locate(x, place)) ++lost;
+        else CHECK(length(m.position(place.rst) - x) < 1e-6);
+      }
+    }
+    CAPTURE(int(type));
+    CHECK(lost == 0);
+  }
+}
+
 TEST_CASE("cell map: polyhedra without faces, with faces of two points, or open ones neither crash nor hang") {
   for (int kind = 0; kind < 4; ++kind) {
     UnstructuredMesh m;

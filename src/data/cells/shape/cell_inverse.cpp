@@ -5,6 +5,7 @@
 #include <array>
 
 #include "data/cells/cell_topology.h"
+#include "data/cells/shape/multilinear_part.h"
 
 namespace sg {
 
@@ -112,17 +113,32 @@ struct Part {
   double edge;
   int depth;
 };
+constexpr int deepest = 9;          // near a fold two solutions lie close together, one of them outside
+constexpr size_t most_parts = 100;  // cells that fold over themselves would have thousands
+
+Vec3 middle_of(const CellGeometry& g, const Part& part) { return from_cube(g.shape->base(), part.lo + Vec3(0.5, 0.5, 0.5) * part.edge); }
+
+// Newton from the middle of a part; whether it ends in the cell.
+bool inside_from(const CellGeometry& g, Vec3 x, const Part& part, double tolerance, InverseResult& best) {
+  Vec3 rst = middle_of(g, part);
+  if (!newton(g, x, rst)) return false;
+  const double out = g.shape->outside(rst);
+  if (out < best.outside) best = {rst, true, out};
+  return out <= tolerance;
+}
+
+Part eighth(const Part& part, int c) {
+  const double half = part.edge / 2;
+  return {part.lo + Vec3(double(c & 1), double(c >> 1 & 1), double(c >> 2)) * half, half, part.depth + 1};
+}
 
 // Breadth first over the octree of the reference element: a part is tried and divided while its image may hold x.
 bool search(const CellGeometry& g, Vec3 x, double tolerance, InverseResult& best) {
-  constexpr int deepest = 5;
-  constexpr size_t most_parts = 100;  // cells that fold over themselves would have thousands
   const CellType base = g.shape->base();
   std::vector<Part> parts{{{0, 0, 0}, 1, 0}};
   for (size_t at = 0; at < parts.size() && at < most_parts; ++at) {
     const Part part = parts[at];
-    const Vec3 start = from_cube(base, part.lo + Vec3(0.5, 0.5, 0.5) * part.edge);
-    const Vec3 middle = g.position(start);
+    const Vec3 middle = g.position(middle_of(g, part));
     double radius2 = 0;
     for (int c = 0; c < 8; ++c) {
       const Vec3 corner = g.position(from_cube(base, part.lo + Vec3(double(c & 1), double(c >> 1 & 1), double(c >> 2)) * part.edge));
@@ -130,19 +146,40 @@ bool search(const CellGeometry& g, Vec3 x, double tolerance, InverseResult& best
     }
     const double slack = part.depth == 0 ? 4 : 1.7;  // squared: a curved part bulges beyond its corners
     if (!(dot(x - middle, x - middle) <= slack * radius2)) continue;
-    Vec3 rst = start;
-    if (newton(g, x, rst)) {
-      const double out = g.shape->outside(rst);
-      if (out < best.outside) best = {rst, true, out};
-      if (out <= tolerance) return true;
-    }
+    if (inside_from(g, x, part, tolerance, best)) return true;
     if (part.depth < deepest)
-      for (int c = 0; c < 8; ++c)
-        parts.push_back(
-            {part.lo + Vec3(double(c & 1), double(c >> 1 & 1), double(c >> 2)) * (part.edge / 2), part.edge / 2, part.depth + 1});
+      for (int c = 0; c < 8; ++c) parts.push_back(eighth(part, c));
   }
   return false;
 }
+
+// The same for linear cells, whose parts tell for sure that they do not hold x.
+bool search_linear(const CellGeometry& g, Vec3 x, double tolerance, InverseResult& best) {
+  struct LinearPart : Part {
+    MultilinearPart image;
+  };
+  const CellType base = g.shape->base();
+  // Of reference units across a part that the collapse of a side has made narrower.
+  const auto margin = [&](double edge) { return 4 * tolerance / (edge * edge); };
+  std::vector<LinearPart> parts(1);
+  parts[0] = {{{0, 0, 0}, 1, 0}, {}};
+  for (size_t c = 0; c < 8; ++c)
+    parts[0].image.corner[c] = g.position(from_cube(base, Vec3(double(c & 1), double(c >> 1 & 1), double(c >> 2))));
+  if (parts[0].image.excludes(x, margin(1))) return false;
+  std::array<MultilinearPart, 8> eighths;
+  for (size_t at = 0; at < parts.size() && at < most_parts; ++at) {
+    const Part part = parts[at];
+    if (inside_from(g, x, part, tolerance, best)) return true;
+    if (part.depth == deepest) continue;
+    parts[at].image.divide(eighths);
+    for (int c = 0; c < 8; ++c)
+      if (const MultilinearPart& image = eighths[size_t(c)]; !image.excludes(x, margin(part.edge / 2)))
+        parts.push_back({eighth(part, c), image});
+  }
+  return false;
+}
+
+bool is_linear(const CellGeometry& g) { return g.shape->type() == g.shape->base() && g.shape->nodes() <= 8 && g.weight.empty(); }
 
 }  // namespace
 
@@ -177,7 +214,8 @@ InverseResult invert_solid(const CellGeometry& g, Vec3 x, double tolerance) {
     r = {};
     r.rst = g.shape->center();
   }
-  search(g, x, tolerance, r);
+  if (is_linear(g)) search_linear(g, x, tolerance, r);
+  else search(g, x, tolerance, r);
   return r;
 }
 
