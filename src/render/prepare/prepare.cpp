@@ -24,11 +24,15 @@ float linear_light(float v) {
 
 const Vec4f& ColorSource::of(float stored) const {
   const size_t n = table.size() - 3;
-  const double position = linear ? double((stored - first) * slope) : scale->position(double(stored) + offset);
+  const auto on_scale = [&] {
+    if (!scale->labels.empty()) return scale->position(double(stored) + offset);
+    return scale->position(stored == first ? scale->lo : stored == last ? scale->hi : double(stored) + offset);  // as rounded as stored
+  };
+  const double position = linear ? double((stored - first) * slope) : on_scale();
   if (!(position == position)) return table[n + 2];
   if (position < 0) return table[n];
-  if (position > 1) return table[n + 1];
-  return table[size_t(position * double(n - 1) + 0.5)];
+  if (linear ? (stored - last) * slope > 0 : position > 1) return table[n + 1];
+  return table[size_t(std::min(position, 1.0) * double(n - 1) + 0.5)];
 }
 
 namespace {
@@ -155,7 +159,7 @@ ColorSource color_source(const DatasetPtr& data, const std::optional<FieldColor>
   s.table.push_back(t.below), s.table.push_back(t.above), s.table.push_back(t.nan);
   s.nearest = !scale.labels.empty();
   s.linear = scale.kind == ScaleKind::linear && scale.labels.empty() && std::isfinite(1 / (scale.hi - scale.lo));
-  s.first = float(scale.lo - s.offset), s.slope = float(1 / (scale.hi - scale.lo));
+  s.first = float(scale.lo - s.offset), s.last = float(scale.hi - s.offset), s.slope = float(1 / (scale.hi - scale.lo));
   s.translucent = may_vanish(*data, f, *color) || t.nan.w < 1;
   return s;
 }

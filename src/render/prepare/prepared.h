@@ -55,10 +55,11 @@ struct ColorSource {
   Array values;  ///< f32, packed: 1 component (value - offset) or 4 (linear RGBA, straight alpha)
   double offset = 0;
   std::shared_ptr<const ColorScale> scale;
-  std::vector<Vec4f> table;  ///< n colours of positions 0..1, then below, above, NaN
-  bool linear = false;       ///< position = (stored - first) * slope
-  bool nearest = false;      ///< labels are not blended: a pixel takes the value of the nearest corner
-  float first = 0, slope = 1;
+  std::vector<Vec4f> table;   ///< n colours of positions 0..1, then below, above, NaN
+  bool linear = false;        ///< position = (stored - first) * slope
+  bool nearest = false;       ///< labels are not blended: a pixel takes the value of the nearest corner
+  float first = 0, last = 1;  ///< the ends of the scale as they are stored
+  float slope = 1;
   bool translucent = false;  ///< some alpha may be below 1
 
   const float* data() const { return reinterpret_cast<const float*>(values.raw()); }

@@ -58,7 +58,10 @@ void shade_reference(const ShadeJob& job, ShadeBatch& b) {
       auto at = [&](size_t j) { return double(values[j * size_t(stride) + size_t(k)]); };
       if (color.per_cell) return at(cell);
       if (color.nearest) return at(t[nearest]);
-      return at(t[0]) * w[0] + at(t[1]) * w[1] + at(t[2]) * w[2];
+      const double v[3] = {at(t[0]), at(t[1]), at(t[2])}, between = v[0] * w[0] + v[1] * w[1] + v[2] * w[2];
+      if (between != between) return between;
+      // Rounding must not push it across an end of the scale that the corners lie on.
+      return std::clamp(between, std::min({v[0], v[1], v[2]}), std::max({v[0], v[1], v[2]}));
     };
     if (color.kind == ColorSource::Kind::scalar) rgba = color.of(float(value(1, 0)));
     if (color.kind == ColorSource::Kind::direct)

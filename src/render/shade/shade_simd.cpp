@@ -68,7 +68,7 @@ HWY_INLINE I table_entry(const ColorSource& c, F stored) {
   const F inside = min(max(position, zero), one);
   I entry = convert(di, inside * float(n - 1) + set(d, 0.5f));
   entry = select(position < zero, n, entry);
-  entry = select(position > one, n + 1, entry);
+  entry = select((stored - c.last) * c.slope > zero, n + 1, entry);
   return select(position == position, entry, n + 2);
 }
 
@@ -101,8 +101,10 @@ HWY_INLINE void color(const ShadeJob& job, const Hit& h, I triangle, const I* po
     best = select(h.w[2] > max(h.w[0], h.w[1]), point[2], best);
     value = hn::GatherIndex(d, values, best);
   } else {
-    value = hn::GatherIndex(d, values, point[0]) * h.w[0] + hn::GatherIndex(d, values, point[1]) * h.w[1] +
-            hn::GatherIndex(d, values, point[2]) * h.w[2];
+    const F v0 = hn::GatherIndex(d, values, point[0]), v1 = hn::GatherIndex(d, values, point[1]), v2 = hn::GatherIndex(d, values, point[2]);
+    value = v0 * h.w[0] + v1 * h.w[1] + v2 * h.w[2];
+    // Rounding must not push it across an end of the scale that the corners lie on. NaN stays.
+    value = select(value == value, min(max(value, min(min(v0, v1), v2)), max(max(v0, v1), v2)), value);
   }
   if (!c.linear) {
     rgba[0] = value;

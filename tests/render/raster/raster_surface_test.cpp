@@ -192,6 +192,35 @@ TEST_CASE("raster: cell colours are flat, direct colours exact, NaN and out-of-r
   CHECK(p.fragments.empty());
 }
 
+TEST_CASE("raster: values that are an end of the scale are on it, whatever interpolation and storing round") {
+  const DatasetPtr shape = torus(40, 20);
+  const size_t n = shape->point_count();
+  for (const auto& [lo, hi] : {std::pair{293.15, 913.15}, {0.1, 0.7}, {1.0, 3.0}})
+    for (const ScaleKind kind : {ScaleKind::linear, ScaleKind::log, ScaleKind::symlog})
+      for (const ElementType type : {ElementType::f32, ElementType::f64}) {
+        std::vector<double> ends(n);
+        for (size_t i = 0; i < n; ++i) ends[i] = i / 200 % 2 ? lo : hi;
+        size_t drawn = 0, beyond = 0;
+        for (const std::vector<double>& v : {ends, std::vector<double>(n, lo), std::vector<double>(n, hi)}) {
+          FieldSet f;
+          f.add({"v", Association::point, Array::from_vector(v).converted(type), "", Role::none});
+          SurfaceItem q = item(make_dataset(*shape->as<SurfaceMesh>(), f), {}, false);
+          q.color_by = grey_by("v", lo, hi), q.color_by->scale.kind = kind;
+          q.color_by->scale.below = Vec3f{1, 0, 1}, q.color_by->scale.above = Vec3f{1, 0, 1};
+          Scene s;
+          s.items = {q};
+          const Picture p = draw(s, slanted(), 97, 97);
+          for (int y = 0; y < 97; ++y)
+            for (int x = 0; x < 97; ++x) drawn += p.id(x, y) > 0, beyond += p.id(x, y) > 0 && p.rgba(x, y)[0] != p.rgba(x, y)[1];
+        }
+        CAPTURE(lo);
+        CAPTURE(int(kind));
+        CAPTURE(element_name(type));
+        CHECK(drawn > 3000);
+        CHECK(beyond == 0);
+      }
+}
+
 TEST_CASE("raster: a logarithmic scale colours by value, not by blended colours") {
   SurfaceItem q = item(quad(1, 0, point_field("v", {1, 100, 100, 1})), {}, false);
   q.color_by = grey_by("v", 1, 100), q.color_by->scale.kind = ScaleKind::log;

@@ -203,7 +203,7 @@ void color_mark(const PreparedItem& item, const std::vector<Lamp>& lights, const
     if (source.nearest) a = b = c.s < 0.5f ? a : b;
     auto at = [&](size_t stride, size_t k) {
       const float u = source.data()[a * stride + k], v = source.data()[b * stride + k];
-      return a == b ? u : u + (v - u) * c.s;
+      return u == v ? u : u + (v - u) * c.s;
     };
     if (source.kind == ColorSource::Kind::scalar) rgba = source.of(at(1, 0));
     else
