@@ -168,7 +168,7 @@ void add_picture(CLI::App& a, Options& o, RawText& raw) {
   a.add_option("--scale", o.scale, doc_of<ColoringParams>("scale"));
   a.add_option("--legend", o.legend,
                "'false' draws none, 'bottom' (top, left) puts it there; else words of the legend: \"title='Wall temperature' unit=K "
-               "ticks=0,50,100 format=.1f place=bottom bar=0.5\"");
+               "ticks=0,50,100 format=.1f place=bottom bar=0.5\"; count=5 asks for about five round numbers in place of ticks");
   a.add_option("--camera", o.camera,
                "A named view ('top', 'front', 'iso', ...) or key=value words, e.g. 'azimuth=30 elevation=10 zoom=1.5'");
   add_size(a, o);

@@ -5,7 +5,9 @@
 #include "base/error.h"
 #include "base/file/file.h"
 #include "base/text/text.h"
+#include "io/lent_series.h"
 #include "pipeline/picture/picture_parts.h"
+#include "scene/choose/crowded_box.h"
 #include "scene/choose/scale.h"
 #include "scene/choose/shown_range.h"
 #include "scene/choose/telling_field.h"
@@ -82,18 +84,50 @@ std::string field_telling_parts(const Data& data, const Context& context) {
   return "";
 }
 
-// Surfaces, lines and points: of a volume the scale is its opacity, too.
-bool takes_decades(const Data& data, const std::string& name, const Look& look, const Context& context) {
-  if (look.shows.size() != 1 || look.shows[0].kind->is<VolumeShow>() || !look.shows[0].kind->coloring) return false;
+// The field that colours the parts, in each of them that has it.
+std::vector<FieldOf> coloring_fields(const Data& data, const std::string& name) {
   std::vector<FieldOf> fields;
   for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
     const Field* f = name.empty() ? automatic_field(*d) : d->fields().find(name);
     if (f && (fields.empty() || f->name == fields[0].field->name) && f->association != Association::whole) fields.push_back({d.get(), f});
   });
+  return fields;
+}
+
+// Surfaces, lines and points: of a volume the scale is its opacity, too.
+bool takes_decades(const Data& data, const std::string& name, const Look& look, const Context& context) {
+  if (look.shows.size() != 1 || look.shows[0].kind->is<VolumeShow>() || !look.shows[0].kind->coloring) return false;
+  const std::vector<FieldOf> fields = coloring_fields(data, name);
   return !fields.empty() && spans_decades(fields, context);
 }
 
+// Of a flat domain in which something happens in a small part alone, such as a wing's far field: this part.
+void cut_to_crowd(const Data& data, const std::string& name, Look& look) {
+  if (!look.camera.parallel || !look.filter.empty() || look.shows.size() != 1 || !look.shows[0].kind->is<SurfaceShow>()) return;
+  const std::vector<FieldOf> fields = coloring_fields(data, name);
+  const auto box = crowded_box(fields);
+  if (!box) return;
+  Box3 b = *box;
+  const double reach = b.diagonal();  // nothing is cut off across the plane
+  std::vector<std::string> ends;
+  for (int a = 0; a < 3; ++a) {
+    const bool across = std::abs(look.camera.direction[a]) > 0.5 * length(look.camera.direction);
+    ends.push_back(short_number(b.lo[a] - (across ? reach : 0), 4)), ends.push_back(short_number(b.hi[a] + (across ? reach : 0), 4));
+  }
+  look.filter = {"clip", fmt::format("box={}", fmt::join(ends, ","))};
+  look.shows[0].of_input = false;
+  look.reason += fmt::format("; '{}' hardly varies but in a small part, which is shown; --show surface shows all", fields[0].field->name);
+}
+
 bool states_scale(const PipelineFile::Show& s) { return word_value(s.words, "scale") || word_value(s.words, "range"); }
+
+// The step, where it reads a file of which nothing but the name is said.
+PipelineFile::Step* plain_reading(PipelineFile& file, const std::string& step) {
+  for (PipelineFile::Step& s : file.steps)
+    if (s.name == step)
+      return s.reads() && s.words.size() == 1 && word_value(s.words, "path") && !is_lent(*word_value(s.words, "path")) ? &s : nullptr;
+  return nullptr;
+}
 
 // What suits the result of a step, as entries under `show`; the filters that it needs are added to the steps.
 Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file, std::vector<PipelineFile::Show>& shows,
@@ -118,18 +152,23 @@ Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file,
   const std::string field = !stated.empty() ? stated : !made ? field_telling_parts(data, context) : made->look.result ? made->name : "";
   std::vector<std::string> coloring = wanted.words;
   if (field != stated) coloring.push_back("field=" + field);
-  Look look = choose_look(*largest, field, extension_of(origin));
+  PipelineFile::Step* reading = parts.size() > 1 ? nullptr : plain_reading(file, end);
+  Look look = choose_look(*largest, field, extension_of(origin), reading != nullptr);
+  if (!look.source.empty()) reading->operation = look.source;
   // What is seen of a volume was told for the scale that is chosen.
   if (states_scale(wanted))
     if (const size_t at = look.reason.find("shown as a volume;"); at != look.reason.npos) look.reason.resize(look.reason.find(';', at));
   face_detail(look, parts, extension_of(origin), context);
   cut_open(look, largest, field, context);
+  if (parts.size() == 1) show_flow(look, largest, field, context);
+  cut_to_crowd(data, field, look);
   if (takes_decades(data, field, look, context) && !states_scale(wanted) && !word_value(wanted.words, "map")) {
     coloring.push_back("scale=log");
     look.reason += ", on a logarithmic scale, as most values are far below the largest (scale=linear is the other)";
   }
-  const std::string result =
-      look.filter.empty() ? end : added_step(file, look.filter[0], {look.filter.begin() + 1, look.filter.end()}, end);
+  std::string result = end;
+  for (const auto& words : {look.prepare, look.filter})
+    if (!words.empty()) result = added_step(file, words[0], {words.begin() + 1, words.end()}, result);
   for (const Look::Show& s : look.shows) {
     const ShowKind& kind = *s.kind;
     std::vector<std::string> words = changed_words(s.params);

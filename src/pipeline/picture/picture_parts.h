@@ -10,7 +10,7 @@
 #include "pipeline/picture/picture_sets.h"
 #include "render/annotate/annotate.h"
 #include "scene/camera_params.h"
-#include "scene/look.h"
+#include "scene/look/look.h"
 
 namespace sg {
 

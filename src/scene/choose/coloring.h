@@ -31,6 +31,7 @@ struct ColoringParams {
   bool legend = true;
   std::optional<std::string> legend_title, legend_unit;
   std::vector<double> legend_ticks;
+  int legend_count = 0;
   std::string legend_format;
   LegendPlace legend_place = LegendPlace::right;
   std::optional<double> legend_bar;

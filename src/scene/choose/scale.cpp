@@ -166,16 +166,34 @@ const Field* banded_field(const Dataset& d, const Field& low, const Field& high)
   return nullptr;
 }
 
+// The stated numbers that lie on the scale; of the others it is said where they are.
+std::vector<double> ticks_on_scale(const std::vector<double>& stated, const ColorScale& s, Context& context) {
+  std::vector<double> ticks;
+  std::string beyond;
+  for (const double v : stated) {
+    const double at = s.position(v);
+    if (at >= 0 && at <= 1) ticks.push_back(v);
+    else beyond += (beyond.empty() ? "" : ", ") + short_number(v);
+  }
+  if (beyond.empty()) return ticks;
+  std::string text = fmt::format("legend_ticks: {} {} beyond the legend, which goes from {} to {}", beyond,
+                                 beyond.find(',') == beyond.npos ? "is" : "are", short_number(s.lo), short_number(s.hi));
+  text += stated.size() == 1 ? fmt::format("; legend_count={} asks for that many numbers", beyond) : "; range=LOW,HIGH sets its ends";
+  context.warn(text);
+  return ticks;
+}
+
 // What is stated of the legend.
-void name_legend(const ColoringParams& p, ColorScale& s) {
+void name_legend(const ColoringParams& p, ColorScale& s, Context& context) {
   if (p.legend_title) s.title = *p.legend_title;
   if (p.legend_unit) s.unit = *p.legend_unit;
-  s.ticks = p.legend_ticks, s.number_format = p.legend_format;
+  if (s.labels.empty() && !p.legend_ticks.empty()) s.ticks = ticks_on_scale(p.legend_ticks, s, context);
+  s.tick_count = p.legend_count, s.number_format = p.legend_format;
   if (!s.number_format.empty()) formatted_number(0, s.number_format);  // mistakes are told before anything is drawn
 }
 
 // Filled contours: a colour for each band, and a legend of the limits between them.
-ColorScale band_scale(const Dataset& d, const Field& band, const ColoringParams& p) {
+ColorScale band_scale(const Dataset& d, const Field& band, const ColoringParams& p, Context& context) {
   const Field &low = d.fields().require("band low", Association::cell), &high = d.fields().require("band high", Association::cell);
   std::map<double, std::pair<double, double>> bands;
   for (size_t c = 0; c < band.array.count(); ++c) bands.try_emplace(band.array.get(c), low.array.get(c), high.array.get(c));
@@ -222,7 +240,7 @@ ColorScale band_scale(const Dataset& d, const Field& band, const ColoringParams&
   }
   s.lo = s.labels.front(), s.hi = std::max(s.labels.back(), s.lo + 1);
   if (!p.nan.empty()) s.nan = parse_color(p.nan, "nan");
-  name_legend(p, s);
+  name_legend(p, s, context);
   return s;
 }
 
@@ -293,7 +311,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   }
   if (!p.range.empty() && (p.range.size() != 2 || !(p.range[0] < p.range[1])))
     fail_usage("range needs two numbers, the lower one first", "range", "like range=0,100");
-  if (field.look.bands) return band_scale(data, field, p);
+  if (field.look.bands) return band_scale(data, field, p, context);
   const bool automatic = !p.map;
   const std::optional<FileColormap> file = p.map && names_colormap_file(*p.map) ? std::optional(find_file_colormap(*p.map)) : std::nullopt;
   const Colormap asked = automatic ? Colormap{} : file ? file->map : find_colormap(*p.map);
@@ -360,6 +378,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   }
   if (s.lo == s.hi) {  // a constant field: any range around it will do
     const double d = s.lo == 0 ? 1 : std::abs(s.lo) * 0.01;
+    s.ticks = {s.lo};
     s.lo -= d, s.hi += d;
     if (s.kind == ScaleKind::log) s.lo = s.hi / 1.1;
   }
@@ -382,7 +401,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   if (!p.nan.empty()) s.nan = parse_color(p.nan, "nan");
   s.clamp = p.clamp;
   if (!p.range.empty() || ct || below_log) show_what_lies_beyond(data.range(field, p.component), s);
-  name_legend(p, s);
+  name_legend(p, s, context);
   return s;
 }
 

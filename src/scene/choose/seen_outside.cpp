@@ -3,13 +3,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <vector>
 
 #include "data/cells/mesh_dimension.h"
 #include "data/field_ops.h"
 #include "filter/mesh/surface.h"
+#include "scene/choose/telling_field.h"
 
 namespace sg {
+
+namespace {
+
+// Labels of solid cells of which some are on no face outside.
+bool hides_labels(const Dataset& d, const Field& field, const Field& outside) {
+  constexpr size_t most = 256;
+  const auto* mesh = d.as<UnstructuredMesh>();
+  std::set<double> seen, solid;
+  for (size_t i = 0; i < outside.array.count(); ++i)
+    if (seen.insert(outside.array.get(i)).second && seen.size() > most) return false;
+  for (size_t i = 0; i < field.array.count(); ++i)
+    if (!mesh || cell_type_info(mesh->type(i)).dimension == 3)
+      if (solid.insert(field.array.get(i)).second && solid.size() > most) return false;
+  return !std::includes(seen.begin(), seen.end(), solid.begin(), solid.end());
+}
+
+}  // namespace
 
 bool tells_only_inside(const DatasetPtr& data, const Field& field, Context& context) {
   constexpr size_t largest = 1000000, smallest = 64;
@@ -20,6 +39,7 @@ bool tells_only_inside(const DatasetPtr& data, const Field& field, Context& cont
   const DatasetPtr outside = surface_of(data, context);
   const Field* shown = outside->fields().find(field.name, field.association);
   if (!shown) return false;
+  if (field.association == Association::cell && telling(*data, field) == Telling::divisions) return hides_labels(*data, field, *shown);
   const Array numbers = scalar_of(*shown, -1, ElementType::f64);
   std::vector<double> values;
   for (size_t i = 0; i < numbers.count(); ++i)

@@ -7,7 +7,8 @@
 namespace sg {
 
 /// Seven tenths of the outer surface's points (faces, for a field of cells) lie within a twentieth of the field's range: what it tells lies
-/// inside. Only for solid meshes of up to a million cells; looking at the surface takes about as long as making it.
+/// inside. Of numbers of parts: one of the solid ones is not seen at all. Only for solid meshes of up to a million cells; looking at the
+/// surface takes about as long as making it.
 bool tells_only_inside(const DatasetPtr& data, const Field& field, Context& context);
 
 }  // namespace sg

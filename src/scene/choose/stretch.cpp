@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "data/fields/axis_notes.h"
+#include "data/lattice.h"
 #include "filter/mesh/transform/transform.h"
 
 namespace sg {
@@ -40,6 +42,23 @@ Vec3 chosen_stretch(std::span<const DatasetPtr> data, const Box3& box) {
     return f;
   }
   return f;
+}
+
+bool is_unstated_depth(const Dataset& d, const Field& field) {
+  constexpr double fewer = 0.9, slack = 1.02;
+  const auto x = axis_note(d, 0), y = axis_note(d, 1), z = axis_note(d, 2);
+  if (!is_lattice(d.mesh()) || !x || !y || !z || !x->in_degrees() || !y->in_degrees() || z->unit != "m" || !z->positive.empty() ||
+      z->down())
+    return false;
+  const auto dims = lattice_dims(d.mesh());
+  if (field.association != Association::point || dims[2] < 3 || d.bounds().lo.z < 0) return false;
+  const size_t layer = dims[0] * dims[1];
+  std::vector<double> values(dims[2], 0.0);
+  for (size_t k = 0; k < dims[2]; ++k)
+    for (size_t i = 0; i < layer; ++i) values[k] += std::isfinite(field.array.get(k * layer + i));
+  for (size_t k = 1; k < dims[2]; ++k)
+    if (values[k] > slack * values[k - 1]) return false;
+  return values.back() < fewer * values.front();
 }
 
 DatasetPtr stretched(const DatasetPtr& data, Vec3 factors, const Context& context) {

@@ -13,6 +13,10 @@ namespace sg {
 /// the notes of the axes (axis_notes.h) of the first dataset that has some; 1 without. `box`: of all of them.
 Vec3 chosen_stretch(std::span<const DatasetPtr> data, const Box3& box);
 
+/// Whether the third axis of a map grows downwards without saying so: it is in metres and not below 0, and the farther along it the fewer
+/// places have a value, as in a sea, which ends at its floor.
+bool is_unstated_depth(const Dataset& data, const Field& field);
+
 /// The mesh with its axes scaled; fields stay as they are, but normals.
 DatasetPtr stretched(const DatasetPtr& data, Vec3 factors, const Context& context);
 

@@ -8,6 +8,7 @@
 #include "filter/tensor/tensor_support.h"
 #include "io/io.h"
 #include "pipeline/file/gradient_images.h"
+#include "pipeline/picture/picture.h"
 
 using namespace sg;
 using namespace sg::test;
@@ -109,4 +110,25 @@ TEST_CASE("a block of a brain: plausible diffusivities, positive tensors, cohere
   mirrored.fields.add(bvec);
   const double right = total_length(positive), wrong = total_length(tensor_fit(make_dataset(std::move(mirrored)), p, l.context));
   CHECK(right > 1.05 * wrong);
+}
+
+TEST_CASE("pictures: a diffusion series is drawn from all of its volumes, and one volume where a time is stated" *
+          doctest::skip(no_data())) {
+  const auto drawn = [](const std::string& words) {
+    PipelineFile file =
+        parse_pipeline("sightglass: 1\nsteps:\n  a: {read: {path: \"" + data_file(brain) + "\"" + words + "}}\npicture: {size: 60x40}\n",
+                       "", picture_vocabulary());
+    Context context;
+    Picture p = make_picture(file, {}, context);
+    return std::pair{file, std::move(p.image.pixels)};
+  };
+  auto [file, pixels] = drawn("");
+  std::vector<std::string> operations;
+  for (const auto& s : file.steps) operations.push_back(s.operation);
+  CHECK(operations == std::vector<std::string>{"gradient_images", "tensor_fit", "tensor_glyphs"});
+  Context context;
+  CHECK(make_picture(file, {}, context).image.pixels == pixels);  // what was chosen stands in the file
+  const auto at_a_time = drawn(", time: 3");
+  CHECK(at_a_time.first.steps.at(0).reads());
+  CHECK(at_a_time.second != pixels);
 }

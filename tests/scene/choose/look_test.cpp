@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is chosen when nobody says: colours, ranges, representations.
-#include "scene/look.h"
+#include "scene/look/look.h"
 #include "scene/choose/shared_scale.h"
 #include "scene/show/labels.h"
 #include "scene/show/points.h"
@@ -502,6 +502,34 @@ TEST_CASE("choose_scale: Hounsfield units of a scan are grey from air on, though
   double offset = 0;
   const DatasetPtr diffusion = make_dataset(parts);
   CHECK_FALSE(looks_like_ct(*diffusion, diffusion->fields().require("v"), &offset));
+}
+
+TEST_CASE("choose_scale: stated numbers of the legend that are not on it are left out with a word") {
+  const auto d = image<float>(4, [](size_t i, size_t, size_t) { return float(i); });
+  std::string warned;
+  Context context;
+  context.on_log = [&](LogLevel, std::string_view text) { warned = text; };
+  ColoringParams p;
+  p.legend_ticks = {-1, 0, 3, 4};
+  CHECK(choose_scale(*d, d->fields()[0], p, context).ticks == std::vector<double>{0, 3});
+  CHECK(warned.find("-1, 4 are beyond the legend") != warned.npos);
+  p.legend_ticks = {5};  // meant as how many
+  CHECK(choose_scale(*d, d->fields()[0], p, context).ticks.empty());
+  CHECK(warned.find("legend_count=5") != warned.npos);
+  warned = "";
+  p.legend_ticks = {0, 3}, p.legend_count = 7;
+  CHECK(choose_scale(*d, d->fields()[0], p, context).tick_count == 7);
+  CHECK(warned.empty());
+}
+
+TEST_CASE("choose_view: what lies flat is seen from higher up, what is long from its side") {
+  const auto seen_from = [](Vec3 size) { return choose_view({{0, 0, 0}, size}, "vtu", false).direction; };
+  const Vec3 usual = CameraDefaults().direction;
+  CHECK(seen_from({1, 1, 1}) == usual);
+  CHECK(seen_from({1, 1, 0.1}).z > 2 * usual.z);
+  CHECK(std::abs(seen_from({4, 1, 1}).x) < usual.x);
+  CHECK(std::abs(seen_from({1, 4, 1}).y) < std::abs(usual.y));
+  CHECK(choose_view({{0, 0, 0}, {4, 1, 0.1}}, "nii", true).direction == choose_view({{0, 0, 0}, {1, 1, 1}}, "nii", true).direction);
 }
 
 TEST_CASE("choose_scale: a stated range ends in triangles where values lie beyond it") {

@@ -8,7 +8,7 @@
 #include "scene/choose/chosen_scale.h"
 #include "scene/choose/histogram.h"
 #include "scene/choose/volume/look.h"
-#include "scene/look.h"
+#include "scene/look/look.h"
 #include "scene/show/glyphs.h"
 #include "scene/show/surface.h"
 #include "scene/show/volume.h"

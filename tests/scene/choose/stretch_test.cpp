@@ -51,3 +51,22 @@ TEST_CASE("stretch: the mesh is scaled and mirrored with its values, which stay 
   CHECK(s->range(s->fields()[0]).hi == 26);
   CHECK(stretched(d, {1, 1, 1}, Context()) == d);
 }
+
+TEST_CASE("stretch: metres along which values become fewer are a depth, though it is not said; heights and full grids are not") {
+  const auto with_floor = [](const AxisNote& z, int sign) {
+    const DatasetPtr d = sea({0, 50, 0}, {20, 70, 5000}, z);
+    DatasetParts parts;
+    parts.mesh = d->mesh(), parts.notes = d->notes();
+    std::vector<float> v(27, 1);
+    for (size_t k = 0; k < 3; ++k)
+      for (size_t i = 0; i < 3 * (sign > 0 ? k : 2 - k) && sign != 0; ++i) v[9 * k + i] = NAN;
+    parts.fields.add({"T", Association::point, Array::from_vector(std::move(v)), "", Role::scalars});
+    return make_dataset(std::move(parts));
+  };
+  const auto depth = [](const DatasetPtr& d) { return is_unstated_depth(*d, d->fields()[0]); };
+  CHECK(depth(with_floor({"Z", "m", ""}, 1)));
+  CHECK_FALSE(depth(with_floor({"Z", "m", ""}, -1)));  // mountains
+  CHECK_FALSE(depth(with_floor({"Z", "m", ""}, 0)));
+  CHECK_FALSE(depth(with_floor({"Z", "m", "up"}, 1)));
+  CHECK_FALSE(depth(with_floor({"Z", "m", "down"}, 1)));  // known already
+}

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/annotate/legend/ticks.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -45,6 +47,7 @@ std::vector<LegendLayout::Tick> limits_of_bands(const NumberedBar& b, const Colo
 
 // How many round numbers to ask for. Beside a standing bar all have the same height; below a lying one as many as stay apart in even steps.
 int round_numbers(const NumberedBar& b, const ColorScale& s) {
+  if (s.tick_count > 0) return s.tick_count;
   if (!b.lies) return std::clamp(int(b.bar.height / (2.6 * b.line_height)), 2, 9);
   int wanted = std::clamp(int(b.bar.width / (3.5 * b.font)), 2, 9);
   for (; wanted > 2; --wanted) {
@@ -64,6 +67,23 @@ int round_numbers(const NumberedBar& b, const ColorScale& s) {
   return wanted;
 }
 
+// Stated numbers with as many decimals as the longest of them.
+std::vector<std::string> texts_of_stated(const ColorScale& s) {
+  constexpr int most_decimals = 6;
+  std::vector<std::string> texts;
+  size_t decimals = 0;
+  bool plain = s.kind == ScaleKind::linear;
+  for (const double v : s.ticks) {
+    const std::string& text = texts.emplace_back(short_number(v, 8));
+    const size_t point = text.find('.');
+    if (point != text.npos) decimals = std::max(decimals, text.size() - point - 1);
+    plain = plain && text.find('e') == text.npos;
+  }
+  if (plain && decimals <= most_decimals)
+    for (size_t i = 0; i < texts.size(); ++i) texts[i] = fmt::format("{:.{}f}", s.ticks[i], decimals);
+  return texts;
+}
+
 }  // namespace
 
 std::vector<LegendLayout::Tick> legend_ticks(const Overlay& overlay, const ColorScale& s, const Rect& bar, bool lies, double font) {
@@ -81,12 +101,14 @@ std::vector<LegendLayout::Tick> legend_ticks(const Overlay& overlay, const Color
     ticks.push_back({value, text, at});
   };
   if (!s.ticks.empty()) {
-    for (const double value : s.ticks) offer(value, short_number(value, 8));
+    const std::vector<std::string> texts = texts_of_stated(s);
+    for (size_t i = 0; i < texts.size(); ++i) offer(s.ticks[i], texts[i]);
     return ticks;
   }
   size_t longest = 0;
   for (const TickLabel& t : nice_ticks(s.lo, s.hi, round_numbers(b, s), s.kind, s.linear_threshold))
     longest = std::max(longest, t.text.size()), offer(t.value, t.text);
+  if (s.tick_count > 0) return ticks;
   const double largest = std::max(std::abs(s.lo), std::abs(s.hi)), range = std::abs(s.hi - s.lo);
   const int digits = range > 0 && s.kind == ScaleKind::linear ? std::clamp(int(std::ceil(std::log10(largest / range))) + 3, 3, 15) : 3;
   for (double end : {s.lo, s.hi}) {

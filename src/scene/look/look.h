@@ -13,7 +13,9 @@
 namespace sg {
 
 struct Look {
-  std::vector<std::string> filter;  ///< operation and its key=value words to run first; empty = none
+  std::string source;                ///< operation that takes the file in place of what was read of it; empty = none
+  std::vector<std::string> prepare;  ///< operation and its key=value words to run first; empty = none
+  std::vector<std::string> filter;   ///< the same, after it
   struct Show {
     const ShowKind* kind;
     ParamSet params;        ///< of the kind
@@ -27,8 +29,10 @@ struct Look {
 };
 
 /// `field`: what the user wants to see; "" = the data decides. `extension`: of the file the data came from ("obj"); surfaces
-/// made for graphics have y up.
-Look choose_look(const Dataset& data, const std::string& field, const std::string& extension);
+/// made for graphics have y up. `of_series`: the data is a step of a file that is at hand, and one picture is to stand for all of it.
+Look choose_look(const Dataset& data, const std::string& field, const std::string& extension, bool of_series = false);
+/// A solid box whose outside hides a flow is shown by its streamlines.
+void show_flow(Look& look, const DatasetPtr& data, const std::string& field, Context& context);
 /// Turns the view of surfaces made for graphics, and of others and of few solid cells without a field, to the side that shows most of them.
 void face_detail(Look& look, std::span<const DatasetPtr> parts, const std::string& extension, Context& context);
 /// A solid whose outer surface tells nothing of what it is coloured by is cut open along the middle, with the half away from the viewer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/look.h"
+#include "scene/look/look.h"
 
 #include <fmt/core.h>
 
@@ -12,7 +12,6 @@
 #include "data/patient/modality.h"
 #include "data/patient/patient_frame.h"
 #include "filter/mesh/surface.h"
-#include "filter/tensor/tensor_field.h"
 #include "io/y_up.h"
 #include "scene/choose/histogram.h"
 #include "scene/choose/open_side.h"
@@ -20,10 +19,12 @@
 #include "scene/choose/seen_outside.h"
 #include "scene/choose/shown_range.h"
 #include "scene/choose/signed_distance.h"
+#include "scene/choose/stretch.h"
 #include "scene/choose/telling_field.h"
 #include "scene/choose/viewpoint.h"
 #include "scene/choose/volume/look.h"
 #include "scene/choose/volume/visible_box.h"
+#include "scene/look/look_parts.h"
 #include "scene/show/labels.h"
 #include "scene/show/points.h"
 #include "scene/show/surface.h"
@@ -32,11 +33,6 @@
 namespace sg {
 
 namespace {
-
-template <class P>
-void add_show(Look& look, P params, bool of_input) {
-  look.shows.push_back({&show_kind<P>(), param_set_of(std::move(params)), of_input});
-}
 
 // What a surface, line or dot will be coloured by.
 std::string field_reason(const Dataset& d, const std::string& field) {
@@ -94,6 +90,16 @@ void look_into(Vec3 opening, CameraDefaults& c) {
   const double upward = dot(opening, c.up);
   if (std::abs(upward) > 0.7 || dot(opening, c.direction) > 0.7 * length(c.direction)) return;
   c.direction = normalize(opening - c.up * upward) + c.up * 0.25 + normalize(cross(c.up, opening)) * 0.3;
+}
+
+// What lies flat is seen from higher up, what is long more from its side.
+void face_bounds(Vec3 size, Vec3& direction) {
+  constexpr double usual_height = 0.5, steeper = 2.1, long_ratio = 1.5, sideways = 0.5;
+  const double wide = std::sqrt(size.x * size.y);
+  if (!(wide > 0)) return;
+  direction.z += steeper * std::max(usual_height - size.z / wide, 0.0);
+  if (size.x > long_ratio * size.y) direction.x = sideways;
+  if (size.y > long_ratio * size.x) direction.x = 1, direction.y = -sideways;
 }
 
 bool has_polygons(const Dataset& d) {
@@ -169,25 +175,9 @@ void look_at_grid(const Dataset& d, const Field& f, Look& look) {
   const std::string why = choose_volume_look(d, f, params, item);
   if (double offset = 0; !in_patient_frame(d) && !looks_like_ct(d, f, &offset))
     look.frame = visible_box(d, f, params.component, item.opacity);
+  if (look.frame && !in_patient_frame(d) && look.camera.up == CameraDefaults().up)
+    look.camera.direction = CameraDefaults().direction, face_bounds(look.frame->size(), look.camera.direction);
   look.reason = fmt::format("scalar field '{}' on a 3D grid: shown as a volume; {}", f.name, why);
-}
-
-// Where nothing but tensors tells something, and they can be told apart: a glyph each, with the edges of the cells that carry them.
-bool look_at_tensors(const Dataset& d, Look& look) {
-  constexpr size_t most = 1000;
-  const Field* tensors = find_tensors(d, {});
-  if (!tensors || tensors->role != Role::tensors || tensors->array.count() > most) return false;
-  if (const Field* f = automatic_field(d); f && telling(d, *f) == Telling::values) return false;
-  look.filter = {"tensor_glyphs", "field=" + tensors->name};
-  add_show(look, SurfaceShow(), false);
-  if (mesh_dimension(d) > 0 && d.cell_count() > 0) {
-    SurfaceShow edges;
-    edges.style = SurfaceStyle::wireframe, edges.coloring.color = "#808080";
-    add_show(look, edges, true);
-  }
-  look.reason =
-      fmt::format("tensors '{}': a glyph for each; --show surface shows the {} mesh and its other fields", tensors->name, d.kind());
-  return true;
 }
 
 // Values along one axis alone: their curve, with the values along the other axis of the picture.
@@ -233,7 +223,9 @@ CameraDefaults choose_view(const Box3& b, const std::string& extension, bool pat
   else if (graphics) c.axes = graphics_axes, c.direction = {0.55, 0.42, 1.0}, c.up = {0, 1, 0};
   if (b.empty()) return c;
   const Vec3 s = b.size();
+  if (!patient && !graphics) face_bounds(s, c.direction);
   const double flat = 1e-6 * std::max({s.x, s.y, s.z});
+  if (flat == 0) return c;  // a point
   for (int a = 2; a >= 0; --a)
     if (s[a] <= flat) {
       face_axis(a, patient, c);
@@ -242,12 +234,12 @@ CameraDefaults choose_view(const Box3& b, const std::string& extension, bool pat
   return c;
 }
 
-Look choose_look(const Dataset& d, const std::string& field, const std::string& extension) {
+Look choose_look(const Dataset& d, const std::string& field, const std::string& extension, bool of_series) {
   Look look;
   const bool patient = in_patient_frame(d);
   look.camera = choose_view(d.bounds(), extension, patient);
   bool flat = look.camera.parallel;
-  if (!flat)
+  if (!flat && d.bounds().diagonal() > 0)
     if (const auto normal = plane_normal(d, look.camera.direction)) {
       look.camera.direction = *normal, flat = true;
       if (patient) face_slice(*normal, look.camera);
@@ -273,10 +265,16 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
       if (f.look.shows == FieldLook::Shows::fibres && f.association == Association::point && f.components() == 1) scalar = &f;
   const bool colors = scalar && scalar->role == Role::colors && scalar->components() >= 3;
 
-  if (field.empty() && look_at_tensors(d, look)) return look;
+  if (field.empty() && ((of_series && look_at_diffusion(d, look)) || look_at_tensors(d, look) || look_at_stress(d, look))) return look;
   if (scalar && (look_at_profile(d, *scalar, look) || look_at_level_set(d, *scalar, look))) return look;
   if (grid3 && box_grid && scalar && !colors) {
     look_at_grid(d, *scalar, look);
+    if (is_unstated_depth(d, *scalar)) {
+      const DatasetPtr alone(DatasetPtr(), &d);
+      const Vec3 f = chosen_stretch({&alone, 1}, d.bounds());
+      look.picture.push_back(fmt::format("stretch={},{},{}", short_number(f.x), short_number(f.y), short_number(-f.z)));
+      look.reason += "; its third axis grows downwards, as there are fewer values the farther along it they are";
+    }
     return look;
   }
   if (is_line_labels(d)) {
@@ -349,7 +347,9 @@ void cut_open(Look& look, const DatasetPtr& data, const std::string& field, Cont
     if (!(is_long && a == longest) && (axis < 0 || std::abs(towards[a]) > std::abs(towards[axis]))) axis = a;
   look.filter = {"clip", fmt::format("axis={}", "xyz"[axis])};
   look.shows[0].of_input = false;
-  look.reason += fmt::format("; its outside has nearly one value of '{}', so it is cut open", f->name);
+  look.reason += telling(*data, *f) == Telling::divisions
+                     ? fmt::format("; parts of '{}' lie inside, so it is cut open", f->name)
+                     : fmt::format("; its outside has nearly one value of '{}', so it is cut open", f->name);
 }
 
 }  // namespace sg

@@ -4,7 +4,7 @@
 
 #include "scene/choose/chosen_scale.h"
 #include "scene/choose/shown_range.h"
-#include "scene/look.h"
+#include "scene/look/look.h"
 #include "scene/show/surface.h"
 #include "scene/show/volume.h"
 #include "support/test.h"
