@@ -141,8 +141,12 @@ struct Box3 {
   SG_HD constexpr void add(const Box3& b) {
     if (!b.empty()) add(b.lo), add(b.hi);
   }
-  /// The origin for an empty box.
-  SG_HD constexpr Vec3 center() const { return empty() ? Vec3() : (lo + hi) * 0.5; }
+  /// The origin for an empty box; 0 along axes on which there is no middle, as it is infinite.
+  SG_HD constexpr Vec3 center() const {
+    Vec3 c = empty() ? Vec3() : (lo + hi) * 0.5;
+    for (int i = 0; i < 3; ++i) c[i] = c[i] - c[i] == 0 ? c[i] : 0;
+    return c;
+  }
   SG_HD constexpr Vec3 size() const { return hi - lo; }
   double diagonal() const { return empty() ? 0.0 : length(size()); }
   SG_HD friend constexpr bool operator==(const Box3&, const Box3&) = default;

@@ -27,6 +27,7 @@
 #include "pipeline/film/film.h"
 #include "pipeline/graph/slabs.h"
 #include "pipeline/picture/picture.h"
+#include "pipeline/picture/picture_cost.h"
 #include "pipeline/picture/picture_sets.h"
 
 namespace sg {
@@ -75,9 +76,9 @@ std::vector<Target> targets_of(const PipelineGraph& built) {
   return targets;
 }
 
-void print_explanation(const PipelineFile& file) {
+void print_explanation(const PipelineFile& file, bool drawn = false) {
   const PipelineGraph built = build_graph(file);
-  say(built.graph.explain(targets_of(built)));
+  say(built.graph.explain(targets_of(built)) + (drawn ? explain_drawing(file, built) : ""));
 }
 
 // With --memory, what the steps are expected to hold together is known before any of them runs. Files in formats of which parts can be
@@ -123,7 +124,7 @@ void set_drafts(PictureOptions& options, const PipelineFile& file, const std::st
 
 int render_to(PipelineFile& file, const std::string& output, PictureOptions options, const Options& o, Context& context) {
   if (o.explain) {
-    print_explanation(file);
+    print_explanation(file, true);
     return 0;
   }
   check_output(output);

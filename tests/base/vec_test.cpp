@@ -83,4 +83,6 @@ TEST_CASE("boxes: empty until something is added, NaN is ignored") {
   b.add(c);
   CHECK(b.center() == Vec3(0, 2.5, 3));
   CHECK(b.diagonal() == doctest::Approx(std::sqrt(29.0)));
+  b.add(Vec3(-HUGE_VAL, 3, 3)), b.add(Vec3(HUGE_VAL, 3, HUGE_VAL));
+  CHECK(b.center() == Vec3(0, 2.5, 0));  // places relative to it stay finite
 }

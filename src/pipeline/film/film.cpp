@@ -82,14 +82,39 @@ void fix_ranges(PipelineFile& first, const std::vector<PipelineFile>& some, cons
   }
 }
 
+// The camera stands still and the axes stay: where nothing is said of them, all pictures are of the box of up to five steps.
+void fix_frame(PipelineFile& first, const std::vector<PipelineFile>& some, const PictureOptions& options, Context& context) {
+  const StatedPicture stated = stated_in(some[0]);
+  if (!stated.picture.frame.empty() || stated.camera.position || stated.camera.target || in_panels(stated.picture)) return;
+  Box3 all;
+  bool same = true;
+  for (const PipelineFile& file : some) {
+    Box3 box;
+    for (const Data& data : results_of(file, options.results, std::make_shared<Cache>(0), context))
+      for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { box.add(d->bounds()); });
+    same = same && (all.empty() || box == all);
+    all.add(box);
+  }
+  if (same || all.empty()) return;
+  std::string ends;
+  for (int a = 0; a < 3; ++a) ends += fmt::format("{}{},{}", a ? "," : "", exact_number(all.lo[a]), exact_number(all.hi[a]));
+  first.picture.push_back("frame=" + ends);
+  context.info(fmt::format("one box for all pictures, that of {} steps spread over the series: frame={}", some.size(), ends));
+}
+
 // The pipeline of a film with the looks that its first picture gets.
 PipelineFile with_looks(const PipelineFile& plain, PipelineFile first, const PictureOptions& options, Context& context) {
   std::vector<std::string> notes;
   std::vector<Data> looked;
   choose_looks(first, options, options.cache, looked, notes, context);
-  // Without its time.
+  // Without its time; the part of a volume in which something is seen is that of the first step alone.
   for (size_t i = 0; i < plain.steps.size(); ++i) first.steps[i].words = plain.steps[i].words;
-  first.picture = plain.picture;
+  std::vector<std::string> picture = plain.picture;
+  for (const std::string& word : first.picture) {
+    const std::string_view key = std::string_view(word).substr(0, word.find('='));
+    if (key != "frame" && !word_value(plain.picture, key)) picture.push_back(word);
+  }
+  first.picture = std::move(picture);
   return first;
 }
 
@@ -130,7 +155,10 @@ std::vector<double> make_film(PipelineFile plain, const FilmParams& params, cons
     PipelineFile file = at_time(base, film, count == 1 ? 0 : i * (count - 1) / (std::min<size_t>(5, count) - 1));
     if (some.empty() || some.back().steps != file.steps) some.push_back(std::move(file));
   }
-  if (some.size() > 1) fix_ranges(base, some, each, silent);  // else the data are the same: so is all that is chosen from them
+  if (some.size() > 1) {  // else the data are the same: so is all that is chosen from them
+    fix_ranges(base, some, each, silent);
+    fix_frame(base, some, each, silent);
+  }
 
   const bool prefetch = outer.memory_limit == 0 || 2 * one_step < outer.memory_limit;
   if (!prefetch) context.info("two steps do not fit into the allowed memory: each is read when it is drawn");

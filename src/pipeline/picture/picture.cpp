@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "base/all_ranks.h"
 #include "base/error.h"
 #include "base/file/file.h"
@@ -12,8 +14,10 @@
 #include "data/ranks/over_all.h"
 #include "pipeline/file/transfer_file.h"
 #include "pipeline/film/film_params.h"
+#include "pipeline/picture/picture_cost.h"
 #include "pipeline/picture/picture_notes.h"
 #include "pipeline/picture/picture_parts.h"
+#include "scene/choose/coloring.h"
 #include "scene/show/show.h"
 
 namespace sg {
@@ -209,6 +213,22 @@ Panel panel_of(const Shown& shown, const Look& look, const StatedPicture& stated
   return p;
 }
 
+// By which field the stated ways to show colour, where that is left to the data.
+void note_colors(const std::vector<StatedShow>& shows, const std::vector<Data>& results, std::vector<std::string>& notes) {
+  for (size_t i = 0; i < shows.size(); ++i) {
+    const auto& [kind, params] = shows[i];
+    const ColoringParams* coloring = kind->coloring ? kind->coloring(params) : nullptr;
+    if (!coloring || !coloring->field.name.empty() || !coloring->color.empty()) continue;
+    const Field* field = nullptr;
+    for_each_dataset(results[i], [&](const std::string&, const DatasetPtr& d) {
+      if (!field) field = shown_field(*kind, params, *d);
+    });
+    if (!field) continue;
+    const std::string note = fmt::format("{}: coloured by '{}'", kind->name, field->name);
+    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+  }
+}
+
 }  // namespace
 
 Picture make_picture(PipelineFile& file, const PictureOptions& options, Context& context) {
@@ -231,6 +251,9 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   std::vector<Data> results = built.graph.evaluate(targets, computing);
   leave_out_sets(file, shows, results, picture.notes, computing);
   held.clear();
+  if (look.shows.empty()) note_colors(shows, results, picture.notes);
+  if (const std::string note = note_of_long_drawing(shows, results, double(stated.width) * double(stated.height)); !note.empty())
+    context.info(note);
   for (std::string* text : {&stated.picture.title, &stated.picture.caption}) *text = title_of(*text, results, context);
   for (PictureNote& n : stated.notes) n.text = title_of(n.text, results, context);
 

@@ -173,11 +173,13 @@ void look_at_grid(const Dataset& d, const Field& f, Look& look) {
   VolumeItem item;
   item.color = choose_scale(d, f, params, quiet);
   const std::string why = choose_volume_look(d, f, params, item);
-  if (double offset = 0; !in_patient_frame(d) && !looks_like_ct(d, f, &offset))
-    look.frame = visible_box(d, f, params.component, item.opacity);
+  double offset = 0;
+  const bool lies_somehow = !in_patient_frame(d) && looks_like_ct(d, f, &offset);
+  if (!in_patient_frame(d) && !lies_somehow) look.frame = visible_box(d, f, params.component, item.opacity);
   if (look.frame && !in_patient_frame(d) && look.camera.up == CameraDefaults().up)
     look.camera.direction = CameraDefaults().direction, face_bounds(look.frame->size(), look.camera.direction);
   look.reason = fmt::format("scalar field '{}' on a 3D grid: shown as a volume; {}", f.name, why);
+  if (lies_somehow) look.reason += "; how the patient lies is not stated: --camera 'view=front up=0,0,-1' turns one that is upside down";
 }
 
 // Values along one axis alone: their curve, with the values along the other axis of the picture.

@@ -96,6 +96,16 @@ TEST_CASE("glyph_points: all, every and cells give the points and middles that t
   CHECK(run(make_dataset(hidden), {.mode = GlyphPlaces::all})->point_count() == 58);
 }
 
+TEST_CASE("glyph_points: infinite points do not move the others") {
+  const float inf = HUGE_VALF;
+  const auto cloud = make_dataset(Mesh(PointCloud{{Array::from_vector<float>({1, 2, 3, inf, 2, 3, -inf, 2, 3}, 3), {}}}), FieldSet());
+  GlyphPointsParams p;
+  p.mode = GlyphPlaces::all;
+  const DatasetPtr d = run(cloud, p);
+  REQUIRE(d->point_count() >= 1);
+  CHECK(place(d, 0) == Vec3(1, 2, 3));
+}
+
 TEST_CASE("glyph_points: random places are uniform by area and the same for a seed and any number of threads") {
   // Two triangles of areas 1 and 3.
   SurfaceMesh m;

@@ -68,6 +68,24 @@ TEST_CASE("film: each picture is the one that its pipeline makes alone, and all 
   }
 }
 
+TEST_CASE("film: where the data grow and shrink, camera and axes stay those of all of them, unless a frame is stated") {
+  const std::string begin =
+      "sightglass: 1\nsteps:\n  a: {double_gyre: {dims: [41, 21, 1]}}\n  b: {threshold: {field: velocity, component: 0, min: 0.15}}\n"
+      "show:\n  - {surface: {field: velocity}}\npicture: {size: 60x40, legend: false";
+  FilmParams params;
+  params.times = "0:5:3";
+  Context context;
+  std::string said;
+  context.on_log = [&](LogLevel, std::string_view text) { said += text; };
+  const std::vector<Shot> shots = shots_of(parse_pipeline(begin + "}\n", "", picture_vocabulary()), params, context);
+  const auto frame = word_value(shots[0].pipeline.picture, "frame");
+  REQUIRE(frame);
+  CHECK(said.find("frame=" + *frame) != said.npos);
+  for (const Shot& s : shots) CHECK(word_value(s.pipeline.picture, "frame") == frame);
+  for (const Shot& s : shots_of(parse_pipeline(begin + ", frame: [0, 2, 0, 1, 0, 0]}\n", "", picture_vocabulary()), params, context))
+    CHECK(word_value(s.pipeline.picture, "frame") == "0,2,0,1,0,0");
+}
+
 TEST_CASE("film: where two steps do not fit into the memory allowed, the pictures are the same") {
   PipelineFile file = parse_pipeline(gyre, "", picture_vocabulary());
   FilmParams params;
