@@ -95,8 +95,8 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
     plan.lo = std::min(item.color.lo, item.color.hi) - span, plan.hi = std::max(item.color.lo, item.color.hi) + span, plan.base = 0;
   }
   plan.accuracy = 0.25 * item.sampling.tolerance, plan.faint = 0.5 / diagonal,
-  plan.most_tau = 1e6 / source.edge;  // hides what lies behind the corner of a cell
-  const double most_detail = 1e-3 * plan.most_tau;
+  plan.most_tau = 1e8 / source.edge;  // hides what lies behind the corner of a cell
+  const double most_detail = 1e-5 * plan.most_tau;
   v.medium = std::make_unique<Medium>(item.color, item.opacity, plan);
   if (!item.detail.plain() || item.light.ink > 0) {
     v.transfer = std::make_unique<TransferFunction>(item.color, item.opacity, item.detail, base);
