@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "base/error.h"
@@ -38,7 +39,19 @@ std::string overview(const std::vector<CatalogEntry>& all) {
     }
   }
   return ops_help() + shows + others + "\nreadable formats\n" + formats_line(all, EntryKind::reader) + "\nwritable formats\n" +
-         formats_line(all, EntryKind::writer) + "\nsightglass ops NAME lists its parameters.\n";
+         formats_line(all, EntryKind::writer) +
+         "\nsightglass ops NAME lists its parameters, and knows many names of other programs (ops --other-names: all of them).\n";
+}
+
+// What other programs call things, and how it is said here.
+std::string other_names_list() {
+  std::string r;
+  for (const OtherName& n : other_names()) {
+    const auto all = words(n.words);
+    const auto some = all.begin() + std::ptrdiff_t(std::min<size_t>(all.size(), 4));
+    r += fmt::format("{:<58} {}\n", fmt::format("{}", fmt::join(all.begin(), some, ", ")), n.here);
+  }
+  return r;
 }
 
 std::string explained(const CatalogEntry& e) {
@@ -52,6 +65,10 @@ std::string explained(const CatalogEntry& e) {
 int run_ops(const Options& o, Context&) {
   if (o.cpp) {
     std::fputs(cpp_header().c_str(), stdout);
+    return 0;
+  }
+  if (o.other_names) {
+    std::fputs(other_names_list().c_str(), stdout);
     return 0;
   }
   const std::vector<CatalogEntry> all = catalog();

@@ -36,7 +36,8 @@ struct Options {
   int threads = 0;
   size_t memory = 0;
   bool read_anywhere = false;  ///< files and recipes may name any file
-  bool json = false, cpp = false, quick = false, all_times = false, quiet = false, verbose = false, explain = false, recipe = false,
+  bool json = false, cpp = false, other_names = false, quick = false, all_times = false, quiet = false, verbose = false, explain = false,
+       recipe = false,
        series = false;  ///< series: all inputs are one
 };
 

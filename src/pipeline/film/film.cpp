@@ -97,7 +97,7 @@ void fix_frame(PipelineFile& first, const std::vector<PipelineFile>& some, const
   }
   if (same || all.empty()) return;
   std::string ends;
-  for (int a = 0; a < 3; ++a) ends += fmt::format("{}{},{}", a ? "," : "", exact_number(all.lo[a]), exact_number(all.hi[a]));
+  for (int a = 0; a < 3; ++a) ends += fmt::format("{}{},{}", a ? "," : "", short_number(all.lo[a], 6), short_number(all.hi[a], 6));
   first.picture.push_back("frame=" + ends);
   context.info(fmt::format("one box for all pictures, that of {} steps spread over the series: frame={}", some.size(), ends));
 }

@@ -335,7 +335,10 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
       fail_usage(fmt::format("field '{}' has no positive value for a log scale", field.name), "scale", "use scale=linear or scale=symlog");
     r = positive;
     below_log = true;
-    context.info(fmt::format("values of '{}' at or below 0 have no place on a log scale; they are drawn as below it", field.name));
+    context.info(
+        fmt::format("values of '{}' at or below 0 have no place on a log scale, which begins at {}, the smallest above 0; all below "
+                    "that is drawn as below it",
+                    field.name, short_number(positive.lo)));
   }
   constexpr double decades = 1e12;  // what lies below is what rounding left
   if (s.kind == ScaleKind::log && p.range.empty() && r.lo > 0 && r.lo * decades < r.hi) r.lo = r.hi / decades, below_log = true;
