@@ -56,4 +56,5 @@ install(FILES ${CMAKE_BINARY_DIR}/told/completions/sightglass DESTINATION ${CMAK
 install(FILES ${CMAKE_BINARY_DIR}/told/completions/_sightglass DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
 install(FILES ${CMAKE_BINARY_DIR}/told/completions/sightglass.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 install(FILES README.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES docs/coming_from.md docs/security.md docs/limits.md docs/words.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs)  # the README names them
 install(DIRECTORY examples/cpp DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
