@@ -50,7 +50,8 @@ void show_flow(Look& look, const DatasetPtr& data, const std::string& field, Con
     return;
   const Field* flow = flow_of(*data);
   if (!flow || data->cell_count() < fewest || data->cell_count() > most || mesh_dimension(*data) != 3 || !is_box(data, context)) return;
-  look.filter = {"streamlines", "field=" + flow->name};
+  // Few and no longer than the box, as closed rooms wind them up.
+  look.filter = {"streamlines", "field=" + flow->name, "count=30", "max_length=" + short_number(data->bounds().diagonal(), 3)};
   look.shows[0].of_input = false;
   look.reason =
       fmt::format("{} mesh: its outside is a box, so the flow '{}' within is shown by streamlines; --show surface shows the outside",

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <numeric>
+#include <set>
 
 #include "base/text/text.h"
 #include "data/cells/mesh_dimension.h"
@@ -336,6 +337,25 @@ void face_detail(Look& look, std::span<const DatasetPtr> parts, const std::strin
   look.camera.direction = telling_direction(surfaces, look.camera.direction, look.camera.up);
 }
 
+namespace {
+
+// The names of the types of solid cells, where there are cells of other dimensions too.
+std::string solid_types_of_mixed(const Dataset& d) {
+  const auto* mesh = d.as<UnstructuredMesh>();
+  if (!mesh || mesh->types.empty()) return "";
+  std::set<CellType> solid;
+  bool mixed = false;
+  for (size_t i = 0; i < d.cell_count(); ++i) {
+    if (cell_type_info(mesh->type(i)).dimension == 3) solid.insert(mesh->type(i));
+    else mixed = true;
+  }
+  std::string names;
+  for (const CellType t : solid) names += fmt::format("{}{}", names.empty() ? "" : ",", cell_type_info(t).name);
+  return mixed ? names : "";
+}
+
+}  // namespace
+
 void cut_open(Look& look, const DatasetPtr& data, const std::string& field, Context& context) {
   if (!look.filter.empty() || look.camera.parallel || look.shows.size() != 1 || !look.shows[0].kind->is<SurfaceShow>()) return;
   const Field* f = field.empty() ? automatic_field(*data) : data->fields().find(field);
@@ -347,6 +367,8 @@ void cut_open(Look& look, const DatasetPtr& data, const std::string& field, Cont
   int axis = -1;
   for (int a = 0; a < 3; ++a)
     if (!(is_long && a == longest) && (axis < 0 || std::abs(towards[a]) > std::abs(towards[axis]))) axis = a;
+  // Faces that lie upon solids would hide where these are cut.
+  if (const std::string solids = solid_types_of_mixed(*data); !solids.empty()) look.prepare = {"extract", "types=" + solids};
   look.filter = {"clip", fmt::format("axis={}", "xyz"[axis])};
   look.shows[0].of_input = false;
   look.reason += telling(*data, *f) == Telling::divisions

@@ -60,7 +60,30 @@ TEST_CASE("seen outside: a part that is only inside is not seen, parts that all 
   cut_open(look, nested, "", context);
   REQUIRE(look.filter.size() == 2);
   CHECK(look.filter[0] == "clip");
+  CHECK(look.prepare.empty());
   CHECK(look.reason.find("lie inside") != std::string::npos);
+  // With a face upon the solids, which must not hide them where they are cut.
+  UnstructuredMesh mixed = *nested->as<UnstructuredMesh>();
+  const Array solid = mixed.cells.connectivity;
+  std::vector<int32_t> ids, offsets{0}, material;
+  std::vector<uint8_t> types;
+  for (size_t c = 0; c <= nested->cell_count(); ++c) {
+    const bool face = c == nested->cell_count();
+    for (size_t k = 0; k < (face ? 4u : 8u); ++k) ids.push_back(int32_t(solid.get(face ? k : 8 * c + k)));
+    offsets.push_back(int32_t(ids.size())), types.push_back(uint8_t(face ? CellType::quad : mixed.type(c)));
+    material.push_back(face ? 3 : int32_t(nested->fields().require("material").array.get(c)));
+  }
+  mixed.cells = {Array::from_vector(std::move(ids)), Array::from_vector(std::move(offsets)), 0};
+  mixed.types = Array::from_vector(std::move(types));
+  FieldSet fields;
+  fields.add({"material", Association::cell, Array::from_vector(std::move(material)), "", Role::labels});
+  const DatasetPtr with_face = make_dataset(std::move(mixed), std::move(fields));
+  Look solids = choose_look(*with_face, "", "");
+  cut_open(solids, with_face, "", context);
+  REQUIRE(solids.prepare.size() == 2);
+  CHECK(solids.prepare[0] == "extract");
+  CHECK(solids.prepare[1].starts_with("types="));
+  CHECK(solids.prepare[1].find("Quad") == std::string::npos);
 }
 
 TEST_CASE("cut_open: such a solid is cut across the line of sight, a long one lengthwise") {
