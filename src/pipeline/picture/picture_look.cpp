@@ -207,6 +207,14 @@ void see_through(const std::vector<Chosen>& inputs, std::vector<PipelineFile::Sh
     }
 }
 
+// Several views of one thing: where nothing is said of the view, and each gets enough pixels.
+bool room_for_views(const PipelineFile& file, const StatedPicture& stated) {
+  constexpr int width = 480, height = 360;
+  const auto& words = file.picture;
+  const bool own_view = std::any_of(words.begin(), words.end(), [](const std::string& w) { return w.starts_with("camera"); });
+  return !own_view && stated.picture.layout.empty() && stated.width >= width && stated.height >= height;
+}
+
 }  // namespace
 
 Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::shared_ptr<Cache>& cache, std::vector<Data>& held,
@@ -241,8 +249,11 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::
   const StatedPicture stated = stated_in(file);
   if (!in_panels(stated.picture)) see_through(inputs, shows, notes);
   if (shows.size() == 1) {
-    for (const std::string& word : first.picture)
-      if (!word_value(file.picture, std::string_view(word).substr(0, word.find('=')))) file.picture.push_back(word);
+    for (const std::string& word : first.picture) {
+      const std::string_view key = std::string_view(word).substr(0, word.find('='));
+      if (word_value(file.picture, key) || (key == "views" && !room_for_views(file, stated))) continue;
+      file.picture.push_back(word);
+    }
     const bool own_camera = stated.camera.position || stated.camera.target;
     if (first.frame && stated.picture.frame.empty() && !own_camera && !states_scale(shows[0])) {
       const Box3& b = *first.frame;

@@ -122,7 +122,9 @@ bool look_at_scan(const Dataset& d, const Field& f, Look& look) {
   slices.coloring.field.name = f.name;
   add_show(look, slices, false);
   look.camera.direction = {0.8, -1.0, 0.65};
-  look.reason = fmt::format("'{}' is a scan: three slices through its middle; --show volume shows it as a body", f.name);
+  look.picture = {"views=front,left,bottom,iso"};
+  look.reason =
+      fmt::format("'{}' is a scan: three slices through its middle, each seen straight on; --show volume shows it as a body", f.name);
   return true;
 }
 

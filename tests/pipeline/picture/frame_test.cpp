@@ -14,14 +14,33 @@ struct Made {
 
 Made made(const std::string& steps, const std::string& picture, const Data* data = nullptr, std::vector<std::string> coloring = {}) {
   Made m;
-  m.file =
-      parse_pipeline("sightglass: 1\nsteps:\n  a: {" + steps + "}\npicture: {size: 120x90" + picture + "}\n", "", picture_vocabulary());
+  m.file = parse_pipeline("sightglass: 1\nsteps:\n  a: {" + steps + "}\npicture: {" +
+                              (picture.find("size:") == picture.npos ? "size: 120x90" : "legend: true") + picture + "}\n",
+                          "", picture_vocabulary());
   PictureOptions options;
   options.coloring = std::move(coloring);
   if (data) options.results["a"] = *data;
   Context context;
   m.picture = make_picture(m.file, options, context);
   return m;
+}
+
+// A noisy scan with a ball in it, in the patient frame.
+Data scan() {
+  DatasetParts parts;
+  UniformGrid g;
+  g.dims = {32, 32, 32};
+  std::vector<float> v;
+  for (int k = 0; k < 32; ++k)
+    for (int j = 0; j < 32; ++j)
+      for (int i = 0; i < 32; ++i) {
+        const double x = i - 15.5, y = j - 15.5, z = k - 15.5;
+        v.push_back(x * x + y * y + z * z < 64 ? float(300 + (i * 7 + j * 3) / 3) : float((i * 7 + j * 5 + k * 3) % 20));
+      }
+  parts.mesh = g;
+  parts.fields.add({"v", Association::point, Array::from_vector(std::move(v)), "", Role::scalars});
+  parts.notes = {{"space", "left-posterior-superior"}, {"Modality", "MR"}};
+  return Data(make_dataset(std::move(parts)));
 }
 
 // 1 in a corner of a grid of 30^3 samples, falling to nothing within a few.
@@ -85,4 +104,15 @@ TEST_CASE("axes: stated titles are written, and a curve has the name of its fiel
   CHECK(word_value(curve.file.picture, "y_title") == "height [m]");
   CHECK(word_value(curve.file.picture, "stretch") == "1,0.6,1");
   CHECK(word_value(made("read: given.vti", ", y_title: depth", &line).file.picture, "y_title") == "depth");
+}
+
+TEST_CASE("views: a scan's slices are each seen straight on, unless something is said of the view or there is no room") {
+  const Data data = scan();
+  const auto views = [&](const std::string& more) { return word_value(made("read: given.nii", more, &data).file.picture, "views"); };
+  CHECK(views(", size: 480x360") == "front,left,bottom,iso");
+  CHECK_FALSE(views(""));  // 120x90
+  CHECK_FALSE(views(", size: 480x360, camera: front"));
+  CHECK_FALSE(views(", size: 480x360, camera: {azimuth: 20}"));
+  CHECK_FALSE(views(", size: 480x360, layout: 2x1"));
+  CHECK(views(", size: 480x360, views: \"left,front\"") == "left,front");
 }

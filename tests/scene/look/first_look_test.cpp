@@ -41,6 +41,7 @@ TEST_CASE("first look: a scan that is no CT is three slices in grey, what was cu
       {32, 32, 32}, [](size_t i, size_t j, size_t k) { return head(i, j, k, true); }, true);
   const Look slices = choose_look(*scan, "", "nii");
   CHECK(slices.filter == std::vector<std::string>{"slice", "planes=xyz"});
+  CHECK(slices.picture == std::vector<std::string>{"views=front,left,bottom,iso"});
   REQUIRE(slices.shows.size() == 1);
   CHECK(slices.shows[0].kind->is<SurfaceShow>());
   CHECK_FALSE(slices.shows[0].of_input);
