@@ -8,7 +8,9 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <mutex>
 #include <new>
+#include <set>
 
 #include "base/error.h"
 #include "base/file/file_fence.h"
@@ -86,8 +88,16 @@ void connect(Context& context, const Options& o) {
   set_memory_limit(o.memory);
   set_plugin_memory(o.memory);
   const auto line = std::make_shared<ProgressLine>();
-  context.on_log = [line, quiet = o.quiet, verbose = o.verbose](LogLevel level, std::string_view text) {
+  struct Told {
+    std::mutex mutex;
+    std::set<std::string, std::less<>> texts;
+  };
+  context.on_log = [line, told = std::make_shared<Told>(), quiet = o.quiet, verbose = o.verbose](LogLevel level, std::string_view text) {
     if (quiet || (level == LogLevel::debug && !verbose)) return;
+    {  // what many parts say alike is said once
+      const std::lock_guard lock(told->mutex);
+      if (!told->texts.emplace(text).second && !verbose) return;
+    }
     line->print((level == LogLevel::warning ? "warning: " : "note: ") + std::string(text));
   };
   if (!o.quiet && ::isatty(2)) context.on_progress = [line](double fraction, std::string_view doing) { line->show(fraction, doing); };

@@ -16,6 +16,7 @@
 #include "pipeline/film/film_params.h"
 #include "pipeline/picture/picture.h"
 #include "scene/choose/coloring.h"
+#include "scene/show/other_names.h"
 
 namespace sg {
 
@@ -240,6 +241,8 @@ void finish_raw(const RawText& raw, Options& o) {
         for (const std::string& n : option->get_lnames()) names.push_back("--" + n);
     }
     const std::string same = same_word(word, names);
+    if (const std::string said = said_here(word, names); same.empty() && said.starts_with("here"))
+      fail_usage(fmt::format("unknown argument '{}'", word), "sightglass " + command.get_name(), said);
     const std::string near = same.empty() ? nearest_name(word, names) : same;
     fail_usage(fmt::format("unknown argument '{}'", word), "sightglass " + command.get_name(),
                near.empty() ? fmt::format("see: sightglass {} --help", command.get_name()) : fmt::format("did you mean '{}'?", near));

@@ -23,6 +23,7 @@
 #include "filter/mesh/select/piece.h"
 #include "image/codec.h"
 #include "io/file_series.h"
+#include "io/film/movie.h"
 #include "io/formats.h"
 #include "pipeline/film/film.h"
 #include "pipeline/graph/slabs.h"
@@ -167,11 +168,14 @@ void take_film_flags(const Options& o, FilmParams& film) {
 int render_into(PipelineFile file, const FilmParams& film, const PictureOptions& options, const Options& o, Context& context) {
   if (is_film(film.output) && !o.explain) {
     const FilmWritten written = write_film(std::move(file), film, options, context);
+    const size_t count = written.times.size();
+    const double rate = pictures_per_second(film, count);
     if (!o.quiet)
-      say(fmt::format("{}: {} pictures, {}\n", printable(written.what), written.times.size(),
-                      film.turntable > 0
-                          ? "once around"
-                          : fmt::format("times {} to {}", short_number(written.times.front()), short_number(written.times.back()))));
+      say(fmt::format(
+          "{}: {} pictures, {}{}\n", printable(written.what), count,
+          film.turntable > 0 ? "once around"
+                             : fmt::format("times {} to {}", short_number(written.times.front()), short_number(written.times.back())),
+          is_movie(film.output) ? fmt::format(", in {} s (--fps {})", short_number(double(count) / rate, 2), short_number(rate)) : ""));
     return 0;
   }
   if ((word_value(o.film, "times") || film.turntable > 0) && !o.explain)

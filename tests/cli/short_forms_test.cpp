@@ -80,6 +80,7 @@ TEST_CASE("command line: what other programs call a thing leads to what it is ca
   // Missing quotes.
   CHECK(told({"render", "--source", "gyroid size=8", "-f", "contour", "values=0.2"}).find("-f 'contour values=0.2'") != std::string::npos);
   CHECK(told({"ops", "mip"}).find("mode=maximum") != std::string::npos);
+  CHECK(told({"render", "x.vtu", "--opacity", "0.5"}).find("--show 'surface opacity=") != std::string::npos);
   CHECK(sightglass({"ops", "--other-names"}).out.find("-f 'contour values=...'") != std::string::npos);
 }
 

@@ -27,7 +27,7 @@ FilmWriter::FilmWriter(const FilmParams& params, size_t count)
                "out_{n}.png numbers the pictures, film.webm is a film of them");
   if (is_movie(output_)) {
     MovieSettings settings;
-    settings.fps = params.fps;
+    settings.fps = pictures_per_second(params, count);
     movie_ = std::make_unique<MovieWriter>(output_, settings);
   } else {
     AtomicFile probe(numbered(0));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parameters of a film besides its pipeline and its pictures; in a pipeline file they are under `picture`.
 #pragma once
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -13,10 +14,14 @@ struct FilmParams {
   std::string output;  ///< "out_{n}.png" (numbered pictures), "film.webm" or "film.mp4"
   std::string
       times;  ///< FIRST:LAST:COUNT, a list, or FIRST:LAST (of files: their steps in between; of sources: 0, 1, 2, ...); "" = all steps
-  double fps = 25;
+  std::optional<double> fps;
   int turntable = 0;  ///< pictures of one turn of the camera in place of times; 0 = none
 };
 void describe(Schema& s, FilmParams& p);
+
+/// The stated pictures per second, else as many as let `count` pictures last for four seconds, but no more than 25 and no fewer than 2;
+/// 25 where their number is not known (0).
+double pictures_per_second(const FilmParams& params, size_t count);
 
 /// Words under `picture` that are parameters of the film. A recipe and a single picture do without them.
 bool is_film_word(std::string_view word);

@@ -71,6 +71,11 @@ constexpr OtherName names[] = {
     {"textannotation", "--note 'Inlet @ 0.1,0.9'"},
     {"scalebar ruler", "--picture scale_bar=true"},
     {"view zoom orbit azimuth", "--camera"},
+    {"opacity transparency transparent translucent alpha", "--show 'surface opacity=0.4'"},
+    {"transferfunction opacityfunction colortransferfunction", "--show 'volume opacity=0:0,0.3:0.1,1:0.8'"},
+    {"clim colorrange window windowlevel", "--show 'surface range=...'"},
+    {"logscale log logarithmic", "--show 'surface scale=log'"},
+    {"below above outofrange", "--show 'surface below=blue above=red'"},
 };
 
 }  // namespace

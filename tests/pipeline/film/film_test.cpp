@@ -43,10 +43,20 @@ TEST_CASE("film: what a pipeline file says of its film is taken out of it, and s
   take_film_words(file, params);
   CHECK(params.times == "0:1:3");
   CHECK(params.output == "film.webm");
-  CHECK(params.fps == 5);
+  CHECK(params.fps == 5.0);
   CHECK(file.picture == std::vector<std::string>{"size=60x40", "legend=false"});
   file.picture.push_back("fps=0");
   CHECK(error_of([&] { take_film_words(file, params); }).find("from 0.1 to 1000") != std::string::npos);
+}
+
+TEST_CASE("film: short series last for seconds, long ones have 25 pictures in each, unless it is stated") {
+  FilmParams p;
+  CHECK(pictures_per_second(p, 11) == 2.75);
+  CHECK(pictures_per_second(p, 3) == 2);
+  CHECK(pictures_per_second(p, 1000) == 25);
+  CHECK(pictures_per_second(p, 0) == 25);
+  p.fps = 12;
+  CHECK(pictures_per_second(p, 11) == 12);
 }
 
 TEST_CASE("film: each picture is the one that its pipeline makes alone, and all have one range of colours") {
