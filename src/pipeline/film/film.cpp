@@ -96,8 +96,7 @@ void fix_frame(PipelineFile& first, const std::vector<PipelineFile>& some, const
     all.add(box);
   }
   if (same || all.empty()) return;
-  std::string ends;
-  for (int a = 0; a < 3; ++a) ends += fmt::format("{}{},{}", a ? "," : "", short_number(all.lo[a], 6), short_number(all.hi[a], 6));
+  const std::string ends = box_words(all);
   first.picture.push_back("frame=" + ends);
   context.info(fmt::format("one box for all pictures, that of {} steps spread over the series: frame={}", some.size(), ends));
 }

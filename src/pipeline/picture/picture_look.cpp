@@ -2,6 +2,8 @@
 // What is shown when nothing is said.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "base/error.h"
 #include "base/file/file.h"
 #include "base/text/text.h"
@@ -42,6 +44,17 @@ std::string free_name(const PipelineFile& file, const std::string& wanted) {
 }
 
 }  // namespace
+
+std::string box_words(const Box3& b) {
+  constexpr double parts = 1000;
+  std::vector<std::string> ends;
+  for (int a = 0; a < 3; ++a) {
+    const double size = b.hi[a] - b.lo[a], step = size > 0 ? std::pow(10, std::floor(std::log10(size / parts))) : 0;
+    for (const double end : {b.lo[a], b.hi[a]})
+      ends.push_back(step > 0 ? short_number(std::round(end / step) * step, 12) : exact_number(end));
+  }
+  return fmt::format("{}", fmt::join(ends, ","));
+}
 
 std::string added_step(PipelineFile& file, const std::string& operation, std::vector<std::string> words, const std::string& from) {
   const std::string name = free_name(file, operation);
@@ -109,12 +122,9 @@ void cut_to_crowd(const Data& data, const std::string& name, Look& look) {
   if (!box) return;
   Box3 b = *box;
   const double reach = b.diagonal();  // nothing is cut off across the plane
-  std::vector<std::string> ends;
-  for (int a = 0; a < 3; ++a) {
-    const bool across = std::abs(look.camera.direction[a]) > 0.5 * length(look.camera.direction);
-    ends.push_back(short_number(b.lo[a] - (across ? reach : 0), 4)), ends.push_back(short_number(b.hi[a] + (across ? reach : 0), 4));
-  }
-  look.filter = {"clip", fmt::format("box={}", fmt::join(ends, ","))};
+  for (int a = 0; a < 3; ++a)
+    if (std::abs(look.camera.direction[a]) > 0.5 * length(look.camera.direction)) b.lo[a] -= reach, b.hi[a] += reach;
+  look.filter = {"clip", "box=" + box_words(b)};
   look.shows[0].of_input = false;
   look.reason += fmt::format("; '{}' hardly varies but in a small part, which is shown; --show surface shows all", fields[0].field->name);
 }
@@ -256,10 +266,7 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::
     }
     const bool own_camera = stated.camera.position || stated.camera.target;
     if (first.frame && stated.picture.frame.empty() && !own_camera && !states_scale(shows[0])) {
-      const Box3& b = *first.frame;
-      std::vector<std::string> ends;
-      for (int a = 0; a < 3; ++a) ends.insert(ends.end(), {short_number(b.lo[a], 4), short_number(b.hi[a], 4)});
-      file.picture.push_back(fmt::format("frame={}", fmt::join(ends, ",")));
+      file.picture.push_back("frame=" + box_words(*first.frame));
       notes.push_back(fmt::format("the rest of the volume is transparent: the picture is of {}", file.picture.back()));
     }
   }

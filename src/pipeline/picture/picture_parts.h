@@ -83,6 +83,9 @@ struct StatedShow {
   ParamSet params;
 };
 
+/// "x0,x1,y0,y1,z0,z1", to a thousandth of the box along each axis, wherever it lies.
+std::string box_words(const Box3& box);
+
 /// Puts a filter at the end of the steps, under a name that is free; returns that.
 std::string added_step(PipelineFile& file, const std::string& operation, std::vector<std::string> words, const std::string& from);
 /// leave_out_sets() of picture_sets.h for all that is shown; `results` are those of the shows.

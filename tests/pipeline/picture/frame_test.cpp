@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a picture is of: frames, titles of axes, and what is chosen of both.
 #include "pipeline/picture/picture.h"
+
+#include "pipeline/picture/picture_parts.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -115,4 +117,9 @@ TEST_CASE("views: a scan's slices are each seen straight on, unless something is
   CHECK_FALSE(views(", size: 480x360, camera: {azimuth: 20}"));
   CHECK_FALSE(views(", size: 480x360, layout: 2x1"));
   CHECK(views(", size: 480x360, views: \"left,front\"") == "left,front");
+}
+
+TEST_CASE("frame: boxes in words keep their sides far from zero, and flat ones stay flat") {
+  CHECK(box_words({{500000.04, -1.5, 3}, {500000.91, 1.5, 3}}) == "500000.04,500000.91,-1.5,1.5,3,3");
+  CHECK(box_words({{0.1234567, 0, 0}, {0.7654321, 1, 1e-9}}) == "0.1235,0.7654,0,1,0,1e-09");
 }
