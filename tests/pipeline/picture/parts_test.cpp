@@ -28,13 +28,13 @@ CollectionPtr collection(std::vector<Collection::Part> parts) {
   return c;
 }
 
-struct Shown {
+struct Drawn {
   PipelineFile file;
   Picture picture;
 };
 
-Shown shown(const Data& data, const std::string& show = "", const std::string& step = "") {
-  Shown r;
+Drawn shown(const Data& data, const std::string& show = "", const std::string& step = "") {
+  Drawn r;
   r.file = parse_pipeline("sightglass: 1\nsteps:\n  in: {read: given.exo}\n" + step + show + "picture: {size: 80x60}\n", "",
                           picture_vocabulary());
   PictureOptions options;
@@ -49,7 +49,7 @@ Shown shown(const Data& data, const std::string& show = "", const std::string& s
 TEST_CASE("pictures of parts: sets of sides lie upon their blocks and are left out, blocks are told apart by their numbers") {
   const CollectionPtr blocks = collection({{"rim", square(0, 1, "1=rim")}, {"tyre", square(2, 2, "2=tyre")}});
   const CollectionPtr sides = collection({{"outer", square(2, 1, "1=outer")}});
-  const Shown all = shown(Data(collection({{"Element Blocks", Data(blocks)}, {"Side Sets", Data(sides)}})));
+  const Drawn all = shown(Data(collection({{"Element Blocks", Data(blocks)}, {"Side Sets", Data(sides)}})));
   REQUIRE(all.file.steps.size() >= 2);
   CHECK(all.file.steps[1].operation == "extract");
   CHECK(all.file.steps[1].words == std::vector<std::string>{"blocks=Element Blocks"});
@@ -58,13 +58,13 @@ TEST_CASE("pictures of parts: sets of sides lie upon their blocks and are left o
   const std::string said = all.picture.notes.empty() ? "" : all.picture.notes[0];
   CHECK(said.find("sets of sides and nodes lie upon the blocks and are left out") != std::string::npos);
   // Nothing to leave out.
-  const Shown alone = shown(Data(collection({{"Side Sets", Data(sides)}})));
+  const Drawn alone = shown(Data(collection({{"Side Sets", Data(sides)}})));
   CHECK(alone.file.steps.size() == 1);
-  const Shown plain = shown(Data(blocks));
+  const Drawn plain = shown(Data(blocks));
   CHECK(plain.file.steps.size() == 1);
   CHECK(word_value(plain.file.show[0].words, "field") == "ObjectId");
   // The same number everywhere tells nothing.
-  const Shown same = shown(Data(collection({{"a", square(0, 1, "")}, {"b", square(2, 1, "")}})));
+  const Drawn same = shown(Data(collection({{"a", square(0, 1, "")}, {"b", square(2, 1, "")}})));
   CHECK(!word_value(same.file.show[0].words, "field"));
 }
 
@@ -74,10 +74,10 @@ TEST_CASE("pictures of parts: sets are left out of what is shown by name, too, u
   wall.fields.add({"flux", Association::cell, Array::from_vector<float>({3}), "", Role::none});
   const Data all(
       collection({{"Element Blocks", Data(blocks)}, {"Side Sets", Data(collection({{"outer", make_dataset(std::move(wall))}}))}}));
-  const auto told = [](const Shown& s) {
+  const auto told = [](const Drawn& s) {
     return std::count_if(s.picture.notes.begin(), s.picture.notes.end(), [](const std::string& n) { return n.find("lie upon") != n.npos; });
   };
-  const Shown two = shown(all, "show: [{surface: {}}, {outline: {}}]\n");
+  const Drawn two = shown(all, "show: [{surface: {}}, {outline: {}}]\n");
   REQUIRE(two.file.steps.size() == 2);
   CHECK(two.file.steps[1].words == std::vector<std::string>{"blocks=Element Blocks"});
   CHECK(two.file.steps[1].from == std::vector<std::string>{"in"});
@@ -93,7 +93,7 @@ TEST_CASE("pictures of parts: sets are left out of what is shown by name, too, u
   CHECK(again == two.file);
 
   const std::string chosen = "  some: {extract: {blocks: [Element Blocks, Side Sets]}}\n";
-  for (const Shown& s :
+  for (const Drawn& s :
        {shown(all, "show: [{surface: {}}]\n", chosen), shown(all, "", chosen), shown(all, "show: [{surface: {field: flux}}]\n")}) {
     CHECK(told(s) == 0);
     CHECK(std::none_of(s.file.steps.begin(), s.file.steps.end(),
@@ -103,7 +103,7 @@ TEST_CASE("pictures of parts: sets are left out of what is shown by name, too, u
 
 TEST_CASE("pictures: an input that surrounds another does not hide it") {
   const auto drawn = [](float first, float second) {
-    Shown r;
+    Drawn r;
     r.file = parse_pipeline("sightglass: 1\nsteps:\n  a: {read: first.ply}\n  b: {read: second.ply}\npicture: {size: 80x60}\n", "",
                             picture_vocabulary());
     PictureOptions options;
@@ -121,12 +121,12 @@ TEST_CASE("pictures: an input that surrounds another does not hide it") {
     r.picture = make_picture(r.file, options, context);
     return r;
   };
-  const auto opacities = [](const Shown& s) {
+  const auto opacities = [](const Drawn& s) {
     std::vector<std::string> all;
     for (const auto& show : s.file.show) all.push_back(word_value(show.words, "opacity").value_or("1"));
     return all;
   };
-  const Shown inside = drawn(1, 2);
+  const Drawn inside = drawn(1, 2);
   CHECK(opacities(inside) == std::vector<std::string>{"1", "0.35"});
   CHECK(std::count(inside.picture.notes.begin(), inside.picture.notes.end(),
                    "second.ply surrounds first.ply: drawn with opacity=0.35, so that both are seen") == 1);
