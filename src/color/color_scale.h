@@ -30,7 +30,7 @@ struct ColorScale {
   std::vector<double> limits;
   std::string title, unit;
   std::vector<double> ticks;  ///< numbers beside the legend's bar; none: round ones
-  int tick_count = 0;         ///< about so many round ones; 0: as many as suit the bar
+  int tick_count = 0;         ///< so many; 0: as many as suit the bar
   std::string number_format;  ///< of these numbers, as formatted_number() takes it; "": the shortest that tells them apart
 
   /// Position on the map, may lie outside [0,1] (below, above), NaN for NaN; on a log scale values <= 0 lie beyond the smaller end.

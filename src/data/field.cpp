@@ -78,7 +78,10 @@ const Field* FieldSet::find(std::string_view name) const {
 
 const Field& FieldSet::require(std::string_view name) const {
   if (const Field* f = find(name)) return *f;
-  fail_usage(fmt::format("field '{}' not found", name), {}, unknown_name_hint(name, names()));
+  const bool coordinate = name == "x" || name == "y" || name == "z";
+  fail_usage(
+      fmt::format("field '{}' not found", name), {},
+      coordinate ? fmt::format("-f 'calc expr={0} name={0}' makes a field of the coordinate", name) : unknown_name_hint(name, names()));
 }
 
 const Field& FieldSet::require(std::string_view name, Association a) const {

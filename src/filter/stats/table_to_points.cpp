@@ -53,20 +53,28 @@ DatasetPtr table_to_points(const Data& in, const TableToPointsParams& p, Context
   const int at[3] = {columns.find(p.x, {"x", "longitude", "lon"}, 0), columns.find(p.y, {"y", "latitude", "lat"}, 1),
                      columns.find(p.z, {"z"}, SIZE_MAX)};
   if (at[0] < 0 || at[1] < 0) fail_usage("has fewer than two numeric columns", "table_to_points", "name the coordinates: x=... y=...");
-  std::vector<int64_t> rows;
+  std::vector<int64_t> rows, ids, offsets{0};
   std::vector<double> xyz;
+  const auto end_line = [&] {
+    if (int64_t(ids.size()) - offsets.back() >= 2) offsets.push_back(int64_t(ids.size()));
+    else ids.resize(size_t(offsets.back()));
+  };
   const size_t n = t.columns[0].array.count();
   for (size_t r = 0; r < n; ++r) {
     double v[3] = {0, 0, 0};
     for (int a = 0; a < 3; ++a)
       if (at[a] >= 0) v[a] = t.columns[size_t(at[a])].array.get(r);
-    if (std::isnan(v[0] + v[1] + v[2])) continue;
-    rows.push_back(int64_t(r));
+    if (std::isnan(v[0] + v[1] + v[2])) {
+      end_line();
+      continue;
+    }
+    ids.push_back(int64_t(rows.size())), rows.push_back(int64_t(r));
     xyz.insert(xyz.end(), v, v + 3);
   }
+  end_line();
   if (rows.size() < n) ctx.info(fmt::format("table_to_points: {} rows have no coordinates", n - rows.size()));
-  PointCloud cloud;
-  cloud.points.xyz = Array::from_vector(std::move(xyz), 3);
+  Points points;
+  points.xyz = Array::from_vector(std::move(xyz), 3);
   DatasetParts parts;
   for (size_t i = 0; i < t.columns.size(); ++i) {
     Field f = t.columns[i];
@@ -80,7 +88,14 @@ DatasetPtr table_to_points(const Data& in, const TableToPointsParams& p, Context
     f.role = t.words(i) ? Role::labels : int(i) == at[0] || int(i) == at[1] || int(i) == at[2] ? Role::none : Role::scalars;
     parts.fields.add(std::move(f));
   }
-  parts.mesh = std::move(cloud);
+  if (p.line) {
+    SurfaceMesh mesh;
+    mesh.points = std::move(points);
+    mesh.lines.connectivity = Array::from_vector(std::move(ids)), mesh.lines.offsets = Array::from_vector(std::move(offsets));
+    parts.mesh = std::move(mesh);
+  } else {
+    parts.mesh = PointCloud{std::move(points)};
+  }
   return make_dataset(std::move(parts));
 }
 

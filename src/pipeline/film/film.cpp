@@ -105,7 +105,9 @@ void fix_frame(PipelineFile& first, const std::vector<PipelineFile>& some, const
 PipelineFile with_looks(const PipelineFile& plain, PipelineFile first, const PictureOptions& options, Context& context) {
   std::vector<std::string> notes;
   std::vector<Data> looked;
-  choose_looks(first, options, options.cache, looked, notes, context);
+  GraphOptions graph;
+  graph.cache = options.cache;
+  choose_looks(first, options, graph, looked, notes, context);
   // Without its time; the part of a volume in which something is seen is that of the first step alone.
   for (size_t i = 0; i < plain.steps.size(); ++i) first.steps[i].words = plain.steps[i].words;
   std::vector<std::string> picture = plain.picture;

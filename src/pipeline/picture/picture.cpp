@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "base/all_ranks.h"
 #include "base/error.h"
@@ -12,6 +13,7 @@
 #include "base/text/text.h"
 #include "color/parse_color.h"
 #include "data/ranks/over_all.h"
+#include "pipeline/file/read_part.h"
 #include "pipeline/file/transfer_file.h"
 #include "pipeline/film/film_params.h"
 #include "pipeline/picture/picture_cost.h"
@@ -239,12 +241,22 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   std::vector<Data> held;
   Picture picture;
   Context computing(context, 0, 0.5), drawing(context, 0.5, 1);
-  Look look = choose_looks(file, options, cache, held, picture.notes, computing);
+  std::optional<HeadPose> pose;  // of a CT that was contoured
+  GraphOptions graph_options;
+  graph_options.cache = cache;
+  if (!stated.camera.up && has_contour(file))
+    graph_options.read = [&](const std::string& path, const ReadOptions& read, const Request& request, Context& c) {
+      Data data = read_part(path, read, request, c);
+      for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
+        if (!pose) pose = unstated_pose(*d);
+      });
+      return data;
+    };
+  show_what_is_labelled(file, picture.notes);
+  Look look = choose_looks(file, options, graph_options, held, picture.notes, computing);
   stated = stated_in(file);  // with what was chosen of it
   const std::vector<StatedShow> shows = stated_shows(file);
 
-  GraphOptions graph_options;
-  graph_options.cache = cache;
   const PipelineGraph built = build_graph(file, graph_options, options.results);
   std::vector<Target> targets;
   for (NodeId node : built.show) targets.push_back({node, {}});
@@ -276,7 +288,9 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   if (!file.show.empty()) {
     const std::string& first = shown_step(file, 0);
     if (look.shows.empty()) look.camera = choose_view(shown[0].box, extension_of(origin_of(file, first)), shown[0].patient);
+    if (pose) picture.notes.push_back(face_unstated(*pose, look.camera));
     face_cut(file, first, look.camera);
+    face_slab(file, first, shown[0].box, look.camera);
   }
   picture.legends = shown[0].legends;
   for (Shown& s : shown) s.box = with_room(s.box);  // after the choice of a view, which tells by the box what is flat

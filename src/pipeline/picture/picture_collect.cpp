@@ -9,8 +9,10 @@
 #include "pipeline/file/transfer_file.h"
 #include "pipeline/picture/picture_parts.h"
 #include "scene/choose/stretch.h"
+#include "scene/show/lines.h"
 #include "scene/show/outline.h"
 #include "scene/show/parts.h"
+#include "scene/show/surface.h"
 #include "scene/show/volume.h"
 
 namespace sg {
@@ -25,6 +27,15 @@ void take_axis_titles(const std::vector<DatasetPtr>& data, const PictureParams& 
       if (const auto note = axis_note(*d, a); note && s.axis_titles[a].empty()) s.axis_titles[a] = note->title();
     if (s.length_unit.empty()) s.length_unit = length_unit(*d);
   }
+}
+
+// Isolines in the colours of the surface that they lie upon could not be seen: they are drawn dark. `alike` has the data of other shows
+// that are coloured by the same field.
+bool vanish(const StatedShow& lines, const ShownParts& shown, const std::vector<DatasetPtr>& alike, const ShownParts& other) {
+  if (!lines.kind->is<LinesShow>() || !other.kind->is<SurfaceShow>() || shown.parts.empty() || other.parts.empty()) return false;
+  if (!lines.params.as<LinesShow>().coloring.color.empty() || !shown.parts[0]->fields().find("contour value", Association::cell))
+    return false;
+  return std::find(alike.begin(), alike.end(), other.parts[0]) != alike.end();
 }
 
 }  // namespace
@@ -63,6 +74,12 @@ std::vector<Shown> collect(const PipelineFile& file, const std::vector<StatedSho
   const std::vector<std::vector<DatasetPtr>> beside = colored_alike(shown);
   for (size_t i = 0; i < shown.size(); ++i) {
     const auto& [kind, params] = shows[i];
+    ParamSet dark;
+    for (size_t k = 0; k < shown.size(); ++k)
+      if (panel_of[i] == panel_of[k] && vanish(shows[i], shown[i], beside[i], shown[k])) {
+        dark = copy_of(params), dark.as<LinesShow>().coloring.color = "#21242e";
+        shown[i].stated = &dark;
+      }
     Shown& s = panels[panel_of[i]];
     const size_t first = s.scene.items.size();
     for (const Legend& legend : show_parts(s.scene, shown[i], beside[i], uint32_t(i + 1), context)) {

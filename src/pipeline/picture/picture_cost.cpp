@@ -18,9 +18,11 @@ namespace {
 constexpr double per_pixel = 1e-7, per_byte = 1e-9, per_step = 2e-7;
 
 double surface_seconds(double bytes, double pixels) { return pixels * per_pixel + bytes * per_byte; }
-double volume_seconds(double bytes, double pixels) {
-  const double samples_along = std::cbrt(bytes / 4);
-  return pixels * (per_pixel + samples_along * per_step);
+// Of five times the tolerance half the steps are taken.
+double volume_seconds(double bytes, double pixels, double tolerance = VolumeSampling().tolerance) {
+  const double samples_along = std::cbrt(bytes / 4), usual = VolumeSampling().tolerance;
+  const double less = tolerance > 0 ? std::pow(tolerance / usual, -std::log(2) / std::log(5)) : 1;
+  return pixels * (per_pixel + samples_along * per_step * less);
 }
 std::string rounded(double seconds) { return seconds < 0.1 ? "below 0.1 s" : "about " + short_number(seconds, 2) + " s"; }
 
@@ -61,7 +63,8 @@ std::string note_of_long_drawing(const std::vector<StatedShow>& shows, const std
     if (!volume.shaded || volume.mode != RayFunction::composite) continue;
     size_t points = 0;
     for_each_dataset(results[i], [&](const std::string&, const DatasetPtr& d) { points += d->point_count(); });
-    seconds += volume_seconds(4 * double(points), pixels), tolerance = volume.sampling.tolerance;
+    tolerance = volume.sampling.tolerance;
+    seconds += volume_seconds(4 * double(points), pixels, tolerance);
   }
   if (seconds < is_long) return "";
   return fmt::format(

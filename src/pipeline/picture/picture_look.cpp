@@ -110,6 +110,7 @@ std::vector<FieldOf> coloring_fields(const Data& data, const std::string& name) 
 // Surfaces, lines and points: of a volume the scale is its opacity, too.
 bool takes_decades(const Data& data, const std::string& name, const Look& look, const Context& context) {
   if (look.shows.size() != 1 || look.shows[0].kind->is<VolumeShow>() || !look.shows[0].kind->coloring) return false;
+  if (!look.shows[0].kind->coloring(look.shows[0].params)->color.empty()) return false;
   const std::vector<FieldOf> fields = coloring_fields(data, name);
   return !fields.empty() && spans_decades(fields, context);
 }
@@ -139,12 +140,31 @@ PipelineFile::Step* plain_reading(PipelineFile& file, const std::string& step) {
   return nullptr;
 }
 
+// The filters of a look as steps after `end`, and its shows, coloured as is stated.
+void add_shows(const Look& look, PipelineFile& file, std::vector<PipelineFile::Show>& shows, const std::string& end,
+               const std::vector<std::string>& coloring) {
+  std::string result = end;
+  for (const auto& words : {look.prepare, look.filter})
+    if (!words.empty()) result = added_step(file, words[0], {words.begin() + 1, words.end()}, result);
+  for (const Look::Show& s : look.shows) {
+    const ShowKind& kind = *s.kind;
+    std::vector<std::string> words = changed_words(s.params);
+    if (kind.coloring) words.insert(words.end(), coloring.begin(), coloring.end());
+    shows.push_back({std::string(kind.name), words, s.of_input ? end : result, 0});
+  }
+}
+
 // What suits the result of a step, as entries under `show`; the filters that it needs are added to the steps.
 Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file, std::vector<PipelineFile::Show>& shows,
                 std::vector<std::string>& notes, Context& context) {
   std::string end = wanted.of;
   const std::string origin = origin_of(file, end), stated = word_value(wanted.words, "field").value_or("");
   leave_out_sets(file, end, data, stated.empty() ? std::vector<std::string>() : std::vector{stated}, notes, context);
+  if (const auto* table = std::get_if<TablePtr>(&data))
+    if (const auto curve = look_at_table(**table, stated)) {
+      add_shows(*curve, file, shows, end, {});
+      return *curve;
+    }
   // The largest part speaks for all; one with values before one with a mask or a numbering alone.
   DatasetPtr largest;
   std::vector<DatasetPtr> parts;
@@ -176,15 +196,7 @@ Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file,
     coloring.push_back("scale=log");
     look.reason += ", on a logarithmic scale, as most values are far below the largest (scale=linear is the other)";
   }
-  std::string result = end;
-  for (const auto& words : {look.prepare, look.filter})
-    if (!words.empty()) result = added_step(file, words[0], {words.begin() + 1, words.end()}, result);
-  for (const Look::Show& s : look.shows) {
-    const ShowKind& kind = *s.kind;
-    std::vector<std::string> words = changed_words(s.params);
-    if (kind.coloring) words.insert(words.end(), coloring.begin(), coloring.end());
-    shows.push_back({std::string(kind.name), words, s.of_input ? end : result, 0});
-  }
+  add_shows(look, file, shows, end, coloring);
   return look;
 }
 
@@ -227,7 +239,7 @@ bool room_for_views(const PipelineFile& file, const StatedPicture& stated) {
 
 }  // namespace
 
-Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::shared_ptr<Cache>& cache, std::vector<Data>& held,
+Look choose_looks(PipelineFile& file, const PictureOptions& options, const GraphOptions& graph, std::vector<Data>& held,
                   std::vector<std::string>& notes, Context& context) {
   if (file.show.empty())
     for (const std::string& end : open_ends(file)) file.show.push_back({std::string(auto_show), {}, end, 0});
@@ -235,9 +247,7 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::
     if (s.kind == auto_show || find_show(s.kind).coloring) s.words.insert(s.words.end(), options.coloring.begin(), options.coloring.end());
   const auto open = std::count_if(file.show.begin(), file.show.end(), [](const auto& s) { return s.kind == auto_show; });
   if (open == 0) return {};
-  GraphOptions graph_options;
-  graph_options.cache = cache;
-  const PipelineGraph built = build_graph(file, graph_options, options.results);
+  const PipelineGraph built = build_graph(file, graph, options.results);
   Look first;
   std::vector<PipelineFile::Show> shows;
   std::vector<Chosen> inputs;

@@ -37,11 +37,18 @@ std::vector<const PipelineFile::Step*> steps_behind(const PipelineFile& file, st
 std::string origin_of(const PipelineFile& file, const std::string& step);
 /// Where the result of a step was cut open by the plane of a `clip`, turns the view to the side of the cut (mirrored in that plane).
 void face_cut(const PipelineFile& file, const std::string& step, CameraDefaults& camera);
+/// Tensor glyphs of a thin slab stand out of it a little; it is seen straight on as if it were flat.
+void face_slab(const PipelineFile& file, const std::string& step, Box3 box, CameraDefaults& camera);
+/// `line_labels` makes points of which nothing but `labels` tells: `lines` of it are those that were labelled, `surface` and `volume` what
+/// these were drawn upon.
+void show_what_is_labelled(PipelineFile& file, std::vector<std::string>& notes);
+/// Is a contour made?
+bool has_contour(const PipelineFile& file);
 /// Adds options.coloring to every way to show that colours by a field, and puts what suits the data in the place of every `auto` show (when
 /// nothing is shown: of every step that no other takes as input), adding steps to the file where needed. Returns the look of the first
 /// `auto`; one without shows where there is none. `held` keeps what was looked at, so that the cache finds it again and nothing is computed
 /// twice.
-Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::shared_ptr<Cache>& cache, std::vector<Data>& held,
+Look choose_looks(PipelineFile& file, const PictureOptions& options, const GraphOptions& graph, std::vector<Data>& held,
                   std::vector<std::string>& notes, Context& context);
 
 /// The step whose result the i-th show shows.

@@ -3,9 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/core.h>
+
 #include "filter/mesh/clip/clip.h"
+#include "filter/scalar/contour/contour.h"
+#include "filter/scalar/line_labels.h"
+#include "filter/tensor/glyphs/tensor_glyphs.h"
 #include "pipeline/operation/operation.h"
 #include "pipeline/picture/picture_parts.h"
+#include "scene/show/lines.h"
+#include "scene/show/surface.h"
+#include "scene/show/volume.h"
 
 namespace sg {
 
@@ -26,11 +34,16 @@ std::vector<const PipelineFile::Step*> steps_behind(const PipelineFile& file, st
 
 namespace {
 
+template <class P>
+bool does(const PipelineFile::Step& step) {
+  const Operation* op = known_operation(step.operation);
+  return op && op->is<P>();
+}
+
 // Out of what is kept, across the plane that cut it open; nothing for other clips.
 std::optional<Vec3> cut_normal(const PipelineFile::Step& step) {
-  const Operation* op = known_operation(step.operation);
-  if (!op || !op->is<ClipParams>() || step.from.size() > 1) return {};
-  const ParamSet set = make_params(*op, step.words);
+  if (!does<ClipParams>(step) || step.from.size() > 1) return {};
+  const ParamSet set = make_params(*known_operation(step.operation), step.words);
   const ClipParams& p = set.as<ClipParams>();
   const bool shape = !p.sphere.empty() || !p.cylinder.empty() || !p.box.empty() || !p.quadric.empty() || !p.function.empty();
   if (shape || !p.field.empty() || p.value || p.keep == ClipSide::both) return {};
@@ -67,6 +80,33 @@ void face_cut(const PipelineFile& file, const std::string& step, CameraDefaults&
       camera.direction = facing(camera.direction, *n);
       return;
     }
+}
+
+void face_slab(const PipelineFile& file, const std::string& step, Box3 box, CameraDefaults& camera) {
+  constexpr double thin = 0.15;  // of the second longest side, glyphs included
+  const auto chain = steps_behind(file, step);
+  if (camera.parallel || box.empty() || chain.empty() || !does<TensorGlyphsParams>(*chain.front())) return;
+  const Vec3 s = box.size();
+  const int a = s.x <= s.y && s.x <= s.z ? 0 : s.y <= s.z ? 1 : 2;
+  if (s[a] > thin * std::min(s[(a + 1) % 3], s[(a + 2) % 3])) return;
+  box.lo[a] = box.hi[a] = box.center()[a];
+  camera = choose_view(box, extension_of(origin_of(file, step)), false);
+}
+
+void show_what_is_labelled(PipelineFile& file, std::vector<std::string>& notes) {
+  for (size_t i = 0; i < file.show.size(); ++i) {
+    PipelineFile::Show& s = file.show[i];
+    const auto chain = file.steps.empty() ? std::vector<const PipelineFile::Step*>() : steps_behind(file, shown_step(file, i));
+    if (chain.size() < 2 || !does<LineLabelsParams>(*chain.front()) || s.kind == auto_show) continue;
+    const ShowKind& kind = find_show(s.kind);
+    if (!kind.is<SurfaceShow>() && !kind.is<LinesShow>() && !kind.is<VolumeShow>()) continue;
+    s.of = chain[kind.is<LinesShow>() ? 1 : std::min<size_t>(2, chain.size() - 1)]->name;
+    notes.push_back(fmt::format("{}: of '{}', as line_labels makes nothing but points (of= names another step)", s.kind, s.of));
+  }
+}
+
+bool has_contour(const PipelineFile& file) {
+  return std::any_of(file.steps.begin(), file.steps.end(), [](const PipelineFile::Step& s) { return does<ContourParams>(s); });
 }
 
 }  // namespace sg

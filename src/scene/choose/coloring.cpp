@@ -26,7 +26,9 @@ void describe(Schema& s, ColoringParams& p) {
   s("legend_title", p.legend_title, "Title of the legend; default: the field's name.");
   s("legend_unit", p.legend_unit, "Unit in the legend's title; default: the one that the data states.");
   s("legend_ticks", p.legend_ticks, "The numbers beside the legend's bar, such as 0,50,100; default: round ones.").unit("@field");
-  s("legend_count", p.legend_count, "About how many round numbers stand beside the legend's bar; 0: as many as suit its length.")
+  s("legend_count", p.legend_count,
+    "How many numbers stand beside the legend's bar: round ones where a step gives so many, else evenly from end to end; 0: as many as "
+    "suit.")
       .range(0, 50);
   s("legend_format", p.legend_format,
     "Numbers of the legend as printf formats them: .2f, .3g, .1e; default: as short as they can be told apart.");

@@ -12,6 +12,7 @@
 #include "color/map_files/colormap_file.h"
 #include "color/parse_color.h"
 #include "data/fields/label_names.h"
+#include "data/fields/stand_in_names.h"
 #include "data/lattice.h"
 #include "data/patient/modality.h"
 #include "data/patient/patient_frame.h"
@@ -301,7 +302,7 @@ std::string_view sequential_map(const Dataset& data, const Field& field) { retur
 
 ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringParams& p, Context& context) {
   ColorScale s;
-  s.title = field.name;
+  s.title = is_stand_in_name(field.name) ? "value" : field.name;
   if (field.components() > 1) s.title += p.component < 0 ? " magnitude" : fmt::format(" [{}]", p.component);
   s.unit = field.unit;
   Range r = range_over_all(data, field, p.component, context);
@@ -317,6 +318,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   const Colormap asked = automatic ? Colormap{} : file ? file->map : find_colormap(*p.map);
   const bool shared = !p.labels.values.empty();
   const bool labels = shared || (automatic ? p.range.empty() && looks_like_labels(data, field, context) : asked.categorical());
+  if (labels && is_stand_in_name(field.name)) s.title = "label";
   s.kind = p.scale;
   const FieldOf itself{&data, &field};
   bool below_log = false;

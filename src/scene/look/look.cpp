@@ -58,13 +58,6 @@ void face_slice(Vec3 normal, CameraDefaults& c) {
   c.parallel = true;
 }
 
-// Straight along an axis; a scan's slice is seen from the feet.
-void face_axis(int axis, bool patient, CameraDefaults& c) {
-  c.parallel = true;
-  if (axis == 2) c.direction = {0, 0, patient ? -1.0 : 1.0}, c.up = {0, patient ? -1.0 : 1.0, 0};
-  else c.direction = axis == 1 ? Vec3{0, -1, 0} : Vec3{1, 0, 0}, c.up = {0, 0, 1};
-}
-
 // Solid cells in a single thin layer, as programs that know no plane cells keep a case of two dimensions: all points lie in two planes
 // across one axis. -1: it is none.
 int axis_of_layer(const Dataset& d) {
@@ -176,35 +169,12 @@ void look_at_grid(const Dataset& d, const Field& f, Look& look) {
   VolumeItem item;
   item.color = choose_scale(d, f, params, quiet);
   const std::string why = choose_volume_look(d, f, params, item);
-  double offset = 0;
-  const bool lies_somehow = !in_patient_frame(d) && looks_like_ct(d, f, &offset);
-  if (!in_patient_frame(d) && !lies_somehow) look.frame = visible_box(d, f, params.component, item.opacity);
+  const std::optional<HeadPose> pose = unstated_pose(d);
+  if (!in_patient_frame(d) && !pose) look.frame = visible_box(d, f, params.component, item.opacity);
   if (look.frame && !in_patient_frame(d) && look.camera.up == CameraDefaults().up)
     look.camera.direction = CameraDefaults().direction, face_bounds(look.frame->size(), look.camera.direction);
   look.reason = fmt::format("scalar field '{}' on a 3D grid: shown as a volume; {}", f.name, why);
-  if (lies_somehow) look.reason += "; how the patient lies is not stated: --camera 'view=front up=0,0,-1' turns one that is upside down";
-}
-
-// Values along one axis alone: their curve, with the values along the other axis of the picture.
-bool look_at_profile(const Dataset& d, const Field& f, Look& look) {
-  if (!is_lattice(d.mesh()) || in_patient_frame(d) || f.association != Association::point || f.components() != 1) return false;
-  const auto dims = lattice_dims(d.mesh());
-  const Vec3 size = d.bounds().size();
-  const Range r = d.range(f);
-  const int along = dims[0] > 1 ? 0 : dims[1] > 1 ? 1 : 2;
-  if (dims[0] * dims[1] * dims[2] != dims[size_t(along)] || dims[size_t(along)] < 3 || !(r.lo < r.hi) || !(size[along] > 0)) return false;
-  constexpr double height = 0.6;  // of the curve, as a share of its length
-  const int values = along == 0 ? 1 : 0;
-  Vec3 direction, stretch{1, 1, 1};
-  direction[values] = 1, stretch[values] = height * size[along] / (r.hi - r.lo);
-  look.filter = {"warp", "field=" + f.name, fmt::format("direction={},{},0", direction.x, direction.y), "scale=1"};
-  SurfaceShow curve;
-  curve.coloring.color = "steelblue";
-  add_show(look, curve, false);
-  look.picture = {fmt::format("stretch={},{},1", stretch.x, stretch.y),
-                  fmt::format("{}_title={}{}", "xyz"[values], f.name, f.unit.empty() ? "" : fmt::format(" [{}]", f.unit))};
-  look.reason = fmt::format("'{}' along one axis: its curve", f.name);
-  return true;
+  if (pose) look.reason += "; " + face_unstated(*pose, look.camera);
 }
 
 // A signed distance, or another function whose zeros alone mean something: their surface.
@@ -220,6 +190,18 @@ bool look_at_level_set(const Dataset& d, const Field& f, Look& look) {
 }
 
 }  // namespace
+
+void face_axis(int axis, bool patient, CameraDefaults& c) {
+  c.parallel = true;
+  if (axis == 2) c.direction = {0, 0, patient ? -1.0 : 1.0}, c.up = {0, patient ? -1.0 : 1.0, 0};
+  else c.direction = axis == 1 ? Vec3{0, -1, 0} : Vec3{1, 0, 0}, c.up = {0, 0, 1};
+}
+
+std::string face_unstated(const HeadPose& pose, CameraDefaults& camera) {
+  if (stand_up(pose, camera))
+    return fmt::format("how the patient lies is not stated: the crown of a head is seen where z is {}", pose.crown > 0 ? "high" : "low");
+  return "how the patient lies is not stated: --camera 'view=front up=0,0,-1' turns one that is upside down";
+}
 
 CameraDefaults choose_view(const Box3& b, const std::string& extension, bool patient) {
   CameraDefaults c;
@@ -271,7 +253,8 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
   const bool colors = scalar && scalar->role == Role::colors && scalar->components() >= 3;
 
   if (field.empty() && ((of_series && look_at_diffusion(d, look)) || look_at_tensors(d, look) || look_at_stress(d, look))) return look;
-  if (scalar && (look_at_profile(d, *scalar, look) || look_at_level_set(d, *scalar, look))) return look;
+  if (scalar && (look_at_profile(d, *scalar, look) || look_at_line_probe(d, *scalar, look) || look_at_level_set(d, *scalar, look)))
+    return look;
   if (grid3 && box_grid && scalar && !colors) {
     look_at_grid(d, *scalar, look);
     if (is_unstated_depth(d, *scalar)) {

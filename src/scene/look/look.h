@@ -8,6 +8,7 @@
 
 #include "base/context.h"
 #include "scene/camera_params.h"
+#include "scene/choose/volume/head_pose.h"
 #include "scene/show/show.h"
 
 namespace sg {
@@ -31,6 +32,12 @@ struct Look {
 /// `field`: what the user wants to see; "" = the data decides. `extension`: of the file the data came from ("obj"); surfaces
 /// made for graphics have y up. `of_series`: the data is a step of a file that is at hand, and one picture is to stand for all of it.
 Look choose_look(const Dataset& data, const std::string& field, const std::string& extension, bool of_series = false);
+/// A table whose rows follow one another in a column that increases, such as a distance or a time: the curve of `field`, or of the first
+/// column that varies, over it. Nothing for other tables.
+std::optional<Look> look_at_table(const Table& table, const std::string& field);
+/// Turns the view of a CT scan of which nothing says how the patient lies, or of what was made of one, upright where a head is seen. What
+/// was done, or can be, in words.
+std::string face_unstated(const HeadPose& pose, CameraDefaults& camera);
 /// A solid box whose outside hides a flow is shown by its streamlines.
 void show_flow(Look& look, const DatasetPtr& data, const std::string& field, Context& context);
 /// Turns the view of surfaces made for graphics, and of others and of few solid cells without a field, to the side that shows most of them.

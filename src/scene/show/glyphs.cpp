@@ -36,6 +36,15 @@ bool is_dark(const Colormap& map) {
   return sum / 17 < 0.5f;
 }
 
+// The colours end where the values at the glyphs do; a peak between them is told.
+void tell_range(const Dataset& input, const Field& f, int component, const ColorScale& s, const Context& context) {
+  const Range all = input.range(f, component);
+  const double slack = 0.02 * (all.hi - all.lo);
+  if (all.empty() || !s.labels.empty() || (s.lo <= all.lo + slack && s.hi >= all.hi - slack)) return;
+  context.info(fmt::format("glyphs: the colours are of {} to {}, the values at the glyphs; '{}' goes from {} to {} (range= takes others)",
+                           short_number(s.lo, 3), short_number(s.hi, 3), f.name, short_number(all.lo, 3), short_number(all.hi, 3)));
+}
+
 }  // namespace
 
 void describe(Schema& s, GlyphsShow& p) {
@@ -77,6 +86,7 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const GlyphsSho
       // The range of what is drawn: a peak between the places would leave all of them in one colour.
       const Field* drawn = c.data->fields().find(f->name, Association::point);
       color.scale = drawn ? choose_scale(*c.data, *drawn, p.coloring, context) : choose_scale(*input, *f, p.coloring, context);
+      if (drawn && p.coloring.range.empty()) tell_range(*input, *f, p.coloring.component, color.scale, context);
       legend = color.scale;
       if (c.of > 0) {
         const bool by_length = c.rule.size == GlyphRule::Size::length;

@@ -41,7 +41,7 @@ constexpr OtherName names[] = {
     {"rotate translate move rescale", "-f transform"},
     {"triangulate tetrahedralize triangles linearize refine", "-f tessellate"},
     {"resampletoimage voxelize togrid rasterize", "-f resample"},
-    {"plotoverline overline sampleline lineprobe profile plot chart graph lineplot", "-f probe_at"},
+    {"plotoverline overline sampleline lineprobe plot chart graph lineplot", "-f probe_at"},
     {"integratevariables integral area", "-f integrate"},
     {"volume dvr raycast raycasting volumerender volumerendering", "--show volume"},
     {"mip maximumintensity maximumintensityprojection maximumprojection", "--show 'volume mode=maximum'"},

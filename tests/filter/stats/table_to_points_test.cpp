@@ -34,10 +34,26 @@ TEST_CASE("table_to_points: usual names of coordinates are found, rows without a
 
 TEST_CASE("table_to_points: named columns, and mistakes in them") {
   Context ctx;
-  CHECK(table_to_points(sample(), {"speed", "longitude", "speed"}, ctx)->as<PointCloud>()->points.at(2) == Vec3{9, 3, 9});
-  CHECK(test::error_of([&] { table_to_points(sample(), {"sped", "", ""}, ctx); }).find("did you mean 'speed'") != std::string::npos);
-  CHECK(test::error_of([&] { table_to_points(sample(), {"name", "", ""}, ctx); }).find("contains text") != std::string::npos);
+  CHECK(table_to_points(sample(), {.x = "speed", .y = "longitude", .z = "speed"}, ctx)->as<PointCloud>()->points.at(2) == Vec3{9, 3, 9});
+  CHECK(test::error_of([&] { table_to_points(sample(), {.x = "sped"}, ctx); }).find("did you mean 'speed'") != std::string::npos);
+  CHECK(test::error_of([&] { table_to_points(sample(), {.x = "name"}, ctx); }).find("contains text") != std::string::npos);
   CHECK(test::error_of([&] {
           table_to_points(make_dataset(Mesh(PointCloud{{Array::from_vector(std::vector<float>{0, 0, 0}, 3), {}}})), {}, ctx);
         }).find("needs a table") != std::string::npos);
+}
+
+TEST_CASE("table_to_points: a line through the rows, broken where one has no place") {
+  Context ctx;
+  auto t = std::make_shared<Table>();
+  t->columns.push_back({"t", Association::whole, Array::from_vector(std::vector<double>{0, 1, NAN, 3, 4, 5}), "s", Role::none});
+  t->columns.push_back({"v", Association::whole, Array::from_vector(std::vector<double>{5, 6, 7, 8, 9, 4}), "", Role::none});
+  const DatasetPtr d = table_to_points(TablePtr(t), {.x = "t", .y = "v", .line = true}, ctx);
+  const auto* mesh = d->as<SurfaceMesh>();
+  REQUIRE(mesh);
+  const CellsView lines = cells_view(mesh->lines);
+  REQUIRE(lines.count == 2);
+  CHECK(lines.size(0) == 2);
+  CHECK(lines.size(1) == 3);
+  CHECK(mesh->points.at(size_t(lines.point(1, 0))) == Vec3{3, 8, 0});
+  CHECK(mesh->points.at(size_t(lines.point(1, 2))) == Vec3{5, 4, 0});
 }

@@ -85,6 +85,7 @@ std::vector<Words> words_for(const Operation& o) {
       {"time_surface", {{"center=0,0,0", "normal=0,0,1", "size=0.2,0.2", "spacing=0.2"}}},
       {"timelines", {{"from=-0.5,0,0", "to=0.5,0,0"}}},
       {"trails", {{"field=s"}}},
+      {"table_to_points", {{}, {"line=true"}}},
       {"lic", {{"resolution=16"}}},
       {"spot_noise", {{"resolution=16"}}},
       {"advect", {{"resolution=16"}}},

@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "data/dataset.h"
+#include "io/io.h"
 #include "pipeline/picture/picture.h"
+#include "scene/look/look.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -167,4 +169,47 @@ TEST_CASE("pictures: progress goes on while volumes and surfaces are drawn") {
     CHECK(told.back() == 1);
     if (show[0] == 'v') CHECK(std::count_if(told.begin(), told.end(), [](double f) { return f > 0.5 && f < 1; }) >= 5);
   }
+}
+
+TEST_CASE("pictures: ways to show the labels of lines, which are points, show the lines and what they were drawn upon") {
+  PipelineFile file = parse_pipeline(
+      "sightglass: 1\nsteps:\n  a: {tangle: {size: 12}}\n  b: {slice: {axis: z}}\n  c: {isolines: {count: 3}}\n  d: {line_labels: {}}\n"
+      "show: [{surface: {}}, {lines: {}}, {labels: {}}]\npicture: {size: 80x60}\n",
+      "", picture_vocabulary());
+  Context context;
+  const Picture picture = make_picture(file, {}, context);
+  CHECK(file.show[0].of == "b");
+  CHECK(file.show[1].of == "c");
+  CHECK(file.show[2].of.empty());
+  CHECK(std::any_of(picture.notes.begin(), picture.notes.end(), [](const std::string& n) { return n.find("surface: of 'b'") == 0; }));
+}
+
+TEST_CASE("pictures: a contour of a CT whose file does not say how the patient lies says so, unless up is stated") {
+  // Air, a head of soft tissue and bone in Hounsfield units.
+  std::vector<int16_t> hu;
+  for (int k = 0; k < 16; ++k)
+    for (int j = 0; j < 16; ++j)
+      for (int i = 0; i < 16; ++i) {
+        const int r = (2 * i - 15) * (2 * i - 15) + (2 * j - 15) * (2 * j - 15) + (2 * k - 15) * (2 * k - 15);
+        hu.push_back(int16_t(r > 150 ? -1000 : r > 25 ? 40 : 1600));
+      }
+  UniformGrid g;
+  g.dims = {16, 16, 16};
+  DatasetParts parts;
+  parts.mesh = g;
+  parts.fields.add({"ct", Association::point, Array::from_vector(std::move(hu)), "", Role::scalars});
+  const std::string folder = test::fresh_folder("lies_somehow");
+  Context quiet;
+  write_data(folder + "ct.vti", make_dataset(std::move(parts)), {}, quiet);
+  const auto said = [&](const std::string& camera) {
+    PipelineFile file = parse_pipeline(
+        "sightglass: 1\nsteps:\n  a: {read: " + folder + "ct.vti}\n  b: {contour: {values: 400}}\npicture: {size: 80x60" + camera + "}\n",
+        "", picture_vocabulary());
+    Context context;
+    const Picture picture = make_picture(file, {}, context);
+    return std::any_of(picture.notes.begin(), picture.notes.end(),
+                       [](const std::string& n) { return n.find("how the patient lies is not stated") != n.npos; });
+  };
+  CHECK(said(""));
+  CHECK_FALSE(said(", camera: {view: front, up: [0, 0, -1]}"));
 }

@@ -40,6 +40,8 @@ TEST_CASE("drawing: a lit volume that takes long says so, others do not") {
     return note_of_long_drawing({{&kind, show_params(kind, words)}}, {data}, pixels);
   };
   CHECK(note({}, 3840.0 * 2160).find("tolerance=0.0098 takes about half") != std::string::npos);
+  CHECK_FALSE(note({}, 1920.0 * 1080).empty());
+  CHECK(note({"tolerance=0.1"}, 1920.0 * 1080).empty());  // takes a fifth of it
   CHECK(note({}, 800.0 * 600).empty());
   CHECK(note({"shaded=false"}, 3840.0 * 2160).empty());
   CHECK(note({"mode=maximum"}, 3840.0 * 2160).empty());

@@ -2,6 +2,7 @@
 // First pictures of grids: which are seen through, which are bodies, slices or curves.
 #include <cmath>
 
+#include "filter/probe/probe.h"
 #include "scene/choose/chosen_scale.h"
 #include "scene/choose/shown_range.h"
 #include "scene/look/look.h"
@@ -88,6 +89,36 @@ TEST_CASE("first look: values along one axis are a curve, as high as half of its
     CHECK(look.camera.parallel);
   }
   CHECK(choose_look(*grid({21, 1, 1}, [](size_t, size_t, size_t) { return 5.0; }), "", "nrrd").filter.empty());
+}
+
+TEST_CASE("first look: what was probed along a line is a curve over the distance") {
+  Context context;
+  const DatasetPtr cube = grid({5, 5, 5}, [](size_t i, size_t, size_t) { return 10.0 * double(i); });
+  const DatasetPtr line = probe_at(cube, {.points = {}, .from = Vec3{0, 2, 2}, .to = Vec3{4, 2, 2}, .count = 9}, context);
+  const Look look = choose_look(*line, "", "vti");
+  CHECK(look.filter == std::vector<std::string>{"profile", "field=v"});
+  CHECK(look.picture == std::vector<std::string>{"stretch=1,0.06,1", "x_title=distance", "y_title=v [K]"});  // 0.6 * 4 / 40
+  CHECK(look.camera.parallel);
+  const DatasetPtr points = probe_at(cube, {.points = {0, 0, 0, 1, 1, 1}, .from = {}, .to = {}, .count = 9}, context);
+  CHECK(choose_look(*points, "", "vti").filter.empty());
+}
+
+TEST_CASE("first look: a table is a curve over a column that increases, another one is none") {
+  const auto column = [](const char* name, std::vector<double> v) {
+    return Field{name, Association::whole, Array::from_vector(std::move(v)), "", Role::none};
+  };
+  Table t;
+  t.columns = {column("x", {5, 5, 5, 5}), column("t", {0, 1, 2, 4}), column("same", {3, 3, 3, 3}), column("v", {7, NAN, 2, 12}),
+               column("w", {1, 2, 1, 2})};
+  const auto curve = look_at_table(t, "");
+  REQUIRE(curve);
+  CHECK(curve->filter == std::vector<std::string>{"table_to_points", "x=t", "y=v", "line=true"});
+  CHECK(curve->picture[0] == "stretch=1,0.24,1");  // 0.6 * 4 / 10
+  CHECK(look_at_table(t, "w")->filter[2] == "y=w");
+  t.columns[1] = column("t", {0, 1, 1, 4});
+  CHECK_FALSE(look_at_table(t, ""));
+  t.columns[1] = column("distance", {0, 1, 2, 4}), t.columns[4] = column("v2", {0, 1, 2, 3});
+  CHECK(look_at_table(t, "")->filter[1] == "x=distance");
 }
 
 TEST_CASE("first look: of a volume that is clear but for one place, a frame around that") {

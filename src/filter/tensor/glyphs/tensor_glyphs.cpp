@@ -347,6 +347,8 @@ DatasetPtr tensor_glyphs(const DatasetPtr& in, const TensorGlyphsParams& p, Cont
     parts.fields.add({std::move(name), Association::point, std::move(a), std::move(unit), role});
   };
   const Role chosen = relative ? Role::scalars : Role::none;
+  if (relative && !lobes)
+    ctx.info("tensor_glyphs: 'signed share' is 1 where all eigenvalues are positive (tension), -1 where all are negative (compression)");
   if (lobes) add(shear ? "relative shear stress" : "relative normal stress", s.relative, chosen);
   if (c.negative())
     add("signed share", repeated<float>(c, nv, 1, [&](size_t g, float* v) { *v = float(signed_share(c.eigen[g])); }),

@@ -24,7 +24,7 @@ struct TensorGlyphsParams {
   TensorSource tensors;
   TensorShape shape = TensorShape::superquadric;
   double gamma = 3;
-  double min_ratio = 0.1;
+  double min_ratio = 0.2;
   int64_t count = 0;
   int64_t stride = 0;
   FieldName mask;

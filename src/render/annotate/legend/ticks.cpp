@@ -45,9 +45,33 @@ std::vector<LegendLayout::Tick> limits_of_bands(const NumberedBar& b, const Colo
   return ticks;
 }
 
+// Digits that tell the ends of a scale and what lies between them apart.
+int digits_between(const ColorScale& s) {
+  const double largest = std::max(std::abs(s.lo), std::abs(s.hi)), range = std::abs(s.hi - s.lo);
+  return range > 0 && s.kind == ScaleKind::linear ? std::clamp(int(std::ceil(std::log10(largest / range))) + 3, 3, 15) : 3;
+}
+
+// As many numbers as are stated: round ones where some step gives so many, else at equal distances from end to end.
+std::vector<TickLabel> counted_ticks(const ColorScale& s) {
+  const auto count = size_t(s.tick_count);
+  std::vector<TickLabel> few;
+  for (int wanted = 1; wanted <= 2 * s.tick_count; ++wanted) {
+    std::vector<TickLabel> ticks = nice_ticks(s.lo, s.hi, wanted, s.kind, s.linear_threshold);
+    std::erase_if(ticks, [&](const TickLabel& t) { return !(s.position(t.value) >= 0 && s.position(t.value) <= 1); });
+    if (ticks.size() == count) return ticks;
+    if (few.empty()) few = ticks;
+  }
+  if (count == 1) return few.empty() ? few : std::vector{few[few.size() / 2]};
+  std::vector<TickLabel> ticks;
+  for (size_t i = 0; i < count; ++i) {
+    const double v = s.value_at(double(i) / double(count - 1));
+    ticks.push_back({v, short_number(v, digits_between(s))});
+  }
+  return ticks;
+}
+
 // How many round numbers to ask for. Beside a standing bar all have the same height; below a lying one as many as stay apart in even steps.
 int round_numbers(const NumberedBar& b, const ColorScale& s) {
-  if (s.tick_count > 0) return s.tick_count;
   if (!b.lies) return std::clamp(int(b.bar.height / (2.6 * b.line_height)), 2, 9);
   int wanted = std::clamp(int(b.bar.width / (3.5 * b.font)), 2, 9);
   for (; wanted > 2; --wanted) {
@@ -105,12 +129,14 @@ std::vector<LegendLayout::Tick> legend_ticks(const Overlay& overlay, const Color
     for (size_t i = 0; i < texts.size(); ++i) offer(s.ticks[i], texts[i]);
     return ticks;
   }
+  if (s.tick_count > 0) {
+    for (const TickLabel& t : counted_ticks(s)) offer(t.value, t.text);
+    return ticks;
+  }
   size_t longest = 0;
   for (const TickLabel& t : nice_ticks(s.lo, s.hi, round_numbers(b, s), s.kind, s.linear_threshold))
     longest = std::max(longest, t.text.size()), offer(t.value, t.text);
-  if (s.tick_count > 0) return ticks;
-  const double largest = std::max(std::abs(s.lo), std::abs(s.hi)), range = std::abs(s.hi - s.lo);
-  const int digits = range > 0 && s.kind == ScaleKind::linear ? std::clamp(int(std::ceil(std::log10(largest / range))) + 3, 3, 15) : 3;
+  const int digits = digits_between(s);
   for (double end : {s.lo, s.hi}) {
     const std::string exact = exact_number(end),
                       text = exact.size() <= std::max<size_t>(6, longest + 1) ? exact : short_number(end, digits);

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include "base/text/text.h"
+#include "data/fields/stand_in_names.h"
 #include "data/lattice.h"
 #include "data/patient/modality.h"
 #include "data/patient/patient_frame.h"
@@ -68,10 +69,12 @@ std::string known_look(const Dataset& data, const Field& field, const Range& r, 
   return fmt::format("{} values matter: those {} {} are shown", low ? "low" : "high", low ? "below" : "above", short_number(start, 3));
 }
 
-// Skin faintly, bone strongly; colours of flesh and ivory. Hounsfield units + offset.
-void ct_look(const Range& r, double offset, bool choose_colors, VolumeItem& item) {
+// Skin to be seen through, bone strongly; colours of flesh and ivory. Hounsfield units + offset.
+void ct_look(const Field& field, const Range& r, double offset, bool choose_colors, VolumeItem& item) {
   item.opacity.points.clear();
-  const double points[][2] = {{-500, 0}, {-250, 0.035}, {-60, 0.05}, {60, 0.05}, {130, 0.10}, {250, 0.45}, {800, 0.75}, {3000, 0.9}};
+  // The border of skin and air is a layer of its own: thin, and much denser than the flesh beneath it.
+  const double points[][2] = {{-620, 0},   {-520, 0.65}, {-320, 0.65}, {-190, 0.02}, {60, 0.02},
+                              {130, 0.06}, {250, 0.45},  {800, 0.75},  {3000, 0.9}};
   for (const auto& p : points) item.opacity.points.push_back({p[0] + offset, p[1]});
   item.shaded = true;
   if (!choose_colors) return;
@@ -79,8 +82,9 @@ void ct_look(const Range& r, double offset, bool choose_colors, VolumeItem& item
     double hu;
     Vec3f color;
   };
-  const Stop stops[] = {{-500, {0.55f, 0.25f, 0.15f}}, {-100, {0.85f, 0.55f, 0.42f}}, {60, {0.88f, 0.52f, 0.40f}},
-                        {160, {0.93f, 0.80f, 0.64f}},  {300, {0.96f, 0.93f, 0.86f}},  {1500, {1.0f, 1.0f, 0.97f}}};
+  const Stop stops[] = {{-500, {0.91f, 0.72f, 0.59f}}, {-200, {0.88f, 0.63f, 0.50f}}, {-60, {0.85f, 0.55f, 0.42f}},
+                        {60, {0.88f, 0.52f, 0.40f}},   {160, {0.93f, 0.80f, 0.64f}},  {300, {0.96f, 0.93f, 0.86f}},
+                        {1500, {1.0f, 1.0f, 0.97f}}};
   item.color.lo = std::max(-500 + offset, r.lo);
   item.color.hi = std::min(1500 + offset, r.hi);
   item.color.map = Colormap{"ct", MapKind::sequential, "Flesh to bone over Hounsfield units.", {}, {}};
@@ -91,7 +95,7 @@ void ct_look(const Range& r, double offset, bool choose_colors, VolumeItem& item
     const float t = float(std::clamp((hu - stops[k - 1].hu) / (stops[k].hu - stops[k - 1].hu), 0.0, 1.0));
     item.color.map.colors.push_back(lerp(stops[k - 1].color, stops[k].color, t));
   }
-  if (item.color.title == "MetaImage" || item.color.title.empty()) item.color.title = "CT value";
+  if (is_stand_in_name(field.name) && item.color.title == "value") item.color.title = "CT value";
 }
 
 // From a soft grey to white: what is dark in an image must still show its shape in the light.
@@ -135,7 +139,7 @@ std::string choose_volume_look(const Dataset& data, const Field& field, const Co
   }
   double offset = 0;
   if (anatomy && params.range.empty() && looks_like_ct(data, field, &offset, context)) {
-    ct_look(range_over_all(data, field, 0, context), offset, !params.map, item);
+    ct_look(field, range_over_all(data, field, 0, context), offset, !params.map, item);
     const bool stated = modality_of(data, field) == Modality::ct;
     return fmt::format("CT ({}{}): skin and bone colours", stated ? "stated in the file" : "an air peak and soft tissue in 16-bit values",
                        offset ? ", Hounsfield + 1024" : "");

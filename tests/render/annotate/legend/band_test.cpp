@@ -288,3 +288,21 @@ TEST_CASE("legends: thumbnails get small ones at any side, or none, but never a 
       }
     }
 }
+
+TEST_CASE("legends: as many numbers as are stated, round ones where a step gives so many, else from end to end") {
+  const auto numbers = [](double lo, double hi, int count) {
+    Legend s = scale_at(LegendPlace::right);
+    s.lo = lo, s.hi = hi, s.tick_count = count;
+    std::vector<double> values;
+    const Sides sides = drawn({s});
+    for (const LegendLayout::Tick& t : sides.layouts[0].ticks) values.push_back(t.value);
+    std::sort(values.begin(), values.end());
+    return values;
+  };
+  CHECK(numbers(0, 100, 5) == std::vector<double>{0, 25, 50, 75, 100});
+  CHECK(numbers(0, 10, 6) == std::vector<double>{0, 2, 4, 6, 8, 10});
+  CHECK(numbers(293, 913, 3) == std::vector<double>{400, 600, 800});
+  CHECK(numbers(293, 913, 4) == std::vector<double>{293, 293 + 620.0 / 3, 293 + 2 * 620.0 / 3, 913});
+  CHECK(numbers(293, 913, 2).size() == 2);
+  for (int count = 1; count <= 12; ++count) CHECK(numbers(-3, 1273, count).size() == size_t(count));
+}
