@@ -78,7 +78,7 @@ const Field* FieldSet::find(std::string_view name) const {
 
 const Field& FieldSet::require(std::string_view name) const {
   if (const Field* f = find(name)) return *f;
-  const bool coordinate = name == "x" || name == "y" || name == "z";
+  const bool coordinate = name.size() == 1 && name[0] >= 'x' && name[0] <= 'z';
   fail_usage(
       fmt::format("field '{}' not found", name), {},
       coordinate ? fmt::format("-f 'calc expr={0} name={0}' makes a field of the coordinate", name) : unknown_name_hint(name, names()));
