@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <memory>
@@ -136,8 +137,8 @@ int cli_main(int argc, char** argv) {
     catch_signals();
     const int status = dispatch_command(with_streams(o, context), context);
     interruptible = nullptr;
-    check_files_unchanged();  // what was written to stdout
-    if (std::fflush(stdout) != 0) fail_data("cannot write to standard output");
+    check_files_unchanged();                                                                       // what was written to stdout
+    if (std::fflush(stdout) != 0 && errno != EPIPE) fail_data("cannot write to standard output");  // who reads on may have seen enough
     return status;
   } catch (const Error& e) {
     interruptible = nullptr;

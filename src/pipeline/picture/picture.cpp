@@ -21,6 +21,7 @@
 #include "pipeline/picture/picture_parts.h"
 #include "scene/choose/coloring.h"
 #include "scene/show/show.h"
+#include "scene/show/volume.h"
 
 namespace sg {
 
@@ -241,15 +242,18 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   std::vector<Data> held;
   Picture picture;
   Context computing(context, 0, 0.5), drawing(context, 0.5, 1);
-  std::optional<HeadPose> pose;  // of a CT that was contoured
+  std::optional<HeadPose> pose;  // of a CT that is contoured, or shown as a volume
+  const auto take_pose = [&](const Data& data) {
+    for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
+      if (!pose) pose = unstated_pose(*d);
+    });
+  };
   GraphOptions graph_options;
   graph_options.cache = cache;
   if (!stated.camera.up && has_contour(file))
     graph_options.read = [&](const std::string& path, const ReadOptions& read, const Request& request, Context& c) {
       Data data = read_part(path, read, request, c);
-      for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
-        if (!pose) pose = unstated_pose(*d);
-      });
+      take_pose(data);
       return data;
     };
   show_what_is_labelled(file, picture.notes);
@@ -264,8 +268,8 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   leave_out_sets(file, shows, results, picture.notes, computing);
   held.clear();
   if (look.shows.empty()) note_colors(shows, results, picture.notes);
-  if (const std::string note = note_of_long_drawing(shows, results, double(stated.width) * double(stated.height)); !note.empty())
-    context.info(note);
+  for (size_t i = 0; i < results.size() && look.shows.empty() && !stated.camera.up; ++i)
+    if (shows[i].kind->is<VolumeShow>()) take_pose(results[i]);
   for (std::string* text : {&stated.picture.title, &stated.picture.caption}) *text = title_of(*text, results, context);
   for (PictureNote& n : stated.notes) n.text = title_of(n.text, results, context);
 
@@ -283,6 +287,9 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
     s.any_points = all_most(int(s.any_points), context.communicator) > 0;
     s.patient = all_most(int(s.patient), context.communicator) > 0;
   }
+  for (const Shown& s : shown)
+    if (const std::string note = note_of_long_drawing(s.scene, double(stated.width) * double(stated.height)); !note.empty())
+      once.info(note);
   if (std::none_of(shown.begin(), shown.end(), [](const Shown& s) { return s.any_points; }))
     context.warn("the picture is empty: there are no points to show");
   if (!file.show.empty()) {

@@ -15,7 +15,7 @@ namespace sg {
 namespace {
 
 // Seconds of one thread, measured: a pixel with its legend and its writing, a byte of a surface, and a step of a lit ray.
-constexpr double per_pixel = 1e-7, per_byte = 1e-9, per_step = 2e-7;
+constexpr double per_pixel = 1e-7, per_byte = 1e-9, per_step = 3e-7;
 
 double surface_seconds(double bytes, double pixels) { return pixels * per_pixel + bytes * per_byte; }
 // Of five times the tolerance half the steps are taken.
@@ -54,17 +54,14 @@ std::string explain_drawing(const PipelineFile& file, const PipelineGraph& built
   return text + rounded(seconds / threads) + "\n";
 }
 
-std::string note_of_long_drawing(const std::vector<StatedShow>& shows, const std::vector<Data>& results, double pixels) {
+std::string note_of_long_drawing(const Scene& scene, double pixels) {
   constexpr double is_long = 15;  // seconds of processor time
   double seconds = 0, tolerance = 0;
-  for (size_t i = 0; i < shows.size(); ++i) {
-    if (!shows[i].kind->is<VolumeShow>()) continue;
-    const VolumeShow& volume = shows[i].params.as<VolumeShow>();
-    if (!volume.shaded || volume.mode != RayFunction::composite) continue;
-    size_t points = 0;
-    for_each_dataset(results[i], [&](const std::string&, const DatasetPtr& d) { points += d->point_count(); });
-    tolerance = volume.sampling.tolerance;
-    seconds += volume_seconds(4 * double(points), pixels, tolerance);
+  for (const Item& item : scene.items) {
+    const auto* volume = std::get_if<VolumeItem>(&item);
+    if (!volume || !volume->shaded || volume->mode != RayFunction::composite) continue;
+    tolerance = volume->sampling.tolerance;
+    seconds += volume_seconds(4 * double(volume->data->point_count()), pixels, tolerance);
   }
   if (seconds < is_long) return "";
   return fmt::format(

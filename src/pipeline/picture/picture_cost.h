@@ -2,7 +2,6 @@
 // What drawing is expected to take, which no step of the graph counts.
 #pragma once
 #include <string>
-#include <vector>
 
 #include "pipeline/file/pipeline_file.h"
 #include "pipeline/picture/picture_parts.h"
@@ -14,6 +13,6 @@ namespace sg {
 std::string explain_drawing(const PipelineFile& file, const PipelineGraph& built);
 
 /// Before a volume is drawn that will take long: for how long, why, and what takes less. "" for others.
-std::string note_of_long_drawing(const std::vector<StatedShow>& shows, const std::vector<Data>& results, double pixels);
+std::string note_of_long_drawing(const Scene& scene, double pixels);
 
 }  // namespace sg

@@ -321,7 +321,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   if (labels && is_stand_in_name(field.name)) s.title = "label";
   s.kind = p.scale;
   const FieldOf itself{&data, &field};
-  bool below_log = false;
+  bool below_log = false, zeros = false;
   if (s.kind == ScaleKind::log && p.range.empty() && r.lo <= 0) {
     // Zeros and negative values have no place on a log scale: start at the smallest positive value.
     Range positive;
@@ -336,10 +336,10 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
     if (positive.empty())
       fail_usage(fmt::format("field '{}' has no positive value for a log scale", field.name), "scale", "use scale=linear or scale=symlog");
     r = positive;
-    below_log = true;
+    below_log = zeros = true;
     context.info(
-        fmt::format("values of '{}' at or below 0 have no place on a log scale, which begins at {}, the smallest above 0; all below "
-                    "that is drawn as below it",
+        fmt::format("values of '{}' at or below 0 have no place on a log scale, which begins at {}, the smallest above 0; they are "
+                    "drawn in grey (below= takes another colour)",
                     field.name, short_number(positive.lo)));
   }
   constexpr double decades = 1e12;  // what lies below is what rounding left
@@ -405,6 +405,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   if (!p.above.empty()) s.above = parse_color(p.above, "above");
   if (!p.nan.empty()) s.nan = parse_color(p.nan, "nan");
   s.clamp = p.clamp;
+  if (zeros && !s.below) s.below = Vec3f{0.82f, 0.82f, 0.82f};  // else zeros look like the least that is more than nothing
   if (!p.range.empty() || ct || below_log) show_what_lies_beyond(data.range(field, p.component), s);
   name_legend(p, s, context);
   return s;

@@ -184,7 +184,7 @@ TEST_CASE("pictures: ways to show the labels of lines, which are points, show th
   CHECK(std::any_of(picture.notes.begin(), picture.notes.end(), [](const std::string& n) { return n.find("surface: of 'b'") == 0; }));
 }
 
-TEST_CASE("pictures: a contour of a CT whose file does not say how the patient lies says so, unless up is stated") {
+TEST_CASE("pictures: contour and volume of a CT whose file does not say how the patient lies say so, unless up is stated") {
   // Air, a head of soft tissue and bone in Hounsfield units.
   std::vector<int16_t> hu;
   for (int k = 0; k < 16; ++k)
@@ -201,15 +201,20 @@ TEST_CASE("pictures: a contour of a CT whose file does not say how the patient l
   const std::string folder = test::fresh_folder("lies_somehow");
   Context quiet;
   write_data(folder + "ct.vti", make_dataset(std::move(parts)), {}, quiet);
-  const auto said = [&](const std::string& camera) {
-    PipelineFile file = parse_pipeline(
-        "sightglass: 1\nsteps:\n  a: {read: " + folder + "ct.vti}\n  b: {contour: {values: 400}}\npicture: {size: 80x60" + camera + "}\n",
-        "", picture_vocabulary());
+  const std::string contour = "  b: {contour: {values: 400}}\n", volume = "show: [{volume: {}}]\n",
+                    upright = ", camera: {view: front, up: [0, 0, -1]}";
+  const auto said = [&](const std::string& shown, const std::string& camera) {
+    PipelineFile file =
+        parse_pipeline("sightglass: 1\nsteps:\n  a: {read: " + folder + "ct.vti}\n" + shown + "picture: {size: 80x60" + camera + "}\n", "",
+                       picture_vocabulary());
     Context context;
     const Picture picture = make_picture(file, {}, context);
     return std::any_of(picture.notes.begin(), picture.notes.end(),
                        [](const std::string& n) { return n.find("how the patient lies is not stated") != n.npos; });
   };
-  CHECK(said(""));
-  CHECK_FALSE(said(", camera: {view: front, up: [0, 0, -1]}"));
+  CHECK(said(contour, ""));
+  CHECK(said(volume, ""));
+  CHECK(said("", ""));
+  CHECK_FALSE(said(contour, upright));
+  CHECK_FALSE(said(volume, upright));
 }

@@ -34,10 +34,16 @@ TEST_CASE("drawing: the plan tells what it adds, by ways to show, more for more 
 TEST_CASE("drawing: a lit volume that takes long says so, others do not") {
   UniformGrid g;
   g.dims = {64, 64, 64};
-  const Data data = make_dataset(g);
+  DatasetParts parts;
+  parts.mesh = g;
+  parts.fields.add({"v", Association::point, Array::from_vector(std::vector<float>(64 * 64 * 64, 1)), "", Role::scalars});
+  const DatasetPtr data = make_dataset(std::move(parts));
   const auto note = [&](std::vector<std::string> words, double pixels) {
     const ShowKind& kind = find_show("volume");
-    return note_of_long_drawing({{&kind, show_params(kind, words)}}, {data}, pixels);
+    Scene scene;
+    Context context;
+    kind.add(scene, data, show_params(kind, words), context);
+    return note_of_long_drawing(scene, pixels);
   };
   CHECK(note({}, 3840.0 * 2160).find("tolerance=0.0098 takes about half") != std::string::npos);
   CHECK_FALSE(note({}, 1920.0 * 1080).empty());

@@ -61,6 +61,18 @@ std::vector<TickLabel> counted_ticks(const ColorScale& s) {
     if (ticks.size() == count) return ticks;
     if (few.empty()) few = ticks;
   }
+  if (s.kind == ScaleKind::linear && std::abs(s.hi - s.lo) > 0) {
+    const double lo = std::min(s.lo, s.hi), hi = std::max(s.lo, s.hi),
+                 decade = std::pow(10, std::floor(std::log10((hi - lo) / double(count))));
+    for (const double unit : {1.5, 3.0, 4.0, 6.0, 15.0}) {
+      const double step = unit * decade, slack = 1e-9 * step, first = std::ceil((lo - slack) / step);
+      if (std::floor((hi + slack) / step) - first + 1 != double(count)) continue;
+      std::vector<TickLabel> ticks;
+      for (size_t i = 0; i < count; ++i)
+        ticks.push_back({(first + double(i)) * step, short_number((first + double(i)) * step, digits_between(s))});
+      return ticks;
+    }
+  }
   if (count == 1) return few.empty() ? few : std::vector{few[few.size() / 2]};
   std::vector<TickLabel> ticks;
   for (size_t i = 0; i < count; ++i) {

@@ -302,6 +302,7 @@ TEST_CASE("legends: as many numbers as are stated, round ones where a step gives
   CHECK(numbers(0, 100, 5) == std::vector<double>{0, 25, 50, 75, 100});
   CHECK(numbers(0, 10, 6) == std::vector<double>{0, 2, 4, 6, 8, 10});
   CHECK(numbers(293, 913, 3) == std::vector<double>{400, 600, 800});
+  CHECK(numbers(293, 913, 5) == std::vector<double>{300, 450, 600, 750, 900});
   CHECK(numbers(293, 913, 4) == std::vector<double>{293, 293 + 620.0 / 3, 293 + 2 * 620.0 / 3, 913});
   CHECK(numbers(293, 913, 2).size() == 2);
   for (int count = 1; count <= 12; ++count) CHECK(numbers(-3, 1273, count).size() == size_t(count));
