@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/text/text.h"
+#include "color/counted_ticks.h"
 #include "render/annotate/legend/parts.h"
 
 namespace sg {
@@ -42,43 +43,6 @@ std::vector<LegendLayout::Tick> limits_of_bands(const NumberedBar& b, const Colo
     for (const std::string& t : texts) apart = std::max(apart, b.width(t) + 0.9 * b.font);
   const size_t n = s.limits.size(), every = size_t(std::ceil(apart * double(n - 1) / std::max(b.length() - 1, 1.0)));
   for (size_t i = 0; i < n; i += std::max<size_t>(every, 1)) ticks.push_back({s.limits[i], texts[i], b.at(double(i) / double(n - 1))});
-  return ticks;
-}
-
-// Digits that tell the ends of a scale and what lies between them apart.
-int digits_between(const ColorScale& s) {
-  const double largest = std::max(std::abs(s.lo), std::abs(s.hi)), range = std::abs(s.hi - s.lo);
-  return range > 0 && s.kind == ScaleKind::linear ? std::clamp(int(std::ceil(std::log10(largest / range))) + 3, 3, 15) : 3;
-}
-
-// As many numbers as are stated: round ones where some step gives so many, else at equal distances from end to end.
-std::vector<TickLabel> counted_ticks(const ColorScale& s) {
-  const auto count = size_t(s.tick_count);
-  std::vector<TickLabel> few;
-  for (int wanted = 1; wanted <= 2 * s.tick_count; ++wanted) {
-    std::vector<TickLabel> ticks = nice_ticks(s.lo, s.hi, wanted, s.kind, s.linear_threshold);
-    std::erase_if(ticks, [&](const TickLabel& t) { return !(s.position(t.value) >= 0 && s.position(t.value) <= 1); });
-    if (ticks.size() == count) return ticks;
-    if (few.empty()) few = ticks;
-  }
-  if (s.kind == ScaleKind::linear && std::abs(s.hi - s.lo) > 0) {
-    const double lo = std::min(s.lo, s.hi), hi = std::max(s.lo, s.hi),
-                 decade = std::pow(10, std::floor(std::log10((hi - lo) / double(count))));
-    for (const double unit : {1.5, 3.0, 4.0, 6.0, 15.0}) {
-      const double step = unit * decade, slack = 1e-9 * step, first = std::ceil((lo - slack) / step);
-      if (std::floor((hi + slack) / step) - first + 1 != double(count)) continue;
-      std::vector<TickLabel> ticks;
-      for (size_t i = 0; i < count; ++i)
-        ticks.push_back({(first + double(i)) * step, short_number((first + double(i)) * step, digits_between(s))});
-      return ticks;
-    }
-  }
-  if (count == 1) return few.empty() ? few : std::vector{few[few.size() / 2]};
-  std::vector<TickLabel> ticks;
-  for (size_t i = 0; i < count; ++i) {
-    const double v = s.value_at(double(i) / double(count - 1));
-    ticks.push_back({v, short_number(v, digits_between(s))});
-  }
   return ticks;
 }
 
