@@ -9,6 +9,7 @@
 #include "data/cells/point_positions.h"
 #include "io/formats.h"
 #include "io/table/table_columns.h"
+#include "io/table/table_parts.h"
 #include "io/write_losses.h"
 
 namespace sg {
@@ -171,9 +172,10 @@ std::string cell_text(const Table& t, size_t column, size_t row, int component) 
   return exact_number(a.type() == ElementType::f32 && std::isfinite(v) ? parse_double(fmt::format("{}", float(v))).value_or(v) : v);
 }
 
-// A table as it is; of a mesh, its points with their fields.
+// A table as it is, those of parts under each other; of a mesh, its points with their fields.
 TablePtr table_of(const Data& data) {
   if (auto* t = std::get_if<TablePtr>(&data)) return *t;
+  if (all_tables(data)) return joined_tables(*std::get<CollectionPtr>(data));
   const DatasetPtr d = single_dataset(data, "writing a table");
   auto table = std::make_shared<Table>();
   table->columns.push_back({"position", Association::whole, point_positions(d->mesh()), "", Role::none});
@@ -250,7 +252,7 @@ bool all_nan(const Table& t, size_t column) {
 }  // namespace
 
 void write_csv(const std::string& path, const Data& data, const WriteOptions&, Context& context) {
-  if (!std::holds_alternative<TablePtr>(data)) {
+  if (!all_tables(data)) {
     const DatasetPtr d = single_dataset(data, "writing a table");
     WriteLosses losses(path, "a table");
     losses.leaves_out(*d, Association::cell), losses.leaves_out(*d, Association::whole);

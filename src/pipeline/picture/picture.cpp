@@ -199,6 +199,14 @@ Box3 with_room(Box3 b) {
   return b;
 }
 
+// A projection of all values, such as the maximum along each ray, covers the edges behind it but for their ends.
+bool fills_its_box(const Scene& scene) {
+  return std::any_of(scene.items.begin(), scene.items.end(), [](const Item& item) {
+    const auto* volume = std::get_if<VolumeItem>(&item);
+    return volume && !info_of(volume->mode).absorbs && !info_of(volume->mode).needs_level;
+  });
+}
+
 // Ready to be drawn at the size that is stated.
 Panel panel_of(const Shown& shown, const Look& look, const StatedPicture& stated, const CameraParams& camera) {
   Panel p;
@@ -212,7 +220,8 @@ Panel panel_of(const Shown& shown, const Look& look, const StatedPicture& stated
   Box3 all = scene_bounds(p.scene);  // glyphs reach beyond the data
   all.add(shown.box);
   fit_planes(p.camera, all);
-  if (stated.picture.axes && !shown.outlined && !shown.box.empty()) p.scene.items.emplace_back(back_edges(shown.box, p.camera));
+  if (stated.picture.axes && !shown.outlined && !shown.box.empty() && !fills_its_box(p.scene))
+    p.scene.items.emplace_back(back_edges(shown.box, p.camera));
   return p;
 }
 

@@ -156,7 +156,8 @@ void draw_box_axes(Overlay& o, const Annotation& annotation, const Projection& p
     const TextExtent e = o.measure(name, name_style);
     std::optional<Rect> place = name_place(o, d.axis, p, font, d.ticks, e, others);
     const Vec3 from = p.to_pixel(d.axis.from), to = p.to_pixel(d.axis.to);
-    if (!place && std::abs(to.y - from.y) > 3 * std::abs(to.x - from.x)) {  // a long name beside an upright axis: read from below
+    const bool tight = !place || place->x < 0.6 * font || place->right() > p.width - 0.6 * font;
+    if (tight && std::abs(to.y - from.y) > 3 * std::abs(to.x - from.x)) {  // a long name beside an upright axis: read from below
       TextExtent turned = e;
       std::swap(turned.width, turned.height);
       if (const auto upright = name_place(o, d.axis, p, font, d.ticks, turned, others)) {
