@@ -326,7 +326,11 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   for (size_t i = 0; i < count; ++i) {
     CameraParams camera = stated.camera;
     if (!views.empty()) camera.view = view_named(views[i]);
+    // Straight on nothing is nearer: what is seen lies between the numbers of its axes, whose names tell their directions.
+    const bool straight = !views.empty() && camera.view != NamedView::iso && !camera.projection;
+    if (straight) camera.projection = ProjectionKind::parallel;
     panels.push_back({views.empty() ? panel_title(file, i) : views[i], panel_of(shown[views.empty() ? i : 0], look, inside, camera)});
+    if (straight) panels.back().panel.annotation.triad = false;
   }
   DrawnPicture drawn = draw_layout(panels, stated, inside, around, drawing);
   picture.image = std::move(drawn.image), picture.seen = std::move(drawn.seen);

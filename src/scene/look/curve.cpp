@@ -105,13 +105,14 @@ std::optional<Look> look_at_table(const Table& t, const std::string& field) {
   const Field *across = nullptr, *upwards = nullptr;
   for (size_t i = 0; i < t.columns.size(); ++i) {
     const Field& c = t.columns[i];
-    if (t.words(i) || c.components() != 1 || c.array.count() < least_rows) continue;
+    if (t.words(i)) return {};  // rows that are told apart by words are things: no step leads from one to the next
+    if (c.components() != 1 || c.array.count() < least_rows) continue;
     if ((!across || c.name == "distance") && increases(c)) across = &c;
   }
   if (!across) return {};
   for (size_t i = 0; i < t.columns.size() && !upwards; ++i) {
     const Field& c = t.columns[i];
-    if (t.words(i) || c.components() != 1 || &c == across || (field.empty() ? is_place(c.name) : c.name != field)) continue;
+    if (c.components() != 1 || &c == across || (field.empty() ? is_place(c.name) : c.name != field)) continue;
     if (const Range r = range_of(c); !field.empty() || (!r.empty() && r.lo < r.hi)) upwards = &c;
   }
   if (!upwards) return {};

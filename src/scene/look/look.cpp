@@ -113,6 +113,7 @@ bool look_at_scan(const Dataset& d, const Field& f, Look& look) {
   look.filter = {"slice", "planes=xyz"};
   SurfaceShow slices;
   slices.coloring.field.name = f.name;
+  slices.lit = false;  // as measured
   add_show(look, slices, false);
   look.camera.direction = {0.8, -1.0, 0.65};
   look.picture = {"views=front,left,bottom,iso"};

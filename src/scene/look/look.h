@@ -33,7 +33,7 @@ struct Look {
 /// made for graphics have y up. `of_series`: the data is a step of a file that is at hand, and one picture is to stand for all of it.
 Look choose_look(const Dataset& data, const std::string& field, const std::string& extension, bool of_series = false);
 /// A table whose rows follow one another in a column that increases, such as a distance or a time: the curve of `field`, or of the first
-/// column that varies, over it. Nothing for other tables.
+/// column that varies, over it. Nothing for other tables, such as those with words.
 std::optional<Look> look_at_table(const Table& table, const std::string& field);
 /// Turns the view of a CT scan of which nothing says how the patient lies, or of what was made of one, upright where a head is seen. What
 /// was done, or can be, in words.

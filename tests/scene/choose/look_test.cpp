@@ -522,6 +522,20 @@ TEST_CASE("choose_scale: stated numbers of the legend that are not on it are lef
   CHECK(warned.empty());
 }
 
+TEST_CASE("choose_scale: with colours for what lies beyond a range it is said how much does") {
+  const auto d = image<float>(10, [](size_t i, size_t, size_t) { return float(i); });  // 0 to 9
+  std::string said;
+  Context context;
+  context.on_log = [&](LogLevel, std::string_view text) { said = text; };
+  ColoringParams p;
+  p.range = {2, 20}, p.above = "red";
+  choose_scale(*d, d->fields()[0], p, context);
+  CHECK(said.find("20 % lie below the range and none above") != said.npos);
+  said = "", p.above = "";
+  choose_scale(*d, d->fields()[0], p, context);
+  CHECK(said.empty());
+}
+
 TEST_CASE("choose_view: what lies flat is seen from higher up, what is long from its side") {
   const auto seen_from = [](Vec3 size) { return choose_view({{0, 0, 0}, size}, "vtu", false).direction; };
   const Vec3 usual = CameraDefaults().direction;

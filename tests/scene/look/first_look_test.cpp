@@ -119,6 +119,8 @@ TEST_CASE("first look: a table is a curve over a column that increases, another 
   CHECK_FALSE(look_at_table(t, ""));
   t.columns[1] = column("distance", {0, 1, 2, 4}), t.columns[4] = column("v2", {0, 1, 2, 3});
   CHECK(look_at_table(t, "")->filter[1] == "x=distance");
+  t.labels = {{}, {}, {"a", "b", "c", "d"}, {}, {}};
+  CHECK_FALSE(look_at_table(t, ""));
 }
 
 TEST_CASE("first look: of a volume that is clear but for one place, a frame around that") {
