@@ -78,10 +78,10 @@ const Field* FieldSet::find(std::string_view name) const {
 
 const Field& FieldSet::require(std::string_view name) const {
   if (const Field* f = find(name)) return *f;
-  const bool coordinate = name.size() == 1 && name[0] >= 'x' && name[0] <= 'z';
-  fail_usage(
-      fmt::format("field '{}' not found", name), {},
-      coordinate ? fmt::format("-f 'calc expr={0} name={0}' makes a field of the coordinate", name) : unknown_name_hint(name, names()));
+  std::string hint = unknown_name_hint(name, names());
+  if (name.size() == 1 && name[0] >= 'x' && name[0] <= 'z')
+    hint += fmt::format("{}-f 'calc expr={} name={}' makes a field of the coordinate", hint.empty() ? "" : "; ", name, name);
+  fail_usage(fmt::format("field '{}' not found", name), {}, hint);
 }
 
 const Field& FieldSet::require(std::string_view name, Association a) const {

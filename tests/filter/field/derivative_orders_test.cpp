@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Orders of gradients and Hessians up to the border, on distorted meshes of every kind (correctness.md V12).
+#include <map>
+
 #include "data/cells/cell_reader.h"
 #include "filter/field/derivatives/derivatives.h"
 #include "filter/mesh/to_unstructured.h"
@@ -84,8 +86,8 @@ bool alike_on_both_sides(const MeshKind& kind) {
 }  // namespace
 
 TEST_CASE(
-    "derivative orders: gradients of second order, Hessians of first up to the border and second inside, on distorted meshes of every "
-    "kind") {
+    "derivative orders: gradients of second order, Hessians of second inside and falling up to the border, on distorted meshes of every "
+    "kind, few cells") {
   Random random(1);
   const Distortion d = Distortion::random(random, 0.12);
   const Waves f = Waves::random(random, 3, 0.6, 1.6);
@@ -118,6 +120,28 @@ TEST_CASE("derivative orders: Hessians of grids with straight axes, turned ones 
         CHECK(std::log2(a.all.hessian / b.all.hessian) > 1.5);
         CHECK(b.all.hessian < 5 * b.inside.hessian);
       }
+}
+
+TEST_CASE("derivative orders: Hessians at points are of second order up to every border of distorted meshes of every kind") {
+  Random random(1);
+  const Distortion d = Distortion::random(random, 0.12);
+  const Waves f = Waves::random(random, 3, 0.6, 1.6);
+  // Four layers of a cubic have to be a small part of the mesh.
+  const std::map<std::string, int> sizes{{"curvilinear", 12}, {"hexahedron", 12},          {"tetra", 12},           {"wedge", 12},
+                                         {"pyramid", 12},     {"polyhedron", 12},          {"bent hexahedron", 14}, {"bent tetra", 12},
+                                         {"mixed", 12},       {"flat curvilinear", 24},    {"triangles", 24},       {"quads", 24},
+                                         {"polygons", 24},    {"quadratic hexahedron", 12}};
+  size_t met = 0;
+  for (const MeshKind& kind : every_mesh()) {
+    const auto n = sizes.find(kind.name);
+    if (n == sizes.end()) continue;
+    ++met;
+    CAPTURE(kind.name);
+    const Measured a = measure(kind.make(n->second, 1), kind.flat, false, d, f),
+                   b = measure(kind.make(2 * n->second, 1), kind.flat, false, d, f);
+    CHECK(std::log2(a.all.hessian / b.all.hessian) > 1.7);
+  }
+  CHECK(met == sizes.size());
 }
 
 TEST_CASE("derivative orders: a flow that is a gradient has no vorticity up to the border of a wavy box of any cells") {

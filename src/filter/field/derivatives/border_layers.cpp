@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "data/lattice.h"
+#include "filter/field/derivatives/fitted_derivatives.h"
 #include "filter/field/derivatives/lattice_frame.h"
 #include "filter/field/sampling/center_lattice.h"
 
@@ -114,6 +115,38 @@ Array with_border_derivatives(const Dataset& grid, bool of_cells, const Array& v
       for (int a = 0; a < 3; ++a) v.step[a][a] = level.spacing[a];
       run(v, of_cells ? patch.cell_offset : patch.point_offset);
     }
+  return out;
+}
+
+Array with_fitted_borders(const DatasetPtr& grid, const Field& field, const Array& tensors, Context& context) {
+  constexpr size_t layers = 2;
+  std::array<size_t, 3> dims = lattice_dims(grid->mesh());
+  if (field.association == Association::cell)
+    for (size_t& n : dims) n = std::max<size_t>(n, 2) - 1;
+  std::vector<uint32_t> places;
+  for (size_t k = 0; k < dims[2]; ++k)
+    for (size_t j = 0; j < dims[1]; ++j)
+      for (size_t i = 0; i < dims[0]; ++i) {
+        const size_t at[3] = {i, j, k};
+        bool outer = false;
+        for (size_t a = 0; a < 3; ++a) outer = outer || (dims[a] > 1 && (at[a] < layers || at[a] + layers >= dims[a]));
+        if (outer) places.push_back(uint32_t(i + dims[0] * (j + dims[1] * k)));
+      }
+  const Array values = field.array.converted(ElementType::f64).made_packed();
+  std::vector<double> g(3 * places.size()), h(6 * places.size());
+  fitted_derivatives_at(grid, field.association, places, values, g.data(), h.data(), context);
+  std::byte* bytes = nullptr;
+  const Array packed = tensors.made_packed();
+  Array out = Array::make_raw(tensors.type(), tensors.count(), 9, &bytes);
+  std::memcpy(bytes, packed.raw(), packed.bytes());
+  constexpr size_t place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+  const auto put = [&](auto* to) {
+    for (size_t n = 0; n < places.size(); ++n)
+      for (size_t k = 0; k < 9; ++k)
+        if (const double v = h[6 * n + place[k]]; std::isfinite(v)) to[9 * size_t(places[n]) + k] = std::remove_pointer_t<decltype(to)>(v);
+  };
+  if (tensors.type() == ElementType::f64) put(reinterpret_cast<double*>(bytes));
+  else put(reinterpret_cast<float*>(bytes));
   return out;
 }
 

@@ -12,4 +12,8 @@ namespace sg {
 /// they were.
 Array with_border_derivatives(const Dataset& grid, bool of_cells, const Array& values, const Array& tensors, Context& context);
 
+/// The same at the two outer layers of a curvilinear grid, whose lines are bent: those of cubics through what lies around
+/// (quadratic_fit.h). Where these have no value: as they were.
+Array with_fitted_borders(const DatasetPtr& grid, const Field& field, const Array& tensors, Context& context);
+
 }  // namespace sg

@@ -129,6 +129,7 @@ DatasetPtr hessian(const DatasetPtr& in, const HessianParams& p, Context& ctx) {
     h.unit = f.unit.empty() ? "" : f.unit + "/length^2";
     const bool of_cells = f.association == Association::cell;
     h.array = with_border_derivatives(*in, of_cells, f.array, tangential_parts(in->mesh(), of_cells, h.array), ctx);
+    if (in->as<CurvilinearGrid>()) h.array = with_fitted_borders(in, f, h.array, ctx);
     parts.fields.add(std::move(h));
     return make_dataset(std::move(parts));
   }

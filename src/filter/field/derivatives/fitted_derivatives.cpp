@@ -224,6 +224,7 @@ class Worker {
 
   void derive(size_t i, double* gradient, double* hessian) {
     ++gaps.places;
+    wants_hessian_ = hessian != nullptr;
     bool opened = false, alone = false, slopes = false, bends = false;
     for (int c = 0; c < f_.components; ++c) {
       Vec3 g{NAN, NAN, NAN};
@@ -296,11 +297,33 @@ class Worker {
       used_.resize(before), offsets_.resize(before);
       break;
     }
+    if (wants_hessian_ && fit_.quadratic() && on_one_side()) place_cubic(i, c, rings);
+  }
+  // At a border the third derivatives on either side of a place do not cancel.
+  bool on_one_side() const {
+    constexpr double aside = 0.2;
+    Vec3 sum;
+    double lengths = 0;
+    for (const Vec3& d : offsets_) sum += d, lengths += length(d);
+    return length(sum) > aside * lengths;
+  }
+  // Second derivatives of second order, where as many rings as that takes are there; else all stays as it is.
+  void place_cubic(size_t i, int c, int rings) {
+    const size_t before = used_.size(), enough = QuadraticFit::needed_by_cubic(around_.dimension()) + 3;
+    for (;; ++rings) {
+      if (used_.size() >= enough) fit_.place(offsets_, around_.dimension(), around_.normal(), true);
+      if (fit_.cubic()) return;
+      if (rings == most_rings || !around_.grow()) break;
+      choose(i, c);
+    }
+    used_.resize(before), offsets_.resize(before);
+    fit_.place(offsets_, around_.dimension(), around_.normal());
   }
 
   Surroundings around_;
   View<double> f_;
   QuadraticFit fit_;
+  bool wants_hessian_ = false;
   int fitted_ = 0;   // the component that it was made for
   size_t seen_ = 0;  // of what was found
   std::vector<int64_t> used_;

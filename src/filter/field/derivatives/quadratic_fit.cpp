@@ -14,6 +14,7 @@ constexpr double flat = 1e-7;              // extents that count as none, of the
 constexpr double smallest_slope = 1e-4;    // sine below which a first derivative is not determined
 constexpr double smallest_bend = 1e-12;    // below it there is nothing to take
 constexpr double smallest_product = 0.03;  // length below which a combination of second derivatives is not determined
+constexpr double smallest_cubic = 0.05;    // sine below which a third derivative is not determined
 constexpr double even_height = 1e-12;      // of the mean distance: a flat surface
 
 // In four sums, the same four on every machine: additions that wait for one another would take most of the time of a fit.
@@ -58,8 +59,8 @@ void rotate_apart(double* a, size_t stride, size_t rows, size_t n, double* v, si
 
 }  // namespace
 
-void QuadraticFit::place(std::span<const Vec3> offsets, int dimension, Vec3 normal) {
-  dimension_ = dimension, rows_ = offsets.size(), columns_ = needed(dimension);
+void QuadraticFit::place(std::span<const Vec3> offsets, int dimension, Vec3 normal, bool cubic) {
+  dimension_ = dimension, rows_ = offsets.size(), columns_ = cubic ? needed_by_cubic(dimension) : needed(dimension);
   weight_.resize(rows_);
   double sum = 0;
   for (size_t i = 0; i < rows_; ++i) sum += weight_[i] = length(offsets[i]);
@@ -134,6 +135,9 @@ void QuadraticFit::fill_columns(std::span<const Vec3> offsets) {
     for (size_t a = 0; a < n; ++a) q_[c++ * rows_ + i] = weight_[i] * x[a];
     for (size_t a = 0; a < n; ++a)
       for (size_t b = a; b < n; ++b) q_[c++ * rows_ + i] = weight_[i] * x[a] * x[b] * (a == b ? 0.5 : 1.0);
+    for (size_t a = 0; a < n && c < columns_; ++a)
+      for (size_t b = a; b < n; ++b)
+        for (size_t d = b; d < n; ++d) q_[c++ * rows_ + i] = weight_[i] * x[a] * x[b] * x[d];
   }
   for (size_t c = 0; c < columns_; ++c) {
     double* v = q_.data() + c * rows_;
@@ -148,14 +152,18 @@ void QuadraticFit::fill_columns(std::span<const Vec3> offsets) {
     if (!(norm_[c] > flat * longest)) left_[c] = 0;
 }
 
-// QR with column pivoting among coordinates, then among products: what cannot be distinguished is left to the coordinates.
+// QR with column pivoting among coordinates, then among products of two, then of three: what cannot be distinguished is left to the
+// coordinates.
 void QuadraticFit::factorise(std::span<const Vec3> offsets) {
   fill_columns(offsets);
   determined_ = 1, rank_ = 0;
   std::fill(taken_, taken_ + columns_, false);
   take_columns(0, size_t(dimension_), smallest_slope);
   slopes_ = rank_;
-  take_columns(size_t(dimension_), columns_, smallest_bend);
+  take_columns(size_t(dimension_), needed(dimension_), smallest_bend);
+  const double determined = determined_;
+  if (determined >= well_determined) take_columns(needed(dimension_), columns_, smallest_cubic);
+  determined_ = determined;
 }
 
 void QuadraticFit::take_columns(size_t begin, size_t end, double smallest) {
@@ -186,7 +194,7 @@ void QuadraticFit::take_columns(size_t begin, size_t end, double smallest) {
 
 // The rows of R that belong only to the products, as orthogonal columns: short ones are combinations that nothing determines.
 void QuadraticFit::split_products() {
-  const auto n = size_t(dimension_), products = columns_ - n, rows = rank_ - slopes_;
+  const auto n = size_t(dimension_), products = needed(dimension_) - n, rows = rank_ - slopes_;
   split_ = true;
   for (size_t k = 0; k < products; ++k) {
     const double* column = q_.data() + (n + k) * rows_;
@@ -213,7 +221,7 @@ void QuadraticFit::split_products() {
 // right_ (weighted, overwritten) to derivatives along the axes; those not determined are 0.
 void QuadraticFit::fit(double* slope, double* bend) {
   split_when_poor();
-  const auto n = size_t(dimension_), products = columns_ - n;
+  const auto n = size_t(dimension_), products = needed(dimension_) - n;
   for (size_t c = 0; c < rank_; ++c) {  // Q^T b
     const double* v = q_.data() + order_[c] * rows_;
     const double s = beta_[c] * dot_of(v + c, right_.data() + c, rows_ - c);

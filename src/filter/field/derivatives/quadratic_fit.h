@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Derivatives from scattered neighbours: a weighted least-squares parabola through what lies around a place.
+// Derivatives from scattered neighbours: a weighted least-squares parabola, or cubic, through what lies around a place.
 #pragma once
 #include <span>
 #include <vector>
@@ -10,14 +10,17 @@ namespace sg {
 
 /// Values and places around a point. Fits f(p + d) - f(p) = g.d + d.H d / 2 with weights 1/|d|^2 in the space that the neighbours
 /// span (`dimension` 1, 2 or 3; for 2 the plane across `normal`), by Householder QR. Exact for quadratic functions; gradients of
-/// smooth functions are of second order, Hessians of first, where the neighbours determine them (see determined()).
+/// smooth functions are of second order, Hessians of first, where the neighbours determine them (see determined()); those of a cubic, which
+/// has products of three coordinates too, are of one order more.
 /// Lines and surfaces may be bent: how far neighbours lie off the plane is fitted as well, and derivatives are those along the bent
 /// surface (the gradient in its tangent plane, the covariant Hessian), of the same orders although the normal is of first order only.
 /// Not thread-safe: one per thread.
 class QuadraticFit {
  public:
   /// Sets the geometry: factorises once, for any number of fields. No offset may be zero.
-  void place(std::span<const Vec3> offsets, int dimension, Vec3 normal);
+  void place(std::span<const Vec3> offsets, int dimension, Vec3 normal, bool cubic = false);
+  /// The neighbours determine the cubic that was asked for.
+  bool cubic() const { return rank_ == columns_ && columns_ > needed(dimension_); }
 
   /// The smallest sine of the angle between a column of the fit (a coordinate or a product of two) and those before it, 0 to 1, in the
   /// better of the given axes and the neighbours' principal ones, so that thin and slanting cells count like cubes. Errors grow with its
@@ -39,9 +42,11 @@ class QuadraticFit {
   bool quadratic() { return undetermined() == 0; }
   /// Neighbours that a parabola needs.
   static size_t needed(int dimension) { return size_t(dimension + dimension * (dimension + 1) / 2); }
+  /// Those that a cubic needs.
+  static size_t needed_by_cubic(int dimension) { return needed(dimension) + size_t(dimension * (dimension + 1) * (dimension + 2) / 6); }
 
  private:
-  static constexpr size_t most_columns = 9, most_products = 6;
+  static constexpr size_t most_columns = 19, most_products = 6;
   void choose_axes(std::span<const Vec3> offsets, Vec3 normal);
   void use_principal_axes(std::span<const Vec3> offsets, int dimension);
   void factorise(std::span<const Vec3> offsets);

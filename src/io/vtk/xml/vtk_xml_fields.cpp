@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <unordered_map>
 
 #include "base/bytes.h"
 #include "base/parallel.h"
@@ -64,14 +65,22 @@ bool shapes_mesh(pugi::xml_node data, std::string_view name) {
   return false;
 }
 
-// The array of that name among the PointData or CellData of a piece; the last one when there are several.
-pugi::xml_node array_of(const XmlPiece& piece, const char* element, std::string_view name) {
-  pugi::xml_node found;
-  for (const pugi::xml_node& data : piece.node.children(element))
-    for (const pugi::xml_node& n : data.children())
-      if (XmlFile::is_numeric(n) && name == n.attribute("Name").value()) found = n;
-  return found;
-}
+// The numeric arrays among the PointData or CellData of a piece by their names; of several with the same the last one.
+class NamedArrays {
+ public:
+  NamedArrays(const XmlPiece& piece, const char* element) {
+    for (const pugi::xml_node& data : piece.node.children(element))
+      for (const pugi::xml_node& n : data.children())
+        if (XmlFile::is_numeric(n)) by_name_[n.attribute("Name").value()] = n;
+  }
+  pugi::xml_node find(std::string_view name) const {
+    const auto found = by_name_.find(name);
+    return found == by_name_.end() ? pugi::xml_node() : found->second;
+  }
+
+ private:
+  std::unordered_map<std::string_view, pugi::xml_node> by_name_;  // names lie in the document
+};
 
 }  // namespace
 
@@ -83,6 +92,9 @@ bool is_wanted(const XmlRead& read, std::string_view name) {
 std::vector<XmlField> list_fields(const XmlRead& read, const std::vector<XmlPiece>& pieces, const char* element, Association association) {
   std::vector<XmlField> fields;
   if (pieces.empty()) return fields;
+  std::unordered_map<std::string, size_t> places;  // of names in `fields`
+  std::vector<NamedArrays> arrays;
+  for (const XmlPiece& p : pieces) arrays.emplace_back(p, element);
   auto add = [&](const XmlPiece& piece, pugi::xml_node data, pugi::xml_node n) {
     std::string name = n.attribute("Name").value();
     const auto [type, components] = piece.file->number_type(n);
@@ -93,9 +105,9 @@ std::vector<XmlField> list_fields(const XmlRead& read, const std::vector<XmlPiec
       fields.push_back(std::move(f));
       return;
     }
-    const auto same = std::find_if(fields.begin(), fields.end(), [&](const XmlField& x) { return x.field.name == name; });
-    if (same == fields.end()) fields.push_back(std::move(f));
-    else *same = std::move(f);
+    const auto [at, added] = places.try_emplace(name, fields.size());
+    if (added) fields.push_back(std::move(f));
+    else fields[at->second] = std::move(f);
   };
   for (const pugi::xml_node& data : pieces[0].node.children(element))
     for (const pugi::xml_node& n : data.children()) {
@@ -104,15 +116,14 @@ std::vector<XmlField> list_fields(const XmlRead& read, const std::vector<XmlPiec
       if (is_wanted(read, name) || is_ghost_name(name) || shapes_mesh(data, name)) add(pieces[0], data, n);
     }
   // A ghost array counts even when only some pieces have one.
-  for (const XmlPiece& p : pieces)
+  for (size_t k = 0; k < pieces.size(); ++k)
     for (const char* ghost : {"vtkGhostType", "vtkGhostLevels"})
-      if (const pugi::xml_node n = array_of(p, element, ghost))
-        if (std::none_of(fields.begin(), fields.end(), [&](const XmlField& x) { return x.field.name == ghost; })) add(p, n.parent(), n);
+      if (const pugi::xml_node n = arrays[k].find(ghost); n && !places.contains(ghost)) add(pieces[k], n.parent(), n);
   std::erase_if(fields, [&](XmlField& f) {
     if (f.nodes.size() == pieces.size()) return false;
-    for (const XmlPiece& p : pieces) {
-      const pugi::xml_node n = array_of(p, element, f.field.name);
-      const bool fits = n ? p.file->number_type(n) == std::pair(f.type, f.components) : is_ghost_name(f.field.name);
+    for (size_t k = 0; k < pieces.size(); ++k) {
+      const pugi::xml_node n = arrays[k].find(f.field.name);
+      const bool fits = n ? pieces[k].file->number_type(n) == std::pair(f.type, f.components) : is_ghost_name(f.field.name);
       if (!fits) {
         read.context.warn(fmt::format("{} array '{}' differs between pieces and is left out", association_name(association), f.field.name));
         return true;
