@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where what is shown comes from, and from where it is seen when nothing is said.
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/core.h>
-
+#include "base/file/file.h"
 #include "filter/mesh/clip/clip.h"
 #include "filter/scalar/contour/contour.h"
 #include "filter/scalar/line_labels.h"
