@@ -54,9 +54,13 @@ size_t unpack_slice(std::span<const std::byte> in, std::byte* out, size_t need, 
     if (run == 0) break;
     if (run > need - n) fail();
     if (c & 128) {
-      if (run > in.size() - i) fail();
-      std::memcpy(out + n, in.data() + i, run);
-      i += run;
+      const size_t there = std::min(run, in.size() - i);
+      std::memcpy(out + n, in.data() + i, there);
+      i += there;
+      if (there < run) {  // cut off
+        n += there;
+        break;
+      }
     } else {
       if (i >= in.size()) fail();
       std::memset(out + n, int(in[i++]), run);
@@ -125,7 +129,9 @@ Data read_slc(const std::string& path, const ReadOptions& options, Context& cont
       w.mark("the packed size of a slice");
       if (slice / 64 > n + 1) fail_data(fmt::format("byte {}: {} bytes cannot decompress to {}", w.at, n, slice), path);
     }
-    if (n > file.size() - w.at)
+    const size_t left = file.size() - w.at;
+    if (packing && k + 1 == grid.dims[2] && n > left && n - left <= row) n = left;  // what that lacks is told below
+    if (n > left)
       fail_data(fmt::format("too short: slice {} needs {} bytes from byte {} on, but there are {}", k, n, w.at, file.size() - w.at), path);
     slices.push_back(bytes.subspan(w.at, n));
     w.at += n;

@@ -9,6 +9,7 @@
 #include "base/text/text.h"
 #include "io/formats.h"
 #include "io/text/word_categories.h"
+#include "io/vtk/named_linear.h"
 #include "io/vtk/vtk_cells.h"
 #include "io/vtk/vtk_legacy_text.h"
 
@@ -408,6 +409,9 @@ Mesh LegacyReader::mesh() {
       if (one_type_) m.single_type = *one_type_;
       else set_types(m, types_);
       if (!m.types.empty()) expand_polyhedra(m);
+      if (const size_t mended = mend_named_linear(m))
+        context_.warn(
+            fmt::format("{} cells have more points than their types: they are read as the quadratic cells of these shapes", mended));
       return m;
     }
     case Kind::surface:

@@ -172,7 +172,7 @@ Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file,
   for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
     parts.push_back(d);
     const Field* f = automatic_field(*d);
-    const bool values = f && f->role != Role::labels;
+    const bool values = d->point_count() > 0 && f && f->role != Role::labels;
     if (!largest || (values && !has_values) || (values == has_values && d->point_count() > largest->point_count()))
       largest = d, has_values = values;
   });

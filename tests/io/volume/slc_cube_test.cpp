@@ -66,6 +66,20 @@ TEST_CASE("slc: slices that lack up to a row at their end are read, and it is sa
   CHECK(contains(said[0], "slice 0 is 1 byte short; read as 0"));
 }
 
+TEST_CASE("slc: a file that ends up to a row early is read, one that ends earlier is not") {
+  const std::string a = "\x8c" + slice_a + std::string(1, '\0'), b = "\x8c" + slice_b + std::string(1, '\0');
+  const std::string whole = slc("4 3 2", 1, fmt::format("{} X", a.size()) + a + fmt::format("\n{} X", b.size()) + b);
+  const auto last = [&](size_t lacks) {
+    Context context;
+    const Data data = read_data(temp_file("cut.slc", whole.substr(0, whole.size() - lacks)), {}, context);
+    return std::get<DatasetPtr>(data)->fields()[0].array.get(23);
+  };
+  CHECK(last(0) == double(uint8_t(slice_b[11])));
+  CHECK(last(1) == double(uint8_t(slice_b[11])));  // the mark of the end alone
+  CHECK(last(2) == 0);
+  CHECK_THROWS_AS(last(6), Error);
+}
+
 TEST_CASE("slc: bad headers and slices are refused") {
   CHECK(contains(refusal("b.slc", slc("4 3 9", 0, slice_a)), "too short: slice 1"));
   CHECK(contains(refusal("b.slc", slc("0 3 2", 0, slice_a)), "size of 0"));
@@ -75,7 +89,8 @@ TEST_CASE("slc: bad headers and slices are refused") {
   CHECK(contains(refusal("b.slc", slc("4 3 1", 1, "2 X\x04\x07")), "make 4 of 12 bytes"));
   CHECK(contains(refusal("b.slc", slc("4 3 1", 1, "2 X\x7f\x07")), "run lengths"));
   CHECK(contains(refusal("b.slc", slc("4 3 1", 1, "12 Y" + slice_a)), "'X'"));
-  CHECK(cut_and_damage("cut.slc", slc("4 3 2", 1, packed_slices())) == 63);
+  // All places to cut at but the one before the mark that ends the last slice.
+  CHECK(cut_and_damage("cut.slc", slc("4 3 2", 1, packed_slices())) == 62);
 }
 
 TEST_CASE("cube: a number lies where its place in the file says") {

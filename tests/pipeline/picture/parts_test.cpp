@@ -218,3 +218,16 @@ TEST_CASE("pictures: contour and volume of a CT whose file does not say how the 
   CHECK_FALSE(said(contour, upright));
   CHECK_FALSE(said(volume, upright));
 }
+
+TEST_CASE("pictures of parts: one of which a filter left nothing does not speak for the others") {
+  const DatasetPtr full = square(0, 1, "1=rim");
+  DatasetParts nothing = full->parts();
+  SurfaceMesh none;
+  none.points.xyz = Array::from_vector<float>({}, 3);
+  nothing.mesh = none;
+  nothing.fields = {};
+  nothing.fields.add({"ObjectId", Association::cell, Array::from_vector<int32_t>({}), "", Role::none});
+  const Drawn drawn = shown(Data(collection({{"a", make_dataset(std::move(nothing))}, {"b", full}})));
+  REQUIRE(!drawn.file.show.empty());
+  CHECK(drawn.picture.notes[0].find("no points") == std::string::npos);
+}
