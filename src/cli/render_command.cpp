@@ -64,6 +64,17 @@ std::string stem_of(const std::string& path) {
   return dot == std::string::npos || dot == 0 ? name : name.substr(0, dot);
 }
 
+// Files of one name but for a number, as a shell makes them of a pattern without quotes.
+bool look_like_steps(const std::vector<std::string>& paths) {
+  constexpr size_t few = 3;
+  const auto without_digits = [](std::string s) {
+    std::erase_if(s, [](char c) { return c >= '0' && c <= '9'; });
+    return s;
+  };
+  return paths.size() >= few &&
+         std::all_of(paths.begin(), paths.end(), [&](const std::string& p) { return without_digits(p) == without_digits(paths[0]); });
+}
+
 // The name with the input's in the place of {name}.
 std::string output_name(std::string pattern, const std::string& stem) {
   replace_all(pattern, "{name}", stem);
@@ -187,6 +198,10 @@ int render_into(PipelineFile file, const FilmParams& film, const PictureOptions&
 }  // namespace
 
 int run_render(const Options& o, Context& context) {
+  if (look_like_steps(o.inputs) && o.filters.empty() && o.layout.empty())
+    context.info(
+        fmt::format("{} files whose names differ by a number are drawn together: --series FILES... takes them as steps of one series",
+                    o.inputs.size()));
   PipelineFile file = pipeline_of(o);
   PictureOptions options;
   if (!o.field.empty()) options.coloring.push_back("field=" + o.field);
@@ -288,7 +303,9 @@ int convert_slabs(const PipelineFile& file, const Options& o, const WriteOptions
 
 }  // namespace
 
-int run_convert(const Options& o, Context& context) {
+int run_convert(const Options& given, Context& context) {
+  Options o = given;
+  if (!o.inputs.empty()) o.output = output_name(o.output, stem_of(o.inputs[0]));
   PipelineFile file = pipeline_of(o);
   if (o.inputs.size() > 1) fail_usage("converts one file at a time", "sightglass convert");
   if (o.explain) {

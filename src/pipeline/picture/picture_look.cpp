@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/file/file.h"
 #include "base/text/text.h"
+#include "data/lattice.h"
 #include "io/lent_series.h"
 #include "pipeline/picture/picture_parts.h"
 #include "scene/choose/crowded_box.h"
@@ -130,6 +131,14 @@ void cut_to_crowd(const Data& data, const std::string& name, Look& look) {
   look.reason += fmt::format("; '{}' hardly varies but in a small part, which is shown; --show surface shows all", fields[0].field->name);
 }
 
+// A displacement of the points, by its name; null where the points are displaced by nothing.
+const Field* displacement_of(const Dataset& d) {
+  if (is_lattice(d.mesh())) return nullptr;
+  for (const Field& f : d.fields())
+    if (f.association == Association::point && f.components() == 3 && to_lower(f.name).starts_with("disp") && d.range(f).hi > 0) return &f;
+  return nullptr;
+}
+
 bool states_scale(const PipelineFile::Show& s) { return word_value(s.words, "scale") || word_value(s.words, "range"); }
 
 // The step, where it reads a file of which nothing but the name is said.
@@ -188,6 +197,7 @@ Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file,
   // What is seen of a volume was told for the scale that is chosen.
   if (states_scale(wanted))
     if (const size_t at = look.reason.find("shown as a volume;"); at != look.reason.npos) look.reason.resize(look.reason.find(';', at));
+  if (const Field* u = displacement_of(*largest)) look.reason += fmt::format("; -f warp shows its shape displaced by '{}'", u->name);
   face_detail(look, parts, extension_of(origin), context);
   cut_open(look, largest, field, context);
   if (parts.size() == 1) show_flow(look, largest, field, context);

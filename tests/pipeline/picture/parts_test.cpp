@@ -231,3 +231,12 @@ TEST_CASE("pictures of parts: one of which a filter left nothing does not speak 
   REQUIRE(!drawn.file.show.empty());
   CHECK(drawn.picture.notes[0].find("no points") == std::string::npos);
 }
+
+TEST_CASE("pictures: where points have displacements, the displaced shape is offered") {
+  DatasetParts parts = square(0, 1, "1=rim")->parts();
+  parts.fields.add(
+      {"Displacement", Association::point, Array::from_vector<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 2}, 3), "", Role::none});
+  const Drawn bent = shown(Data(make_dataset(std::move(parts))));
+  CHECK(bent.picture.notes[0].find("-f warp shows its shape displaced by 'Displacement'") != std::string::npos);
+  CHECK(shown(Data(square(0, 1, "1=rim"))).picture.notes[0].find("warp") == std::string::npos);
+}

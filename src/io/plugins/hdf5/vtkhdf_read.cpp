@@ -183,7 +183,7 @@ struct Reader {
     found += (found.empty() ? "" : ", ") + name + (file.is_group("/" + name) ? "/" : "");
   }
   fail_data(fmt::format("is an HDF5 file of an unknown kind: it contains {}", found.empty() ? "nothing" : found), file.path(),
-            "supported: VTKHDF (a group 'VTKHDF'), netCDF 4 (.nc), Exodus (.e .exo), CGNS (.cgns), MINC 2 (.mnc), ENZO (open its "
+            "supported: VTKHDF (a group 'VTKHDF'), netCDF 4 (.nc), Exodus (.e .exo), CGNS (.cgns), ENZO (open its "
             ".hierarchy) and XDMF (open its .xdmf)");
 }
 
