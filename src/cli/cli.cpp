@@ -137,8 +137,9 @@ int cli_main(int argc, char** argv) {
     catch_signals();
     const int status = dispatch_command(with_streams(o, context), context);
     interruptible = nullptr;
-    check_files_unchanged();                                                                       // what was written to stdout
-    if (std::fflush(stdout) != 0 && errno != EPIPE) fail_data("cannot write to standard output");  // who reads on may have seen enough
+    check_files_unchanged();  // what was written to stdout
+    // A reader that closes the pipe has seen enough.
+    if (std::fflush(stdout) != 0 && errno != EPIPE) fail_data("cannot write to standard output");
     return status;
   } catch (const Error& e) {
     interruptible = nullptr;

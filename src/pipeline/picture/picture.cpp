@@ -254,7 +254,7 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   std::optional<HeadPose> pose;  // of a CT that is contoured, or shown as a volume
   const auto take_pose = [&](const Data& data) {
     for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
-      if (!pose) pose = unstated_pose(*d);
+      if (!pose && !context.communicator) pose = unstated_pose(*d);  // pieces of a head would turn each its own way
     });
   };
   GraphOptions graph_options;
