@@ -43,12 +43,19 @@ std::span<const Format> formats() {
   return table;
 }
 
-bool y_points_up(std::string_view extension) {
+namespace {
+
+unsigned honours_of(std::string_view extension) {
   for (const Format& f : formats())
     for (const std::string_view e : words(f.extensions))
-      if (e == extension) return f.honours & y_is_up;
-  return false;
+      if (e == extension) return f.honours;
+  return 0;
 }
+
+}  // namespace
+
+bool y_points_up(std::string_view extension) { return honours_of(extension) & y_is_up; }
+bool states_up(std::string_view extension) { return honours_of(extension) & defines_up; }
 
 namespace {
 

@@ -155,11 +155,9 @@ bool is_convex(std::span<const Vec3> at) {
   return true;
 }
 
-std::vector<double> borders(const Range& r, const BandsParams& p) {
-  std::vector<double> v = p.values;
+std::vector<double> sorted_limits(std::vector<double> v) {
   for (double x : v)
     if (!std::isfinite(x)) fail_usage(fmt::format("{} is not a valid band limit", x), "bands values", "give finite numbers");
-  if (v.empty()) v = even_values(r, p.count - 1);
   std::sort(v.begin(), v.end());
   v.erase(std::unique(v.begin(), v.end()), v.end());
   return v;
@@ -243,12 +241,16 @@ std::vector<Pieces> cut_all(const SurfaceMesh& mesh, const std::vector<Vec3>& at
 
 }  // namespace
 
+std::vector<double> choose_band_limits(const Dataset& in, const BandsParams& p, const Context& ctx) {
+  return even_values(range_over_all(in, band_field(in, p), p.component, ctx), p.count - 1);
+}
+
 DatasetPtr bands(const DatasetPtr& in, const BandsParams& p, Context& ctx) {
   const DatasetPtr s = surface::polygon_surface(in, "bands", ctx);
   const SurfaceMesh& mesh = *s->as<SurfaceMesh>();
   const Field& field = band_field(*s, p);
   const Range range = range_over_all(*s, field, p.component, ctx);
-  const std::vector<double> levels = borders(range, p);
+  const std::vector<double> levels = sorted_limits(p.values.empty() ? choose_band_limits(*s, p, ctx) : p.values);
   const Array samples = scalar_of(field, field.components() > 1 ? p.component : 0, ElementType::f64);
   const std::vector<double> f(samples.view<double>().data, samples.view<double>().data + samples.count());
   const std::vector<Vec3> at = surface::positions(mesh.points);

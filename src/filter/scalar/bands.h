@@ -33,4 +33,7 @@ inline void describe(Schema& s, BandsParams& p) {
 /// a note. Values are sorted, doubles count once. Throws Error(usage) for cell fields, values that are not finite, meshes without faces.
 DatasetPtr bands(const DatasetPtr& in, const BandsParams& p, Context& ctx);
 
+/// The limits that bands() chooses where none are stated, over all parts of the data (data/ranks/over_all.h). Throws what it throws.
+std::vector<double> choose_band_limits(const Dataset& in, const BandsParams& p, const Context& ctx);
+
 }  // namespace sg

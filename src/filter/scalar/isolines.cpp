@@ -153,6 +153,16 @@ DatasetPtr polylines(const DatasetPtr& in, const PolylinesParams& p, Context& ct
   return make_dataset(std::move(out));
 }
 
+std::vector<double> choose_line_values(const Dataset& s, const IsolinesParams& p, const Context& ctx) {
+  // The range of what is contoured, as contour chooses it: ask it for its middle and look the field up by name.
+  const Field* f = p.field.empty() ? s.fields().active(1) : s.fields().find(p.field.name, Association::point);
+  int component = f && f->components() > 1 ? -1 : 0;
+  if (p.component.size() == 1 && p.component[0] >= 'x' && p.component[0] <= 'z') component = p.component[0] - 'x';
+  else if (p.component.size() == 1 && p.component[0] >= '0' && p.component[0] <= '9') component = p.component[0] - '0';
+  if (!f || f->association != Association::point || component >= f->components()) return {};
+  return even_values(range_over_all(s, *f, component, ctx), p.count);
+}
+
 DatasetPtr isolines(const DatasetPtr& in, const IsolinesParams& p, Context& ctx) {
   DatasetPtr s = in;
   bool flat = is_lattice(in->mesh());
@@ -163,15 +173,7 @@ DatasetPtr isolines(const DatasetPtr& in, const IsolinesParams& p, Context& ctx)
   }
   if (!flat) s = surface::polygon_surface(in, "isolines", ctx);
   ContourParams c{.field = p.field, .values = p.values, .normals = false, .component = p.component};
-  if (c.values.empty()) {
-    // The range of what is contoured, as contour chooses it: ask it for its middle and look the field up by name.
-    const Field* f = p.field.empty() ? s->fields().active(1) : s->fields().find(p.field.name, Association::point);
-    int component = f && f->components() > 1 ? -1 : 0;
-    if (p.component.size() == 1 && p.component[0] >= 'x' && p.component[0] <= 'z') component = p.component[0] - 'x';
-    else if (p.component.size() == 1 && p.component[0] >= '0' && p.component[0] <= '9') component = p.component[0] - '0';
-    if (f && f->association == Association::point && component < f->components())
-      c.values = even_values(range_over_all(*s, *f, component, ctx), p.count);
-  }
+  if (c.values.empty()) c.values = choose_line_values(*s, p, ctx);
   DatasetParts lines = contour(s, c, ctx)->parts();
   const auto& mesh = std::get<SurfaceMesh>(lines.mesh);
   if (c.values.size() == 1) {  // in the place of a field of the input's that may be called so

@@ -42,4 +42,7 @@ inline void describe(Schema& s, IsolinesParams& p) {
 /// values lie on the left of a line in x-y meshes.
 DatasetPtr isolines(const DatasetPtr& in, const IsolinesParams& p, Context& ctx);
 
+/// The values that isolines() chooses where none are stated, over all parts of the data (data/ranks/over_all.h); none without a field.
+std::vector<double> choose_line_values(const Dataset& in, const IsolinesParams& p, const Context& ctx);
+
 }  // namespace sg

@@ -11,12 +11,15 @@
 
 #include "base/error.h"
 #include "base/text/text.h"
+#include "data/fields/sampled_cloud.h"
 #include "data/memory/memory_budget.h"
 #include "io/film/movie.h"
 #include "pipeline/film/film_times.h"
 #include "pipeline/picture/picture_parts.h"
+#include "pipeline/picture/settle_choices.h"
 #include "scene/choose/shared_scale.h"
-#include "scene/show/show.h"
+#include "scene/show/parts.h"
+#include "scene/show/volume.h"
 
 namespace sg {
 
@@ -55,25 +58,63 @@ class Ahead {
   std::thread thread_;
 };
 
+// What the i-th show shows at each of some times, one time after the other.
+void for_each_shown(const std::vector<PipelineFile>& some, size_t i, const PictureOptions& options, Context& context,
+                    const std::function<void(const DatasetPtr&, size_t n)>& f) {
+  for (size_t n = 0; n < some.size(); ++n) {
+    const std::vector<Data> data = results_of(some[n], options.results, std::make_shared<Cache>(0), context);
+    for_each_dataset(data[std::min(i, data.size() - 1)], [&](const std::string&, const DatasetPtr& d) { f(d, n); });
+  }
+}
+
+// Whether the words of a show state what transfer_words() says with `word`.
+bool states(const PipelineFile::Show& show, const std::string& word) {
+  const std::string_view key = std::string_view(word).substr(0, word.find('='));
+  if (word_value(show.words, key)) return true;
+  return key == "colors" && (word_value(show.words, "map") || word_value(show.words, "color"));
+}
+
+// What is seen through a volume, and in which colours, is the same in all pictures: what is not stated is chosen over the values of up to
+// five steps spread over the series.
+void fix_volume(PipelineFile::Show& show, const std::vector<PipelineFile>& some, size_t i, const PictureOptions& options,
+                Context& context) {
+  constexpr size_t samples = 500000;
+  const ParamSet params = show_params(show_kind<VolumeShow>(), show.words);
+  ShownParts first{{}, &show_kind<VolumeShow>(), &params};
+  std::vector<DatasetPtr> others;
+  for_each_shown(some, i, options, context, [&](const DatasetPtr& d, size_t n) {
+    if (n == 0) first.parts.push_back(d);
+    else others.push_back(sampled_cloud(*d, samples));
+  });
+  Scene scene;
+  show_parts(scene, first, others, 1, context);
+  if (scene.items.empty()) return;
+  const auto& item = std::get<VolumeItem>(scene.items[0]);
+  std::vector<std::string> words = transfer_words(item);
+  words.push_back(fmt::format("range={},{}", exact_number(item.color.lo), exact_number(item.color.hi)));
+  std::erase_if(words, [&](const std::string& word) { return states(show, word); });
+  show.words.insert(show.words.end(), words.begin(), words.end());
+  context.info(fmt::format("one range and one opacity for all pictures: {} to {}, chosen over {} steps spread over the series",
+                           short_number(item.color.lo), short_number(item.color.hi), some.size()));
+}
+
 // Colours mean the same in all pictures: where no range is stated, that of up to five steps spread over the series.
 void fix_ranges(PipelineFile& first, const std::vector<PipelineFile>& some, const PictureOptions& options, Context& context) {
   for (size_t i = 0; i < first.show.size(); ++i) {
     PipelineFile::Show& show = first.show[i];
     const ShowKind& kind = find_show(show.kind);
     const ParamSet params = show_params(kind, show.words);
-    if (!kind.coloring || !kind.coloring(params)->color.empty()) continue;
+    if (kind.is<VolumeShow>()) fix_volume(show, some, i, options, context);
+    if (kind.is<VolumeShow>() || !kind.coloring || !kind.coloring(params)->color.empty()) continue;
     ColoringParams& coloring = *kind.coloring(params);
     Range all;
     std::optional<Field> one;
-    for (const PipelineFile& file : some) {
-      const std::vector<Data> data = results_of(file, options.results, std::make_shared<Cache>(0), context);
-      for_each_dataset(data[std::min(i, data.size() - 1)], [&](const std::string&, const DatasetPtr& d) {
-        const Field* f = shown_field(kind, params, *d);
-        if (!f || f->association == Association::whole || f->role == Role::colors) return;
-        all.add(d->range(*f, f->components() > 1 ? coloring.component : 0));
-        if (!one) one = *f;
-      });
-    }
+    for_each_shown(some, i, options, context, [&](const DatasetPtr& d, size_t) {
+      const Field* f = shown_field(kind, params, *d);
+      if (!f || f->association == Association::whole || f->role == Role::colors) return;
+      all.add(d->range(*f, f->components() > 1 ? coloring.component : 0));
+      if (!one) one = *f;
+    });
     if (!one || !share_range(*one, all, coloring)) continue;
     const Range range{coloring.range[0], coloring.range[1]};
     show.words.push_back(fmt::format("range={},{}", exact_number(range.lo), exact_number(range.hi)));
@@ -99,6 +140,17 @@ void fix_frame(PipelineFile& first, const std::vector<PipelineFile>& some, const
   const std::string ends = box_words(all);
   first.picture.push_back("frame=" + ends);
   context.info(fmt::format("one box for all pictures, that of {} steps spread over the series: frame={}", some.size(), ends));
+}
+
+// Up to five steps spread over the series; one where all are the same.
+std::vector<PipelineFile> spread(const PipelineFile& file, const FilmTimes& film) {
+  const size_t count = film.times.size(), most = std::min<size_t>(5, count);
+  std::vector<PipelineFile> some;
+  for (size_t i = 0; i < most; ++i) {
+    PipelineFile one = at_time(file, film, count == 1 ? 0 : i * (count - 1) / (most - 1));
+    if (some.empty() || some.back().steps != one.steps) some.push_back(std::move(one));
+  }
+  return some;
 }
 
 // The pipeline of a film with the looks that its first picture gets.
@@ -147,15 +199,18 @@ std::vector<double> make_film(PipelineFile plain, const FilmParams& params, cons
   const auto cache = std::make_shared<Cache>(0);
   PictureOptions each = options;
   each.cache = cache;
-  std::vector<Data> held = results_of(at_time(plain, film, 0), each.results, cache, silent);
+  std::vector<Data> held;
+  std::vector<PipelineFile> some = spread(plain, film);
+  if (some.size() > 1) {
+    GraphOptions graph;
+    graph.cache = cache;
+    settle_choices(plain, some, graph, each.results, held, silent);
+  }
+  held = results_of(at_time(plain, film, 0), each.results, cache, silent);
   const size_t one_step = array_memory();
   PipelineFile base = with_looks(plain, at_time(plain, film, 0), each, silent);
   each.coloring.clear();
-  std::vector<PipelineFile> some;
-  for (size_t i = 0; i < std::min<size_t>(5, count); ++i) {
-    PipelineFile file = at_time(base, film, count == 1 ? 0 : i * (count - 1) / (std::min<size_t>(5, count) - 1));
-    if (some.empty() || some.back().steps != file.steps) some.push_back(std::move(file));
-  }
+  some = spread(base, film);
   if (some.size() > 1) {  // else the data are the same: so is all that is chosen from them
     fix_ranges(base, some, each, silent);
     fix_frame(base, some, each, silent);

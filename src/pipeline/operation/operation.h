@@ -78,6 +78,11 @@ struct Operation {
   PieceWork pieces = {};
   /// Changes what goes up to an input, where `fields` cannot say it: names in expressions, a region of space.
   void (*ask)(const ParamSet& params, const Request& wanted, size_t input, Request& up) = nullptr;
+  /// A parameter that several inputs, and the steps of a series, have alike where it is left open; "": none.
+  std::string_view alike = {};
+  /// Its value, as a word has it, chosen from the first input and all parts beside it (data/ranks/over_all.h); "" where there is none.
+  /// Throws what running throws.
+  std::string (*choose)(const Dataset& data, const ParamSet& params, const Context& context) = nullptr;
   /// From the bytes of the inputs; null = each byte is touched once at 2 GB/s and the result is as large as the largest input.
   Estimate (*estimate)(const ParamSet& params, std::span<const uint64_t> input_bytes) = nullptr;
   /// Its parameter `time` chooses a moment out of what its input holds whole (lines with times, ...): a film states it there, and leaves
@@ -104,6 +109,8 @@ const Operation& find_operation(std::string_view name, std::span<const Operation
 
 /// Defaults changed by "key=value" words; all mistakes in one Error(usage).
 ParamSet make_params(const Operation& operation, const std::vector<std::string>& words);
+/// Whether a parameter is left to be chosen: an optional one without a value, an empty list.
+bool is_open(const ParamDecl& d);
 /// Checks the number of inputs and runs.
 Data run_operation(const Operation& operation, const std::vector<Data>& inputs, const std::vector<std::string>& words, Context& context);
 /// Whether the piece that `wanted` is of can be made of pieces of the inputs; else of the whole. `together`: all pieces are asked for at

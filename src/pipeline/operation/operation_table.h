@@ -163,6 +163,11 @@ constexpr auto reduces = [](Operation& o) { o.pieces.result = PieceWork::Result:
 /// Hook: what it asks for is changed by a function, see Operation::ask.
 template <auto F>
 constexpr auto asks = [](Operation& o) { o.ask = F; };
+/// Hook: while `parameter` is open, F chooses it alike for several inputs and for all steps of a series, see Operation::choose.
+template <auto F>
+constexpr auto chooses_alike(std::string_view parameter) {
+  return [=](Operation& o) { o.alike = parameter, o.choose = F; };
+}
 /// Hook: `time` chooses a moment of the input, see Operation::shows_moment.
 constexpr auto shows_moment = [](Operation& o) { o.shows_moment = true; };
 /// Hook: how many inputs a filter over a list takes; MAX -1 = any number.

@@ -2,6 +2,9 @@
 // The table of operations, made of operations.def, and what some of them need beside a function.
 #include "pipeline/operation/operation_table.h"
 
+#include <fmt/format.h>
+
+#include "base/text/text.h"
 #include "io/io.h"
 
 #define SG_OPERATION_HEADERS
@@ -41,6 +44,16 @@ bool clip_chooses(const ParamSet& params) {
 bool isovolume_chooses(const ParamSet& params) {
   const auto& p = params.as<IsovolumeParams>();
   return p.min && p.max;
+}
+
+template <class P, std::vector<double> (*choose)(const Dataset&, const P&, const Context&)>
+std::string chosen_values(const Dataset& data, const ParamSet& params, const Context& context) {
+  std::vector<std::string> numbers;
+  for (const double v : choose(data, params.as<P>(), context)) numbers.push_back(exact_number(v));
+  return fmt::format("{}", fmt::join(numbers, ","));
+}
+std::string chosen_scale(const Dataset& data, const ParamSet& params, const Context& context) {
+  return exact_number(choose_warp_scale(data, params.as<WarpParams>(), context));
 }
 
 void ask_of_calc(const ParamSet& params, const Request&, size_t, Request& up) { add_names_in(params.as<CalcParams>().expr, up); }

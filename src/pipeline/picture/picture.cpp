@@ -19,6 +19,7 @@
 #include "pipeline/picture/picture_cost.h"
 #include "pipeline/picture/picture_notes.h"
 #include "pipeline/picture/picture_parts.h"
+#include "pipeline/picture/settle_choices.h"
 #include "scene/choose/coloring.h"
 #include "scene/show/show.h"
 #include "scene/show/volume.h"
@@ -266,6 +267,7 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
       return data;
     };
   show_what_is_labelled(file, picture.notes);
+  settle_choices(file, {}, graph_options, options.results, held, computing);
   Look look = choose_looks(file, options, graph_options, held, picture.notes, computing);
   stated = stated_in(file);  // with what was chosen of it
   const std::vector<StatedShow> shows = stated_shows(file);
@@ -303,7 +305,14 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
     context.warn("the picture is empty: there are no points to show");
   if (!file.show.empty()) {
     const std::string& first = shown_step(file, 0);
-    if (look.shows.empty()) look.camera = choose_view(shown[0].box, extension_of(origin_of(file, first)), shown[0].patient);
+    if (look.shows.empty()) {
+      const std::string extension = extension_of(origin_of(file, first));
+      look.camera = choose_view(shown[0].box, extension, shown[0].patient);
+      std::vector<DatasetPtr> parts;
+      for_each_dataset(results[0], [&](const std::string&, const DatasetPtr& d) { parts.push_back(d); });
+      if (const std::string up = stand_upright(parts, extension, look.camera); !up.empty() && !stated.camera.up)
+        picture.notes.push_back(up);
+    }
     if (pose) picture.notes.push_back(face_unstated(*pose, look.camera));
     face_cut(file, first, look.camera);
     face_slab(file, first, shown[0].box, look.camera);

@@ -158,13 +158,16 @@ void add_shows(const Look& look, PipelineFile& file, std::vector<PipelineFile::S
   for (const Look::Show& s : look.shows) {
     const ShowKind& kind = *s.kind;
     std::vector<std::string> words = changed_words(s.params);
-    if (kind.coloring) words.insert(words.end(), coloring.begin(), coloring.end());
-    shows.push_back({std::string(kind.name), words, s.of_input ? end : result, 0});
+    if (kind.coloring && kind.coloring(s.params)->color.empty()) words.insert(words.end(), coloring.begin(), coloring.end());
+    std::string of = s.of_input ? end : result;
+    if (!s.filter.empty()) of = added_step(file, s.filter[0], {s.filter.begin() + 1, s.filter.end()}, end);
+    shows.push_back({std::string(kind.name), words, of, 0});
   }
 }
 
 // What suits the result of a step, as entries under `show`; the filters that it needs are added to the steps.
-Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file, std::vector<PipelineFile::Show>& shows,
+// `alone`: no other input may share its colours.
+Look choose_for(const PipelineFile::Show& wanted, Data data, bool alone, PipelineFile& file, std::vector<PipelineFile::Show>& shows,
                 std::vector<std::string>& notes, Context& context) {
   std::string end = wanted.of;
   const std::string origin = origin_of(file, end), stated = word_value(wanted.words, "field").value_or("");
@@ -194,14 +197,16 @@ Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file,
   PipelineFile::Step* reading = parts.size() > 1 ? nullptr : plain_reading(file, end);
   Look look = choose_look(*largest, field, extension_of(origin), reading != nullptr);
   if (!look.source.empty()) reading->operation = look.source;
-  // What is seen of a volume was told for the scale that is chosen.
-  if (states_scale(wanted))
+  // What is seen of a volume was told for the scale that it chooses by itself.
+  if (states_scale(wanted) || !alone)
     if (const size_t at = look.reason.find("shown as a volume;"); at != look.reason.npos) look.reason.resize(look.reason.find(';', at));
   if (const Field* u = displacement_of(*largest)) look.reason += fmt::format("; -f warp shows its shape displaced by '{}'", u->name);
+  if (const std::string up = stand_upright(parts, extension_of(origin), look.camera); !up.empty()) look.reason += "; " + up;
   face_detail(look, parts, extension_of(origin), context);
   cut_open(look, largest, field, context);
   if (parts.size() == 1) show_flow(look, largest, field, context);
   cut_to_crowd(data, field, look);
+  show_rigid(look, parts, field, context);
   if (takes_decades(data, field, look, context) && !states_scale(wanted) && !word_value(wanted.words, "map")) {
     coloring.push_back("scale=log");
     look.reason += ", on a logarithmic scale, as most values are far below the largest (scale=linear is the other)";
@@ -271,7 +276,7 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const Graph
     const Data data = held.emplace_back(built.graph.evaluate(built.show[i], {}, context));
     Chosen& input = inputs.emplace_back(Chosen{file_name_of(origin_of(file, wanted.of)), {}, shows.size(), 0});
     for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { input.box.add(d->bounds()); });
-    const Look look = choose_for(wanted, data, file, shows, notes, context);
+    const Look look = choose_for(wanted, data, open == 1, file, shows, notes, context);
     input.end = shows.size();
     notes.push_back(open > 1 ? fmt::format("{}: {}", input.name, look.reason) : look.reason);
     if (first.shows.empty()) first = look;

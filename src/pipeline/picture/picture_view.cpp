@@ -25,7 +25,7 @@ std::vector<const PipelineFile::Step*> steps_behind(const PipelineFile& file, st
     if (at == file.steps.end()) break;
     chain.push_back(&*at);
     const Operation* op = known_operation(at->operation);
-    if (at->reads() || (op && op->kind == OperationKind::source)) break;
+    if (step_kind(at->operation) != StepKind::operation || (op && op->kind == OperationKind::source)) break;
     if (!at->from.empty()) name = at->from[0];
     else if (at != file.steps.begin()) name = std::prev(at)->name;
     else break;

@@ -37,7 +37,11 @@ struct ColoringParams {
   std::optional<double> legend_bar;
   // Of all datasets that are coloured alike (shared_scale.h); no word states them.
   Labels labels;
-  Range range_of;  ///< of their values, where `range` was chosen for them
+  Range range_of;           ///< of their values, where `range` was chosen for them
+  bool map_chosen = false;  ///< `map` was chosen for them
+
+  bool states_range() const { return !range.empty() && range_of.empty(); }
+  bool states_map() const { return map && !map_chosen; }
 };
 void describe(Schema& s, ColoringParams& p);
 

@@ -9,23 +9,43 @@
 
 namespace sg {
 
+namespace {
+
+// The field, and those of its name in the parts beside it.
+std::vector<const Field*> with_parts(const Field& field, const Context& context) {
+  std::vector<const Field*> all{&field};
+  if (!context.parts) return all;
+  for (const DatasetPtr& part : *context.parts) {
+    const Field* f = part->fields().find(field.name, field.association);
+    if (!f) f = part->fields().find(field.name);
+    if (f && f->components() == field.components() && f->array.raw() != field.array.raw()) all.push_back(f);
+  }
+  return all;
+}
+
+}  // namespace
+
 std::vector<size_t> histogram(const Field& field, int component, double lo, double hi, size_t bins, const Context& context) {
   std::vector<size_t> h(bins);
   if (!(lo < hi)) return h;
   const double scale = double(bins) / (hi - lo);
-  const size_t step = std::max<size_t>(1, field.array.count() / 2000000);
+  const std::vector<const Field*> fields = with_parts(field, context);
+  size_t count = 0;
+  for (const Field* f : fields) count += f->array.count();
+  const size_t step = std::max<size_t>(1, count / 2000000);
   const bool magnitude = component < 0 && field.components() > 1;
-  dispatch(field.array, [&](auto v) {
-    for (size_t i = 0; i < v.count; i += step) {
-      double x = double(v(i, std::max(component, 0)));
-      if (magnitude) {
-        x = 0;
-        for (int c = 0; c < v.components; ++c) x += double(v(i, c)) * double(v(i, c));
-        x = std::sqrt(x);
+  for (const Field* f : fields)
+    dispatch(f->array, [&](auto v) {
+      for (size_t i = 0; i < v.count; i += step) {
+        double x = double(v(i, std::max(component, 0)));
+        if (magnitude) {
+          x = 0;
+          for (int c = 0; c < v.components; ++c) x += double(v(i, c)) * double(v(i, c));
+          x = std::sqrt(x);
+        }
+        if (x >= lo && x <= hi) ++h[std::min(bins - 1, size_t((x - lo) * scale))];
       }
-      if (x >= lo && x <= hi) ++h[std::min(bins - 1, size_t((x - lo) * scale))];
-    }
-  });
+    });
   all_sum(std::span<size_t>(h), context.communicator);
   return h;
 }

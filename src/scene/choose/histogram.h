@@ -8,8 +8,9 @@
 
 namespace sg {
 
-/// Bins over [lo, hi] of one component (magnitude for -1 of several); finite values only. Large fields are sampled evenly. With a
-/// communicator in the context all pieces on other ranks count too, and each rank calls with its own.
+/// Bins over [lo, hi] of one component (magnitude for -1 of several); finite values only. Large fields are sampled evenly. Fields of this
+/// name in all parts beside it count too (Context::parts), and with a communicator all pieces on other ranks, each of which calls with its
+/// own.
 std::vector<size_t> histogram(const Field& field, int component, double lo, double hi, size_t bins, const Context& context = Context());
 
 /// The value below which the share `q` of a histogram's samples over [lo, hi] lies.

@@ -29,7 +29,7 @@ bool share_scale(std::span<const FieldOf> fields, ColoringParams& p, const Conte
   const bool cut = shown.cut_low || shown.cut_high;
   if ((same && !cut) || !(all.lo < all.hi)) return false;
   const std::string map(is_signed ? "coolwarm" : sequential_map(*fields[0].data, *fields[0].field));
-  if (automatic) p.map = map;
+  if (automatic) p.map = map, p.map_chosen = true;
   if (!p.range.empty()) return true;
   p.range = {shown.range.lo, shown.range.hi}, p.range_of = all;
   const auto triangle = [&](std::string& color, double at) {  // in the legend

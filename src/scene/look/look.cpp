@@ -131,18 +131,29 @@ bool has_no_background(const Dataset& d, const Field& f) {
   return double(*std::max_element(bins.begin(), bins.end())) < even * double(all) / double(bins.size());
 }
 
+// A layer through which rays would meet too little to be seen.
+bool is_thin(const Box3& b) {
+  constexpr double thin = 0.1;
+  const Vec3 s = b.size();
+  const double least = std::min({s.x, s.y, s.z}), most = std::max({s.x, s.y, s.z});
+  return least < thin * (s.x + s.y + s.z - least - most);
+}
+
 // So few cells that each can be told from the next, or values that hide nothing: a body, as there is nothing to see through.
 bool look_at_body(const Dataset& d, const Field& f, Look& look) {
   constexpr size_t few = 10;  // along each axis
   const auto dims = lattice_dims(d.mesh());
-  const bool few_cells = *std::max_element(dims.begin(), dims.end()) <= few + 1;
-  if (in_patient_frame(d) || f.look.shows != FieldLook::Shows::any || !(few_cells || has_no_background(d, f))) return false;
+  const bool few_cells = *std::max_element(dims.begin(), dims.end()) <= few + 1, thin = is_thin(d.bounds());
+  if (in_patient_frame(d) || f.look.shows != FieldLook::Shows::any || !(few_cells || thin || has_no_background(d, f))) return false;
   SurfaceShow surface;
   surface.edges = few_cells;
   surface.coloring.field.name = f.name;
   add_show(look, surface, true);
   look.reason = fmt::format("'{}' on a grid{}: its outer surface{}; --show volume sees through it", f.name,
-                            few_cells ? " of few cells" : ", all values alike frequent", few_cells ? " with cell edges" : "");
+                            few_cells ? " of few cells"
+                            : thin    ? " that is a thin layer"
+                                      : ", all values alike frequent",
+                            few_cells ? " with cell edges" : "");
   return true;
 }
 
@@ -204,14 +215,15 @@ std::string face_unstated(const HeadPose& pose, CameraDefaults& camera) {
   return "how the patient lies is not stated: --camera 'view=front up=0,0,-1' turns one that is upside down";
 }
 
-CameraDefaults choose_view(const Box3& b, const std::string& extension, bool patient) {
+namespace {
+
+CameraDefaults usual_view(const Box3& b, bool y_up, bool patient) {
   CameraDefaults c;
-  const bool graphics = y_points_up(extension);
   if (patient) c.axes = patient_view_axes, c.direction = {0.4, -1.0, 0.25};
-  else if (graphics) c.axes = graphics_axes, c.direction = {0.55, 0.42, 1.0}, c.up = {0, 1, 0};
+  else if (y_up) c.axes = graphics_axes, c.direction = {0.55, 0.42, 1.0}, c.up = {0, 1, 0};
   if (b.empty()) return c;
   const Vec3 s = b.size();
-  if (!patient && !graphics) face_bounds(s, c.direction);
+  if (!patient && !y_up) face_bounds(s, c.direction);
   const double flat = 1e-6 * std::max({s.x, s.y, s.z});
   if (flat == 0) return c;  // a point
   for (int a = 2; a >= 0; --a)
@@ -220,6 +232,14 @@ CameraDefaults choose_view(const Box3& b, const std::string& extension, bool pat
       break;
     }
   return c;
+}
+
+}  // namespace
+
+CameraDefaults view_with_up(const Box3& bounds, bool y_up) { return usual_view(bounds, y_up, false); }
+
+CameraDefaults choose_view(const Box3& bounds, const std::string& extension, bool patient) {
+  return usual_view(bounds, y_points_up(extension), patient);
 }
 
 Look choose_look(const Dataset& d, const std::string& field, const std::string& extension, bool of_series) {

@@ -19,8 +19,9 @@ struct Look {
   std::vector<std::string> filter;   ///< the same, after it
   struct Show {
     const ShowKind* kind;
-    ParamSet params;        ///< of the kind
-    bool of_input = false;  ///< show the input, not the filter's result
+    ParamSet params;                  ///< of the kind
+    bool of_input = false;            ///< show the input, not the filter's result
+    std::vector<std::string> filter;  ///< one of its own, of the input; empty = none
   };
   std::vector<Show> shows;
   CameraDefaults camera;
@@ -38,8 +39,14 @@ std::optional<Look> look_at_table(const Table& table, const std::string& field);
 /// Turns the view of a CT scan of which nothing says how the patient lies, or of what was made of one, upright where a head is seen. What
 /// was done, or can be, in words.
 std::string face_unstated(const HeadPose& pose, CameraDefaults& camera);
+/// Turns the view of surfaces that are coloured by nothing to have up along the axis on which they stand (scene/choose/upright.h), where it
+/// is not the one that is customary in such files, nor stated by them. What is up, in words, where there is a doubt; "" else.
+std::string stand_upright(std::span<const DatasetPtr> parts, const std::string& extension, CameraDefaults& camera);
 /// A solid box whose outside hides a flow is shown by its streamlines.
 void show_flow(Look& look, const DatasetPtr& data, const std::string& field, Context& context);
+/// Connected pieces that have one value alone, beyond those of all pieces on which the field varies, such as a mould about what it forms,
+/// take no colours from these: they are seen through.
+void show_rigid(Look& look, std::span<const DatasetPtr> parts, const std::string& field, Context& context);
 /// Turns the view of surfaces made for graphics, and of others and of few solid cells without a field, to the side that shows most of them.
 void face_detail(Look& look, std::span<const DatasetPtr> parts, const std::string& extension, Context& context);
 /// A solid whose outer surface tells nothing of what it is coloured by is cut open along the middle, with the half away from the viewer

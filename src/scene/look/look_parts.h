@@ -7,11 +7,14 @@ namespace sg {
 
 template <class P>
 void add_show(Look& look, P params, bool of_input) {
-  look.shows.push_back({&show_kind<P>(), param_set_of(std::move(params)), of_input});
+  look.shows.push_back({&show_kind<P>(), param_set_of(std::move(params)), of_input, {}});
 }
 
 /// Straight along an axis; a scan's slice is seen from the feet.
 void face_axis(int axis, bool patient, CameraDefaults& camera);
+
+/// The usual view of what is no patient, with z or y upwards.
+CameraDefaults view_with_up(const Box3& bounds, bool y_up);
 
 /// Each completes the look where it suits the data, else leaves it as it is and returns false.
 /// A diffusion series: from all of its volumes the directions in which water moves.

@@ -51,7 +51,7 @@ std::vector<std::vector<DatasetPtr>> colored_alike(const std::vector<ShownParts>
   std::vector<std::string> names;
   std::vector<decltype(ColoringParams::map)> maps;
   for (const ShownParts& s : shown) {
-    const ColoringParams* c = s.kind->coloring && !s.kind->is<VolumeShow>() ? s.kind->coloring(*s.stated) : nullptr;
+    const ColoringParams* c = s.kind->coloring ? s.kind->coloring(*s.stated) : nullptr;
     const bool chooses = c && c->range.empty() && c->scale == ScaleKind::linear && c->component < 0;
     names.push_back(chooses ? field_of_parts(s.parts, *s.kind, *s.stated) : "");
     maps.push_back(c ? c->map : std::nullopt);
@@ -59,7 +59,8 @@ std::vector<std::vector<DatasetPtr>> colored_alike(const std::vector<ShownParts>
   std::vector<std::vector<DatasetPtr>> beside(shown.size());
   for (size_t i = 0; i < shown.size(); ++i)
     for (size_t k = 0; k < shown.size(); ++k)
-      if (i != k && !names[i].empty() && names[i] == names[k] && maps[i] == maps[k])
+      if (i != k && !names[i].empty() && names[i] == names[k] && maps[i] == maps[k] &&
+          shown[i].kind->is<VolumeShow>() == shown[k].kind->is<VolumeShow>())
         beside[i].insert(beside[i].end(), shown[k].parts.begin(), shown[k].parts.end());
   return beside;
 }
@@ -81,14 +82,18 @@ std::vector<Legend> add_parts(Scene& scene, const ShownParts& shown, const std::
   const ShowKind& kind = *shown.kind;
   const std::vector<ParamSet> params = params_of_parts(parts, kind, *shown.stated, beside);
   const size_t first = scene.items.size();
-  const bool several = parts.size() > 1, joined = several && kind.is<VolumeShow>();
+  const bool several = parts.size() > 1, volumes = kind.is<VolumeShow>(), joined = several && volumes;
+  std::vector<DatasetPtr> all = parts;
+  all.insert(all.end(), beside.begin(), beside.end());
+  Context choosing(context, 0, 1);
+  if (volumes && all.size() > 1) choosing.parts = &all;  // opacity is chosen over all of them
   std::vector<Legend> legends;
   size_t largest = 0, most = 0;  // of joined volumes: the item that speaks for all
   for (size_t i = 0; i < parts.size(); ++i) {
     const DatasetPtr& d = parts[i];
     if (several && d->point_count() == 0) continue;                  // what a filter left nothing of
     if (joined && kind.coloring(params[i])->field.none()) continue;  // nothing to see through
-    const auto legend = kind.add(scene, d, params[i], context);
+    const auto legend = kind.add(scene, d, params[i], choosing);
     if (!joined) {
       if (legend) legends.push_back(*legend);
     } else if (scene.items.size() == first + 1 || d->point_count() > most) {

@@ -12,7 +12,7 @@ struct ShownParts {
   const ParamSet* stated;
 };
 /// Of each entry the datasets of the others that are coloured by the same field and choose their colours themselves, as it does: they take
-/// one range with it, and one legend. Volumes, whose colours go with their opacity, stand alone.
+/// one range with it, and one legend. Volumes, whose colours go with their opacity, are alike among themselves.
 std::vector<std::vector<DatasetPtr>> colored_alike(const std::vector<ShownParts>& shown);
 
 /// The parameters for each part: the field is that of the part with the most points (a mask or a numbering says less than the values of

@@ -123,11 +123,24 @@ void take_second_axis(const VolumeShow& p, const Fields& fields, const ColorScal
   }
 }
 
+// Of all parts beside the data that have such a field, the data among them, the one with the most points.
+DatasetPtr largest_beside(const DatasetPtr& data, const Field& field, const Context& context) {
+  DatasetPtr largest = data;
+  if (context.parts)
+    for (const DatasetPtr& part : *context.parts) {
+      const Field* f = part->fields().find(field.name, field.association);
+      if (f && f->components() == field.components() && part->point_count() > largest->point_count()) largest = part;
+    }
+  return largest;
+}
+
 // The default level: the value at which something begins.
 void choose_level(const Field& field, VolumeItem& item, Context& context) {
   const Range r = range_over_all(*item.data, field, field.components() > 1 ? item.component : 0, context);
   if (r.empty()) return item.levels.push_back(0);
-  const auto found = material_boundaries(sample_derivatives(item.data, field, item.component, false, 500000, context), r.lo, r.hi, 1);
+  const DatasetPtr largest = largest_beside(item.data, field, context);  // several volumes have one level
+  const Field& of = largest == item.data ? field : largest->fields().require(field.name, field.association);
+  const auto found = material_boundaries(sample_derivatives(largest, of, item.component, false, 500000, context), r.lo, r.hi, 1);
   double level = 0.5 * (r.lo + r.hi);
   if (!found.empty()) level = found[0].value;
   item.levels.push_back(*parse_double(short_number(level, 4)));

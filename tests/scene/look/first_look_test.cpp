@@ -54,6 +54,15 @@ TEST_CASE("first look: a scan that is no CT is three slices in grey, what was cu
   CHECK(choose_look(*no_patient, "", "nii").shows.at(0).kind->is<VolumeShow>());
 }
 
+TEST_CASE("first look: a thin layer is a body, as rays would meet little of it") {
+  const auto spot = [](size_t i, size_t j, size_t k) { return std::exp(-0.05 * std::pow(double(i) - 20, 2) - 0.1 * double(j + k)); };
+  const Look layer = choose_look(*grid({60, 40, 3}, spot), "", "vtk");
+  REQUIRE(layer.shows.size() == 1);
+  CHECK(layer.shows[0].kind->is<SurfaceShow>());
+  CHECK(layer.reason.find("thin layer") != std::string::npos);
+  CHECK(choose_look(*grid({60, 40, 12}, spot), "", "vtk").shows.at(0).kind->is<VolumeShow>());
+}
+
 TEST_CASE("first look: a few bright places of a scan do not darken the rest") {
   const auto scan = grid(
       {32, 32, 1}, [](size_t i, size_t j, size_t) { return i == 3 && j == 8 ? 5000.0 : head(i, j, 15, true); }, true);

@@ -148,18 +148,24 @@ Mesh displaced_mesh(const Mesh& mesh, const Displacement& u) {
 
 }  // namespace
 
+double choose_warp_scale(const Dataset& in, const WarpParams& p, const Context& context) {
+  const Field& f = displacing_field(in, p.field);
+  const double scale = visible_scale(in, f, context);
+  context.info(fmt::format("warp: displaced by {} times '{}'", short_number(scale), f.name));
+  return scale;
+}
+
 DatasetPtr warp(const DatasetPtr& in, const WarpParams& p, Context& context) {
   const Field& f = displacing_field(*in, p.field);
   const bool vectors = is_vector(f);
   if (vectors && p.direction)
     fail_usage(fmt::format("vectors '{}' have directions of their own", f.name), "warp direction", "leave it out");
-  const double scale = p.scale ? *p.scale : visible_scale(*in, f, context);
+  const double scale = p.scale ? *p.scale : choose_warp_scale(*in, p, context);
   if (!std::isfinite(scale)) fail_usage("the scale is not finite", "warp scale");
   const std::optional<Directions> along = vectors ? std::nullopt : std::optional<Directions>(std::in_place, *in, p.direction, context);
   const Displacement u(f, scale, along ? &*along : nullptr);
   DatasetParts out = in->parts();
   out.mesh = displaced_mesh(in->mesh(), u);
-  if (!p.scale) context.info(fmt::format("warp: displaced by {} times '{}'", short_number(scale), f.name));
   if (u.still() > 0) context.warn(fmt::format("warp: {} points without a finite value of '{}' stay where they are", u.still(), f.name));
   FieldSet kept;
   for (const Field& field : out.fields)

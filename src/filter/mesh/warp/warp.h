@@ -31,4 +31,7 @@ inline void describe(Schema& s, WarpParams& p) {
 /// AMR grids, and a scalar on data that is neither flat nor has normals without `direction`.
 DatasetPtr warp(const DatasetPtr& in, const WarpParams& p, Context& context);
 
+/// The scale that warp() chooses where none is stated, over all parts of the data (data/ranks/over_all.h). Throws what it throws.
+double choose_warp_scale(const Dataset& in, const WarpParams& p, const Context& context);
+
 }  // namespace sg

@@ -57,28 +57,33 @@ const Field& choose_field(const Dataset& input, const FieldName& name) {
   fail_usage("the mesh has no point field to contour", "contour");
 }
 
-// The mesh with the chosen cell field also at the points, and its name.
-std::pair<DatasetPtr, std::string> averaged_to_points(const DatasetPtr& input, const FieldName& name, Context& context) {
+const Field& choose_cell_field(const Dataset& input, const FieldName& name) {
   const Field* f = nullptr;
   if (!name.empty()) {
-    const Field& any = input->fields().require(name.name);
-    f = input->fields().find(name.name, Association::cell);
+    const Field& any = input.fields().require(name.name);
+    f = input.fields().find(name.name, Association::cell);
     if (!f)
       fail_usage(fmt::format("field '{}' is defined on the {}, not on the cells", name.name,
                              any.association == Association::point ? "points" : "whole mesh"),
                  "contour from_cells", "leave out from_cells for a point field");
   } else {
-    f = input->fields().active(1);
+    f = input.fields().active(1);
     if (!f || f->association != Association::cell) f = nullptr;
-    for (const Field& c : input->fields())
+    for (const Field& c : input.fields())
       if (!f && c.association == Association::cell && c.components() == 1) f = &c;
-    for (const Field& c : input->fields())
+    for (const Field& c : input.fields())
       if (!f && c.association == Association::cell) f = &c;
     if (!f) fail_usage("the mesh has no cell field to contour", "contour from_cells", "leave out from_cells");
   }
+  return *f;
+}
+
+// The mesh with the chosen cell field also at the points, and its name.
+std::pair<DatasetPtr, std::string> averaged_to_points(const DatasetPtr& input, const FieldName& name, Context& context) {
+  const Field& f = choose_cell_field(*input, name);
   CellToPointParams p;
-  p.fields = {f->name};
-  return {cell_to_point(input, p, context), f->name};
+  p.fields = {f.name};
+  return {cell_to_point(input, p, context), f.name};
 }
 
 // 0, 1, ... or -1 for the magnitude.
@@ -307,6 +312,13 @@ DatasetPtr contour_own_amr(const DatasetPtr& given, const ContourParams& params,
 }
 
 }  // namespace
+
+std::vector<double> choose_isovalues(const Dataset& input, const ContourParams& params, const Context& context) {
+  const Field& field = input.as<AmrGrid>() ? field_of_amr(input, params.field)
+                       : params.from_cells ? choose_cell_field(input, params.field)
+                                           : choose_field(input, params.field);
+  return automatic_values(input, field, choose_component(field, params.component), params.count, "contour", context);
+}
 
 DatasetPtr contour(const DatasetPtr& given, const ContourParams& params, Context& context) {
   if (given->as<AmrGrid>()) return contour_own_amr(given, params, context);

@@ -51,4 +51,7 @@ void describe(Schema& s, ContourParams& p);
 /// field, a vector without `component`, and meshes without an interior.
 DatasetPtr contour(const DatasetPtr& input, const ContourParams& params, Context& context);
 
+/// The isovalues that contour() chooses where none are stated, over all parts of the data (data/ranks/over_all.h). Throws what it throws.
+std::vector<double> choose_isovalues(const Dataset& input, const ContourParams& params, const Context& context);
+
 }  // namespace sg

@@ -340,29 +340,34 @@ DatasetPtr amr_cells_near(const DatasetPtr& input, const Field& field, int compo
   return Builder(input, field, component, values, context).run();
 }
 
-DatasetPtr contour_amr(const DatasetPtr& input, const ContourParams& params, int (*component_of)(const Field&, const std::string&),
-                       Context& context) {
+const Field& field_of_amr(const Dataset& input, const FieldName& name) {
   const Field* field = nullptr;
-  if (!params.field.empty()) {
-    field = &input->fields().require(params.field.name);
-    if (const Field* point = input->fields().find(params.field.name, Association::point)) field = point;
+  if (!name.empty()) {
+    field = &input.fields().require(name.name);
+    if (const Field* point = input.fields().find(name.name, Association::point)) field = point;
   } else {
-    field = input->fields().active(1);
-    for (const Field& f : input->fields())
+    field = input.fields().active(1);
+    for (const Field& f : input.fields())
       if (!field && f.components() == 1 && f.association != Association::whole) field = &f;
   }
   if (!field) fail_usage("the grid has no field to contour", "contour");
   if (field->association == Association::whole)
     fail_usage(fmt::format("field '{}' belongs to the whole mesh; a contour needs values at the points", field->name), "contour");
-  const int component = component_of(*field, params.component);
+  return *field;
+}
+
+DatasetPtr contour_amr(const DatasetPtr& input, const ContourParams& params, int (*component_of)(const Field&, const std::string&),
+                       Context& context) {
+  const Field& field = field_of_amr(*input, params.field);
+  const int component = component_of(field, params.component);
   ContourParams flat = params;
-  if (flat.values.empty()) flat.values = automatic_values(*input, *field, component, params.count, "contour", context);
+  if (flat.values.empty()) flat.values = automatic_values(*input, field, component, params.count, "contour", context);
   for (double v : flat.values)
     if (!std::isfinite(v)) fail_usage(fmt::format("{} is not a valid isovalue", v), "contour values", "give finite numbers");
-  flat.field.name = field->name;
+  flat.field.name = field.name;
   flat.from_cells = false;
-  if (field->association == Association::cell) flat.component.clear();
-  return contour(amr_cells_near(input, *field, component, flat.values, context), flat, context);
+  if (field.association == Association::cell) flat.component.clear();
+  return contour(amr_cells_near(input, field, component, flat.values, context), flat, context);
 }
 
 }  // namespace sg::contouring

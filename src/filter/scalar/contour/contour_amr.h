@@ -16,8 +16,10 @@ namespace sg::contouring {
 /// (least squares), so that linear fields stay linear everywhere. Cells without a value (NaN) are left out. Cell fields are carried.
 DatasetPtr amr_cells_near(const DatasetPtr& input, const Field& field, int component, const std::vector<double>& values, Context& context);
 
-/// contour() of an AMR grid. A field of the points is preferred to one of the cells of the same name; without a name the active
-/// scalar. `component_of` reads ContourParams::component.
+/// What is contoured: a field of the points is preferred to one of the cells of the same name; without a name the active scalar.
+const Field& field_of_amr(const Dataset& input, const FieldName& name);
+
+/// contour() of an AMR grid. `component_of` reads ContourParams::component.
 DatasetPtr contour_amr(const DatasetPtr& input, const ContourParams& params, int (*component_of)(const Field&, const std::string&),
                        Context& context);
 

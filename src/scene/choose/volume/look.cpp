@@ -138,8 +138,8 @@ std::string choose_volume_look(const Dataset& data, const Field& field, const Co
     return fmt::format("every value is {}: drawn evenly", short_number(values.lo, 6));
   }
   double offset = 0;
-  if (anatomy && params.range.empty() && looks_like_ct(data, field, &offset, context)) {
-    ct_look(field, range_over_all(data, field, 0, context), offset, !params.map, item);
+  if (anatomy && !params.states_range() && looks_like_ct(data, field, &offset, context)) {
+    ct_look(field, range_over_all(data, field, 0, context), offset, !params.states_map(), item);
     const bool stated = modality_of(data, field) == Modality::ct;
     return fmt::format("CT ({}{}): skin and bone colours", stated ? "stated in the file" : "an air peak and soft tissue in 16-bit values",
                        offset ? ", Hounsfield + 1024" : "");
@@ -155,7 +155,7 @@ std::string choose_volume_look(const Dataset& data, const Field& field, const Co
     item.opacity.points = {{-m, 0.8}, {-0.5 * m, 0.25}, {-0.2 * m, 0}, {0.2 * m, 0}, {0.5 * m, 0.25}, {m, 0.8}};
     return "signed: opaque away from zero on both sides";
   }
-  if (anatomy && in_patient_frame(data) && !params.map && params.range.empty()) {
+  if (anatomy && in_patient_frame(data) && !params.states_map() && !params.states_range()) {
     scan_look(data, field, params.component, r, item, context);
     return fmt::format("a scan: in grey, values above {} are shown", short_number(item.opacity.points[1].x, 3));
   }
@@ -172,7 +172,7 @@ std::string choose_volume_look(const Dataset& data, const Field& field, const Co
   // Where the foreground begins: past the background peak, and past what most of the volume holds.
   const double start = std::max(peak_value + 0.02 * width, std::min(histogram_quantile(h, r.lo, r.hi, 0.6), r.lo + 0.35 * width));
   const double middle = std::max(start + 0.15 * width, histogram_quantile(h, r.lo, r.hi, 0.95));
-  const double end = params.range.empty() ? end_of_foreground(h, r, start) : r.hi;
+  const double end = !params.states_range() ? end_of_foreground(h, r, start) : r.hi;
   if (end < r.hi) item.color.hi = end, item.color.above = item.color.above.value_or(item.color.map.at(1));
   item.opacity.points = {{r.lo, 0}, {start, 0}, {std::min(middle, 0.5 * (start + end)), 0.12}, {end, 0.7}};
   return fmt::format("values above {} are shown, the background below is left out", short_number(start, 3));

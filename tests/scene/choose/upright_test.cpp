@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/choose/upright.h"
+
+#include "scene/look/look.h"
+#include "support/test.h"
+
+using namespace sg;
+
+namespace {
+
+// A box in the frame of `turn`, which says to which axis each of its own x, y, z goes.
+void add_box(std::vector<float>& xyz, std::vector<int32_t>& ids, Vec3 lo, Vec3 hi, const std::array<int, 3>& turn) {
+  const auto base = int32_t(xyz.size() / 3);
+  for (int c = 0; c < 8; ++c) {
+    const Vec3 p{c & 1 ? hi.x : lo.x, c & 2 ? hi.y : lo.y, c & 4 ? hi.z : lo.z};
+    float q[3];
+    for (int a = 0; a < 3; ++a) q[turn[size_t(a)]] = float(p[a]);
+    xyz.insert(xyz.end(), q, q + 3);
+  }
+  for (const int32_t i : {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5}) ids.push_back(base + i);
+}
+
+// A trunk on four thin feet, with a head in front; its own z is up.
+DatasetPtr animal(const std::array<int, 3>& turn) {
+  SurfaceMesh m;
+  std::vector<float> xyz;
+  std::vector<int32_t> ids;
+  add_box(xyz, ids, {0, 0.1, 2}, {4, 1.4, 3.5}, turn);
+  for (const double x : {0.2, 3.4})
+    for (const double y : {0.2, 1.0}) add_box(xyz, ids, {x, y, 0}, {x + 0.3, y + 0.3, 2}, turn);
+  add_box(xyz, ids, {4, -0.4, 3}, {5.2, 1.9, 4.2}, turn);
+  m.points.xyz = Array::from_vector(std::move(xyz), 3);
+  m.polygons = {Array::from_vector(std::move(ids)), {}, 4};
+  DatasetParts parts;
+  parts.mesh = m;
+  return make_dataset(std::move(parts));
+}
+
+double stands(const DatasetPtr& d, int axis) {
+  const SurfaceMesh* one[] = {d->as<SurfaceMesh>()};
+  return stability(one, axis);
+}
+
+}  // namespace
+
+TEST_CASE("upright: a shape stands on the hull of its feet, and topples where its middle lies beside them") {
+  const DatasetPtr d = animal({0, 1, 2});
+  // Seen from above the trunk widens from 1.3 to the 2.3 of the head.
+  const double shadow = 4 * (1.3 + 2.3) / 2 + 1.2 * 2.3;
+  CHECK(stands(d, 2) == doctest::Approx(3.5 * 1.1 / shadow));
+  CHECK(stands(d, 1) == 0);  // on its side it lies on the cheek
+  CHECK(stability({}, 2) == 0);
+}
+
+TEST_CASE("upright: up is where a shape stands, whatever is customary in files of its kind") {
+  const std::array<int, 3> z_up{0, 1, 2}, y_up{0, 2, 1};
+  const auto up_of = [](const std::array<int, 3>& turn, const std::string& extension, std::string* said = nullptr) {
+    const DatasetPtr d = animal(turn);
+    CameraDefaults camera = choose_view(d->bounds(), extension, false);
+    const std::string why = stand_upright({&d, 1}, extension, camera);
+    if (said) *said = why;
+    return camera.up;
+  };
+  for (const char* extension : {"stl", "obj", "ply", "vtp"}) {
+    CHECK(up_of(z_up, extension) == Vec3{0, 0, 1});
+    CHECK(up_of(y_up, extension) == Vec3{0, 1, 0});
+  }
+  std::string said;
+  up_of(y_up, "stl", &said);
+  CHECK(said.find("up is y") != std::string::npos);
+  up_of(z_up, "stl", &said);
+  CHECK(said.empty());
+  CHECK(up_of(z_up, "glb") == Vec3{0, 1, 0});  // glTF defines it
+}
+
+TEST_CASE("upright: of what stands nowhere it is said what is taken for up") {
+  SurfaceMesh m;  // an octahedron on its tip
+  m.points.xyz = Array::from_vector<float>({1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1}, 3);
+  m.polygons = {Array::from_vector<int32_t>({0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5}), {}, 3};
+  DatasetParts parts;
+  parts.mesh = m;
+  const DatasetPtr d = make_dataset(std::move(parts));
+  CHECK(stands(d, 2) == 0);
+  CameraDefaults camera = choose_view(d->bounds(), "stl", false);
+  CHECK(stand_upright({&d, 1}, "stl", camera).find("up is z, as in most files of this kind") != std::string::npos);
+  CHECK(stand_upright({&d, 1}, "obj", camera).find("up is y") != std::string::npos);
+  CHECK(stand_upright({&d, 1}, "", camera).empty());  // not of a file
+}
