@@ -8,7 +8,7 @@
 #include "data/ranks/over_all.h"
 #include "pipeline/file/transfer_file.h"
 #include "pipeline/picture/picture_parts.h"
-#include "scene/choose/stretch.h"
+#include "scene/choose/view/stretch.h"
 #include "scene/show/lines.h"
 #include "scene/show/outline.h"
 #include "scene/show/parts.h"

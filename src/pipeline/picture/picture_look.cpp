@@ -10,10 +10,10 @@
 #include "data/lattice.h"
 #include "io/lent_series.h"
 #include "pipeline/picture/picture_parts.h"
-#include "scene/choose/crowded_box.h"
 #include "scene/choose/scale.h"
 #include "scene/choose/shown_range.h"
 #include "scene/choose/telling_field.h"
+#include "scene/choose/view/crowded_box.h"
 #include "scene/show/surface.h"
 #include "scene/show/volume.h"
 

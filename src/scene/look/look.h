@@ -39,8 +39,8 @@ std::optional<Look> look_at_table(const Table& table, const std::string& field);
 /// Turns the view of a CT scan of which nothing says how the patient lies, or of what was made of one, upright where a head is seen. What
 /// was done, or can be, in words.
 std::string face_unstated(const HeadPose& pose, CameraDefaults& camera);
-/// Turns the view of surfaces that are coloured by nothing to have up along the axis on which they stand (scene/choose/upright.h), where it
-/// is not the one that is customary in such files, nor stated by them. What is up, in words, where there is a doubt; "" else.
+/// Turns the view of surfaces that are coloured by nothing to have up along the axis on which they stand (scene/choose/view/upright.h),
+/// where it is not the one that is customary in such files, nor stated by them. What is up, in words, where there is a doubt; "" else.
 std::string stand_upright(std::span<const DatasetPtr> parts, const std::string& extension, CameraDefaults& camera);
 /// A solid box whose outside hides a flow is shown by its streamlines.
 void show_flow(Look& look, const DatasetPtr& data, const std::string& field, Context& context);

@@ -4,7 +4,7 @@
 
 #include "data/patient/patient_frame.h"
 #include "io/y_up.h"
-#include "scene/choose/upright.h"
+#include "scene/choose/view/upright.h"
 #include "scene/look/look_parts.h"
 
 namespace sg {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/choose/open_side.h"
+#include "scene/choose/view/open_side.h"
 
 #include <cmath>
 

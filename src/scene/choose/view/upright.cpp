@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/choose/upright.h"
+#include "scene/choose/view/upright.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/choose/crowded_box.h"
+#include "scene/choose/view/crowded_box.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/choose/stretch.h"
+#include "scene/choose/view/stretch.h"
 
 #include <algorithm>
 #include <cmath>

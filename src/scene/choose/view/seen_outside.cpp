@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/choose/seen_outside.h"
+#include "scene/choose/view/seen_outside.h"
 
 #include <algorithm>
 #include <cmath>

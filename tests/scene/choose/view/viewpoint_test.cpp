@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/choose/viewpoint.h"
+#include "scene/choose/view/viewpoint.h"
 
 #include <cmath>
 #include <numbers>
