@@ -132,6 +132,7 @@ bool sniff_enzo(std::span<const std::byte> head);
 bool sniff_xdmf(std::span<const std::byte> head);
 Data read_xdmf(const std::string& path, const ReadOptions& options, Context& context);
 std::vector<double> times_of_xdmf(const std::string& path, const ReadOptions& options, Context& context);
+bool sniff_minc_2(std::span<const std::byte> head);
 bool sniff_netcdf(std::span<const std::byte> head);
 bool sniff_cgns(std::span<const std::byte> head);
 
