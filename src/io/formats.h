@@ -45,6 +45,9 @@ Data read_nifti(const std::string& path, const ReadOptions& options, Context& co
 std::vector<double> times_of_nifti(const std::string& path, const ReadOptions& options, Context& context);
 void write_nifti(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
 
+void write_analyze(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
+void write_dicom(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
+
 bool sniff_npy(std::span<const std::byte> head);
 Data read_npy(const std::string& path, const ReadOptions& options, Context& context);
 void write_npy(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
