@@ -45,6 +45,9 @@ Data read_nifti(const std::string& path, const ReadOptions& options, Context& co
 std::vector<double> times_of_nifti(const std::string& path, const ReadOptions& options, Context& context);
 void write_nifti(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
 
+void write_analyze(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
+void write_dicom(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
+
 bool sniff_npy(std::span<const std::byte> head);
 Data read_npy(const std::string& path, const ReadOptions& options, Context& context);
 void write_npy(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
@@ -132,6 +135,7 @@ bool sniff_enzo(std::span<const std::byte> head);
 bool sniff_xdmf(std::span<const std::byte> head);
 Data read_xdmf(const std::string& path, const ReadOptions& options, Context& context);
 std::vector<double> times_of_xdmf(const std::string& path, const ReadOptions& options, Context& context);
+bool sniff_minc_2(std::span<const std::byte> head);
 bool sniff_netcdf(std::span<const std::byte> head);
 bool sniff_cgns(std::span<const std::byte> head);
 

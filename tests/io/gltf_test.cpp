@@ -204,6 +204,56 @@ TEST_CASE("gltf: the base colour of a material is that of its cells, as sRGB, wh
   CHECK(!read(j)->fields().find("BaseColor"));
 }
 
+TEST_CASE("gltf: materials are labels with names, of one numbering for all parts") {
+  OrderedJson j = square();
+  const OrderedJson one = j["meshes"][0]["primitives"][0];
+  j["materials"] = {{{"name", "steel"}}, {{"name", "glass"}}, OrderedJson::object()};
+  j["meshes"][0]["primitives"] = OrderedJson::array();
+  for (const int material : {1, 0, 2, 1}) {
+    OrderedJson p = one;
+    p["material"] = material;
+    j["meshes"][0]["primitives"].push_back(p);
+  }
+  const auto parts_of = [&] {
+    std::vector<DatasetPtr> parts;
+    for_each_dataset(test::read_bytes("many.glb", glb(j, square_bytes())),
+                     [&](const std::string&, const DatasetPtr& d) { parts.push_back(d); });
+    return parts;
+  };
+  const auto names_of = [](const DatasetPtr& d) {
+    for (const auto& [key, text] : d->notes())
+      if (key == "labels of MaterialIds") return text;
+    return std::string();
+  };
+  const double numbers[] = {2, 1, 3, 2};
+  auto parts = parts_of();
+  REQUIRE(parts.size() == 4);
+  for (size_t k = 0; k < 4; ++k) {
+    const Field& f = parts[k]->fields().require("MaterialIds", Association::cell);
+    CHECK(f.role == Role::labels);
+    REQUIRE(f.array.count() == parts[k]->cell_count());
+    CHECK(f.array.get(0) == numbers[k]);
+    CHECK(f.array.get(1) == numbers[k]);
+    CHECK(names_of(parts[k]) == "1=steel\n2=glass\n3=material 2");
+  }
+  j["meshes"][0]["primitives"][3].erase("material");
+  parts = parts_of();
+  CHECK(parts[3]->fields().require("MaterialIds").array.get(0) == 0);
+  CHECK(names_of(parts[0]) == "0=no material\n1=steel\n2=glass\n3=material 2");
+  // Very many or long names stay with their own parts.
+  j["materials"][0]["name"] = std::string(20000, 'x');
+  parts = parts_of();
+  CHECK(names_of(parts[0]) == "0=no material\n2=glass");
+  // A strip is one cell; a file without materials has no such field.
+  j = square(5, 4);
+  CHECK(!read(j)->fields().find("MaterialIds"));
+  j["materials"] = {{{"name", "steel"}, {"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0, 1}}}}}};
+  j["meshes"][0]["primitives"][0]["material"] = 0;
+  j["meshes"][0]["primitives"][0]["attributes"].erase("COLOR_0");
+  CHECK(read(j)->fields().require("MaterialIds").array.count() == read(j)->cell_count());
+  CHECK(read(j)->fields().require("BaseColor").array.count() == read(j)->cell_count());
+}
+
 TEST_CASE("gltf: what is wrong is named") {
   auto with = [](auto change) {
     OrderedJson j = square();

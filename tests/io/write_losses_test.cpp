@@ -164,6 +164,9 @@ const Writing writings[] = {{"vti", grid},
                             {"mhd", grid},
                             {"nii", grid},
                             {"nii.gz", grid},
+                            {"mnc", grid},
+                            {"mnc", grid, "zlib"},
+                            {"dcm", grid},
                             {"npy", grid},
                             {"vdb", grid},
                             {"zarr", grid},
@@ -221,7 +224,7 @@ TEST_CASE("property: whatever a writer loses, a warning names") {
       WriteOptions options;
       options.compression = value_of_word<Compression>(w.compression), options.encoding = *value_of_word<VtkEncoding>(w.encoding),
       options.chunk = 8;
-      const bool needs_scalar = std::string_view(w.extension) == "vdb";
+      const bool needs_scalar = std::string_view(w.extension) == "vdb" || std::string_view(w.extension) == "dcm";
       try {
         write_data(path, in, options, ctx);
       } catch (const Error& e) {

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/parallel.h"
+#include "data/fields/label_names.h"
 #include "image/image.h"
 #include "io/formats.h"
 #include "io/gltf/gltf_document.h"
@@ -64,6 +65,8 @@ struct Reader {
   const GltfDocument& doc;
   std::vector<Collection::Part> parts{};
   uint64_t taken = 0;
+  bool any_without = false;  ///< a primitive has no material
+  bool short_names = true;   ///< of all materials together
 
   bool wanted(const std::string& name) const {
     return !options.header_only &&
@@ -177,6 +180,7 @@ struct Reader {
 
     DatasetParts r;
     add_fields(p, l, xyz.count, r.fields, where);
+    const size_t cells = mesh.vertices.size() + mesh.lines.size() + mesh.polygons.size() + mesh.strips.size();
     if (p.material >= 0) {
       const GltfMaterial& material = doc.materials[size_t(p.material)];
       if (!material.name.empty()) r.notes.emplace_back("material", material.name);
@@ -184,10 +188,31 @@ struct Reader {
       if (wanted("BaseColorMultiplier"))
         r.fields.add({"BaseColorMultiplier", Association::whole, Array::from_vector(std::vector<float>(c, c + 4), 4), "", Role::none});
     }
-    const size_t cells = mesh.vertices.size() + mesh.lines.size() + mesh.polygons.size();
     if (p.material >= 0 && !r.fields.with_role(Role::colors)) add_base_color(doc.materials[size_t(p.material)], cells, r.fields);
+    add_material_ids(p.material, cells, r);
     r.mesh = std::move(mesh);
     return make_dataset(std::move(r));
+  }
+
+  // The number of the material on all cells: that of the document's list, so that parts share one numbering. Cells without a material have
+  // the number before the first.
+  void add_material_ids(int material, size_t cells, DatasetParts& parts) const {
+    if (doc.materials.empty() || !wanted("MaterialIds")) return;
+    int32_t* out = nullptr;
+    Array ids = Array::make<int32_t>(cells, 1, &out);
+    std::fill_n(out, cells, int32_t(material + 1));
+    parts.fields.add({"MaterialIds", Association::cell, std::move(ids), "", Role::labels});
+    // All names in each part, as long as they are few: what selects by name or makes a legend knows those of the other parts, too.
+    LabelNames names("MaterialIds");
+    const auto add = [&](int m) {
+      const std::string& name = doc.materials[size_t(m)].name;
+      names.add(m + 1, name.empty() ? fmt::format("material {}", m) : name);
+    };
+    if (material < 0 || any_without) names.add(0, "no material");
+    if (short_names)
+      for (size_t m = 0; m < doc.materials.size(); ++m) add(int(m));
+    else if (material >= 0) add(material);
+    parts.notes.push_back(names.note());
   }
 
   // The colour of the material on all cells, unless it is the white that a picture is multiplied with.
@@ -254,6 +279,12 @@ bool sniff_glb(std::span<const std::byte> head) { return head.size() >= 4 && std
 Data read_gltf(const std::string& path, const ReadOptions& options, Context& context) {
   const GltfDocument doc = read_gltf_document(path, context);
   Reader r{options, context, doc};
+  constexpr size_t most_names = 256, most_letters = 16384;
+  size_t letters = 0;
+  for (const GltfMaterial& m : doc.materials) letters += m.name.size();
+  r.short_names = doc.materials.size() <= most_names && letters <= most_letters;
+  for (const GltfMesh& mesh : doc.meshes)
+    for (const GltfPrimitive& p : mesh.primitives) r.any_without = r.any_without || p.material < 0;
   if (!doc.nodes.empty()) r.add_scene();
   else
     for (size_t k = 0; k < doc.meshes.size(); ++k) r.add_mesh(int(k), Mat4(), "");

@@ -3,6 +3,7 @@
 #include "io/formats.h"
 
 #include <cstring>
+#include <string_view>
 
 namespace sg {
 
@@ -12,6 +13,12 @@ bool sniff_hdf5(std::span<const std::byte> head) {
   for (size_t at = 0; at + sizeof signature <= head.size(); at = at ? 2 * at : 512)
     if (std::memcmp(head.data() + at, signature, sizeof signature) == 0) return true;
   return false;
+}
+
+// The names of a file's top groups stand near its head, among them that of MINC's.
+bool sniff_minc_2(std::span<const std::byte> head) {
+  const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
+  return sniff_hdf5(head) && text.find("minc-2.0") != text.npos;
 }
 
 }  // namespace sg

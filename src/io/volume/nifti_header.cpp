@@ -63,6 +63,8 @@ void parse_1(NiftiHeader& h, std::span<const std::byte> b, const std::string& wh
   h.data_begin = size_t(begin);
   h.description = text_at(b, 148, 80);
   h.orient = int(b[252]);
+  if (h.version == 0)
+    for (size_t a = 0; a < 3; ++a) h.origin_voxel[a] = at<int16_t>(b, 253 + 2 * a, big);
   if (h.version == 0) return;  // what follows has other meanings in Analyze, or none that are agreed on
   h.slope = at<float>(b, 112, big), h.intercept = at<float>(b, 116, big);
   h.units = int(b[123]);
@@ -203,6 +205,21 @@ Mat3 analyze_axes(int orient) {
 
 }  // namespace
 
+namespace {
+
+// SPM's origin. Other programs keep text there: numbers far from the volume are none, as in SPM.
+bool has_origin_voxel(const NiftiHeader& h) {
+  bool any = false;
+  for (size_t a = 0; a < 3; ++a) {
+    const auto n = double(h.dims[a]), o = double(h.origin_voxel[a]);
+    if (!(o > -n && o < 2 * n)) return false;
+    any = any || o != 0;
+  }
+  return any;
+}
+
+}  // namespace
+
 UniformGrid nifti_grid(const NiftiHeader& h, const std::string& where, DatasetParts& out) {
   auto& notes = out.notes;
   UniformGrid g;
@@ -236,6 +253,10 @@ UniformGrid nifti_grid(const NiftiHeader& h, const std::string& where, DatasetPa
     }
     if (h.version == 0) {
       g.direction = analyze_axes(h.orient);
+      if (has_origin_voxel(h)) {
+        for (int a = 0; a < 3; ++a) g.origin = g.origin - g.direction.column(a) * (g.spacing[a] * double(h.origin_voxel[size_t(a)] - 1));
+        notes.emplace_back("origin", fmt::format("voxel {} {} {}, as SPM counts", h.origin_voxel[0], h.origin_voxel[1], h.origin_voxel[2]));
+      }
       note_patient_frame(out);
       notes.emplace_back("orientation",
                          h.orient >= 0 && h.orient < 6 ? fmt::format("Analyze, {}", h.orient) : "not given, taken as radiological");

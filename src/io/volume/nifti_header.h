@@ -17,7 +17,8 @@ struct NiftiHeader {
   std::array<size_t, 7> dims{1, 1, 1, 1, 1, 1, 1};  ///< x y z t and more, 1 where not given
   int stored_dims = 0;                              ///< dim[0]
   int datatype = 0;
-  int orient = 0;  ///< Analyze: in which plane slices were stored
+  int orient = 0;                     ///< Analyze: in which plane slices were stored
+  std::array<int, 3> origin_voxel{};  ///< Analyze: the voxel at the origin, counted from 1, as SPM keeps it
   std::array<double, 8> pixdim{};
   size_t data_begin = 0;
   double slope = 0, intercept = 0;

@@ -71,8 +71,6 @@ void write_nifti(const std::string& path, const Data& data, const WriteOptions&,
   if (!grid)
     fail_usage(fmt::format("a NIfTI file holds a uniform grid, not a {} mesh", d->kind()), path, "resample it first: -f 'resample'");
   const std::string lower = to_lower(path);
-  if (lower.ends_with(".hdr") || lower.ends_with(".img") || lower.ends_with(".hdr.gz") || lower.ends_with(".img.gz"))
-    fail_usage("pairs of .hdr and .img can be read but not written", path, "name it .nii or .nii.gz");
   WriteLosses losses(path, "NIfTI");
   Field f = losses.one_point_field(*d, false);
   // Positions of no stated frame are taken as the patient's: read again they are the same numbers.

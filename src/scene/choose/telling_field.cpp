@@ -61,10 +61,28 @@ bool counts_up(const Field& f) {
   return true;
 }
 
+constexpr size_t few_numbers = 64;  // a legend of names has room for them
+
 // Numbers that reach so far that most things can have their own.
 bool one_for_each(const Field& f, const Range& r) {
-  constexpr size_t few = 64;  // a legend of names has room for them
-  return f.array.count() > few && r.hi - r.lo + 1 >= 0.5 * double(f.array.count());
+  return f.array.count() > few_numbers && r.hi - r.lo + 1 >= 0.5 * double(f.array.count());
+}
+
+// Whole numbers, however they are stored; looked at in some places.
+bool holds_whole_values(const Field& f) {
+  if (!is_float(f.array.type())) return true;
+  const size_t n = f.array.count(), step = std::max<size_t>(1, n / 4096);
+  for (size_t i = 0; i < n; i += step)
+    if (const double v = f.array.get(i); std::isfinite(v) && v != std::round(v)) return false;
+  return true;
+}
+
+// Numbers under which a program keeps its groups (the objects of an OBJ file), or of more things than a legend can name: a bar of colours
+// over them would be read as a quantity.
+bool ids_of_groups(const Field& f, const std::vector<std::string>& words, const Range& r) {
+  if (words.empty() || (words.back() != "id" && words.back() != "ids") || f.role == Role::labels || !holds_whole_values(f)) return false;
+  const bool of_groups = std::any_of(words.begin(), words.end(), [](const std::string& w) { return w == "group" || w == "groups"; });
+  return of_groups || r.hi - r.lo + 1 > double(few_numbers);
 }
 
 // Of any point; nothing for AMR grids.
@@ -128,7 +146,7 @@ Telling telling(const Dataset& d, const Field& f) {
         (whole && (any_of(words, whole_numberings) || to_lower(f.name).ends_with("id") || to_lower(f.name).ends_with("ids")));
     const bool counts = counts_up(f);
     if (counts && is_lattice(d.mesh()) && !named_id) return Telling::numbering;  // the ramp of an image
-    if (counts || (named_id && one_for_each(f, r))) return Telling::ids;
+    if (counts || (named_id && (one_for_each(f, r) || ids_of_groups(f, words, r)))) return Telling::ids;
     if (named_id) return Telling::numbering;
     if (whole && r.lo == 0 && r.hi == 1 && element_size(f.array.type()) == 1) return Telling::numbering;  // a mask
     if (whole && any_of(words, divisions)) return Telling::divisions;

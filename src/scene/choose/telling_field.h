@@ -10,7 +10,7 @@ enum class Telling {
   values,     ///< a quantity
   divisions,  ///< parts, materials, blocks, levels: where things are, not what
   numbering,  ///< ranks, ghosts and masks: bookkeeping; coordinates, which the axes show already; textures
-  ids,        ///< a number of its own for each point or cell: colours of it would be a pattern without meaning
+  ids,        ///< a number of its own for each point, cell or group: colours of it would be a pattern without meaning
   nothing,    ///< the same everywhere, or rounding errors beside another field
 };
 

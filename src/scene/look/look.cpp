@@ -42,7 +42,7 @@ std::string field_reason(const Dataset& d, const std::string& field) {
   if (!f) {
     const auto is_id = [&](const Field& any) { return any.association != Association::whole && telling(d, any) == Telling::ids; };
     const bool ids = std::any_of(d.fields().begin(), d.fields().end(), is_id);
-    return ids ? "one colour (its fields are ids of points or cells)" : "one colour (no field varies over it)";
+    return ids ? "one colour (its fields are ids of points, cells or groups)" : "one colour (no field varies over it)";
   }
   if (is_direct_color(*f)) return fmt::format("its own colours '{}'", f->name);
   return fmt::format("coloured by '{}'{}", f->name, f->components() > 1 ? " (magnitude)" : "");

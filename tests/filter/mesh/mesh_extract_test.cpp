@@ -219,6 +219,33 @@ TEST_CASE("extract: the cells of a turned or mirrored grid have their volume, no
   }
 }
 
+TEST_CASE("extract: the end of a path names a part where it is the end of one path alone") {
+  const auto blocks = std::make_shared<Collection>(Collection{{{"Angelo NOVI", grid({0, 0, 0})}, {"wall", grid({9, 0, 0})}}});
+  const auto sets = std::make_shared<Collection>(Collection{{{"wall", grid({0, 9, 0})}, {"inlet", grid({0, 0, 9})}}});
+  const auto both = std::make_shared<Collection>(Collection{{{"Element Blocks", blocks}, {"Side Sets", sets}}});
+  const Data all = std::make_shared<const Collection>(Collection{{{"run", both}}});
+  Context context;
+  const auto chosen = [&](std::vector<std::string> names) {
+    ExtractParams p;
+    p.blocks = std::move(names);
+    std::vector<std::string> found;
+    for_each_dataset(extract_blocks(all, p, context), [&](const std::string& name, const DatasetPtr&) { found.push_back(name); });
+    return found;
+  };
+  CHECK(chosen({"Angelo NOVI"}) == std::vector<std::string>{"run/Element Blocks/Angelo NOVI"});
+  CHECK(chosen({"Side Sets/wall", "inlet"}) == std::vector<std::string>{"run/Side Sets/wall", "run/Side Sets/inlet"});
+  CHECK(chosen({"Element Blocks"}) == std::vector<std::string>{"run/Element Blocks/Angelo NOVI", "run/Element Blocks/wall"});
+  const std::string both_walls = test::error_of([&] { chosen({"wall"}); });
+  CHECK(both_walls.find("2 parts are called 'wall'") != std::string::npos);
+  CHECK(both_walls.find("'run/Element Blocks/wall', 'run/Side Sets/wall'") != std::string::npos);
+  CHECK(test::error_of([&] { chosen({"NOVI"}); }).find("there is no block 'NOVI'") != std::string::npos);
+  ExtractParams p;
+  p.part = "inlet";
+  CHECK(std::get<DatasetPtr>(extract_blocks(all, p, context)) == std::get<DatasetPtr>(sets->parts[1].data));
+  p.part = "wall";
+  CHECK(test::error_of([&] { extract_blocks(all, p, context); }).find("2 parts are called 'wall'") != std::string::npos);
+}
+
 TEST_CASE("extract: one part of a collection by its path or its number is the part itself, a table too") {
   const auto inner = std::make_shared<Collection>(Collection{{{"left", grid({0, 0, 0})}, {"right", grid({9, 0, 0})}}});
   const auto table = std::make_shared<const Table>();

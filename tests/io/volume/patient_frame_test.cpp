@@ -151,17 +151,73 @@ TEST_CASE("patient frame: Analyze's six planes of slices are ITK's") {
   }
 }
 
+namespace {
+
+// Whatever the order of its axes, each voxel of a file lies where one of the scan lies, moved by `moved`, and has its value.
+void check_voxels(const Dataset& d, Vec3 moved) {
+  REQUIRE(is_lattice(d.mesh()));
+  const Lattice lattice(d.mesh());
+  const auto n = lattice_dims(d.mesh());
+  const Array& a = d.fields()[0].array;
+  REQUIRE(n[0] * n[1] * n[2] == columns * rows * slices);
+  for (size_t k = 0; k < n[2]; ++k)
+    for (size_t j = 0; j < n[1]; ++j)
+      for (size_t i = 0; i < n[0]; ++i) {
+        const Vec3 at = lattice.view().position(i, j, k) - moved - first;
+        const Vec3 number(std::round(at.x / spacing.x), std::round(at.y / spacing.y), std::round(at.z / spacing.z));
+        CHECK(length(at - Vec3(number.x * spacing.x, number.y * spacing.y, number.z * spacing.z)) < 1e-5);
+        CHECK(a.get(i + n[0] * (j + n[1] * k)) == number.x + double(columns) * (number.y + double(rows) * number.z));
+      }
+  CHECK(in_patient_frame(d));
+}
+
+DatasetPtr moved_by(const DatasetPtr& d, Vec3 by) {
+  UniformGrid g = *d->as<UniformGrid>();
+  g.origin = g.origin + by;
+  DatasetParts parts;
+  parts.mesh = g;
+  parts.fields = d->fields();
+  note_patient_frame(parts);
+  return make_dataset(std::move(parts));
+}
+
+std::string warnings_of_writing(const std::string& path, const DatasetPtr& d) {
+  std::string said;
+  Context context;
+  context.on_log = [&](LogLevel level, std::string_view text) {
+    if (level == LogLevel::warning) said += text;
+  };
+  write_data(path, d, {}, context);
+  return said;
+}
+
+}  // namespace
+
 TEST_CASE("patient frame: through all formats that are written every voxel keeps its place in the patient") {
   Context context;
   const auto scan = read_file(dicom_folder());
-  for (const char* a : {"1.nii", "1.nii.gz", "1.nrrd", "1.mha"})
-    for (const char* b : {"2.nii", "2.nrrd", "2.mha"}) {
+  const char* ways[] = {"nii", "nii.gz", "nrrd", "mha", "mnc", "dcm"};
+  for (const std::string a : ways)
+    for (const std::string b : ways) {
       CAPTURE(a);
       CAPTURE(b);
-      write_data(temp_folder() + a, scan, {}, context);
-      write_data(temp_folder() + b, read_file(temp_folder() + a), {}, context);
-      check_places(*read_file(temp_folder() + b));
+      write_data(temp_folder() + "1." + a, scan, {}, context);
+      write_data(temp_folder() + "2." + b, read_file(temp_folder() + "1." + a), {}, context);
+      check_places(*read_file(temp_folder() + "2." + b));
     }
+  // Analyze has places of whole voxels near the volume, and says what it drops.
+  const Vec3 near = Vec3(-0.5, -2, -3) - first;
+  for (const std::string a : ways) {
+    CAPTURE(a);
+    write_data(temp_folder() + "1." + a, moved_by(scan, near), {}, context);
+    CHECK(warnings_of_writing(temp_folder() + "2.hdr", read_file(temp_folder() + "1." + a)).find("origin") == std::string::npos);
+    check_voxels(*read_file(temp_folder() + "2.hdr"), near);
+    check_voxels(*read_file(temp_folder() + "2.img"), near);
+    write_data(temp_folder() + "3." + a, read_file(temp_folder() + "2.hdr"), {}, context);
+    check_voxels(*read_file(temp_folder() + "3." + a), near);
+  }
+  CHECK(contains(warnings_of_writing(temp_folder() + "4.hdr", scan), "drops the origin"));
+  CHECK(contains(warnings_of_writing(temp_folder() + "4.hdr", moved_by(scan, near + Vec3(0.2, 0, 0))), "moves the origin by 0.2 mm"));
   // In the file: NIfTI's matrix is RAS, MetaImage's offset LPS, NRRD says what it is.
   write_data(temp_folder() + "w.nii", scan, {}, context);
   const std::string n = text_of(temp_folder() + "w.nii");
@@ -173,6 +229,50 @@ TEST_CASE("patient frame: through all formats that are written every voxel keeps
   write_data(temp_folder() + "w.nrrd", scan, {}, context);
   CHECK(contains(text_of(temp_folder() + "w.nrrd"), "space: left-posterior-superior\n"));
   CHECK(contains(text_of(temp_folder() + "w.nrrd"), "space origin: (-10,20,30)\n"));
+}
+
+TEST_CASE("patient frame: oblique, leaning and mirrored scans keep their places in the formats that can say so") {
+  Context context;
+  UniformGrid g;
+  g.dims = {4, 3, 5}, g.spacing = {1.5, 0.75, 2.25}, g.origin = {-31.25, 12.5, 80.125};
+  const double c = std::cos(0.4), s = std::sin(0.4);
+  const Mat3 oblique{{{c * c, -s, c * s}, {s * c, c, s * s}, {-s, 0, c}}};
+  Mat3 leaning = oblique, mirrored = oblique;
+  for (int r = 0; r < 3; ++r) {
+    leaning.m[r][2] = 0.96 * oblique.m[r][2] + 0.28 * oblique.m[r][1];
+    mirrored.m[r][2] = -oblique.m[r][2];
+  }
+  std::vector<float> v(60);
+  for (size_t i = 0; i < v.size(); ++i) v[i] = float(i) - 7;
+  for (const Mat3& direction : {oblique, leaning, mirrored})
+    for (const std::string way : {"nii", "nrrd", "mha", "mnc", "dcm"}) {
+      CAPTURE(way);
+      g.direction = direction;
+      DatasetParts parts;
+      parts.mesh = g;
+      parts.fields.add({"T", Association::point, Array::from_vector(v), "", Role::scalars});
+      note_patient_frame(parts);
+      const DatasetPtr in = make_dataset(std::move(parts));
+      write_data(temp_folder() + "oblique." + way, in, {}, context);
+      const DatasetPtr out = read_file(temp_folder() + "oblique." + way);
+      const Lattice from(in->mesh()), to(out->mesh());
+      REQUIRE(lattice_dims(out->mesh()) == g.dims);
+      for (size_t k = 0; k < 5; ++k)
+        for (size_t i = 0; i < 12; ++i) {
+          // Readers of slices sort them along their normal.
+          const double value = out->fields()[0].array.get(12 * k + i);
+          const auto at = size_t(value + 7.5);
+          REQUIRE(at < 60);
+          CHECK(at % 12 == i);
+          CHECK(length(to.view().position(i % 4, i / 4, k) - from.view().position(i % 4, i / 4, at / 12)) < 2e-5);
+        }
+    }
+  // Analyze has the patient's axes alone.
+  DatasetParts parts;
+  parts.mesh = g;
+  parts.fields.add({"T", Association::point, Array::from_vector(v), "", Role::scalars});
+  note_patient_frame(parts);
+  CHECK(contains(warnings_of_writing(temp_folder() + "oblique.hdr", make_dataset(std::move(parts))), "drops a turn of 3"));
 }
 
 TEST_CASE("patient frame: vectors and tensors turn with it") {

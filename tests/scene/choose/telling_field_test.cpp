@@ -52,6 +52,24 @@ TEST_CASE("telling fields: quantities, divisions, numberings and nothing") {
   CHECK(telling_of(of<double>("pressure", [](int i) { return double(i % 4); })) == Telling::values);
 }
 
+TEST_CASE("telling fields: ids of groups give no colour, however they are stored, unless the file names them") {
+  CHECK(telling_of(of<float>("GroupIds", [](int i) { return float(i / 8); })) == Telling::ids);
+  CHECK(telling_of(of<int>("group_id", parts)) == Telling::ids);
+  // More numbers than a legend can name, with gaps.
+  CHECK(telling_of(of<int>("surfaceId", [](int i) { return 10 * (i / 4); })) == Telling::ids);
+  CHECK(telling_of(of<double>("surfaceId", [](int i) { return 10.0 * (i / 4); })) == Telling::ids);
+  CHECK(telling_of(of<int>("surfaceId", parts)) == Telling::numbering);
+  // A value is none, whatever its name ends in.
+  CHECK(telling_of(of<double>("GroupIds", wave)) != Telling::ids);
+  CHECK(telling_of(of<double>("fluid", [](int i) { return 10.0 * (i / 4); })) == Telling::values);
+  Field named = of<int>("GroupIds", parts);
+  named.role = Role::labels;
+  CHECK(telling_of(named) == Telling::numbering);
+  DatasetParts p = box();
+  p.fields.add(of<float>("GroupIds", [](int i) { return float(i / 8); }));
+  CHECK(automatic_field(*make_dataset(p)) == nullptr);
+}
+
 TEST_CASE("telling fields: an id for each of many points gives no colour, even where there is nothing else") {
   DatasetParts p;
   UniformGrid g;

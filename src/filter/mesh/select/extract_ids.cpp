@@ -111,6 +111,29 @@ void add_parts(const Data& data, const std::string& path, std::vector<Collection
   for (const Collection::Part& part : (*c)->parts) add_parts(part.data, path.empty() ? part.name : path + "/" + part.name, out);
 }
 
+// The paths in a collection whose last names are `wanted`, each once: of parts, and of the collections that hold them.
+std::vector<std::string> paths_ending_in(const std::vector<Collection::Part>& parts, const std::string& wanted, bool whole_parts) {
+  std::vector<std::string> found;
+  for (const Collection::Part& part : parts)
+    for (size_t end = whole_parts ? part.name.size() : part.name.find('/'); end != std::string::npos;
+         end = end == part.name.size() ? std::string::npos : std::min(part.name.find('/', end + 1), part.name.size())) {
+      std::string path = part.name.substr(0, end);
+      if (path.ends_with("/" + wanted) && std::find(found.begin(), found.end(), path) == found.end()) found.push_back(std::move(path));
+    }
+  return found;
+}
+
+// The one path that ends in `wanted`; "" for none. Throws Error(usage) that lists them where there are several.
+std::string path_ending_in(const std::vector<Collection::Part>& parts, const std::string& wanted, bool whole_parts, const char* where) {
+  const std::vector<std::string> found = paths_ending_in(parts, wanted, whole_parts);
+  if (found.size() < 2) return found.empty() ? "" : found[0];
+  constexpr size_t most_listed = 10;
+  std::string list;
+  for (size_t i = 0; i < std::min(found.size(), most_listed); ++i) list += (i ? ", '" : "'") + found[i] + "'";
+  fail_usage(fmt::format("{} parts are called '{}'", found.size(), wanted), where,
+             fmt::format("name one by its path: {}{}", list, found.size() > most_listed ? ", ..." : ""));
+}
+
 Data part_named(const Data& in, const std::string& wanted) {
   if (!std::holds_alternative<CollectionPtr>(in)) fail_usage("the input is no collection", "extract part", "leave part out");
   const std::vector<Collection::Part> parts = all_parts(in);
@@ -121,6 +144,9 @@ Data part_named(const Data& in, const std::string& wanted) {
     if (part.name == wanted) return part.data;
     names.push_back(part.name);
   }
+  if (const std::string path = path_ending_in(parts, wanted, true, "extract part"); !path.empty())
+    for (const Collection::Part& part : parts)
+      if (part.name == path) return part.data;
   fail_usage(fmt::format("there is no part '{}'", wanted), "extract part", unknown_name_hint(wanted, names));
 }
 
@@ -179,10 +205,14 @@ Data extract_blocks(const Data& in, const ExtractParams& p, Context& ctx) {
         if (part.name == wanted) r->parts.push_back(part);
       if (r->parts.size() == before && digits && std::stoul(wanted) < (*c)->parts.size())
         r->parts.push_back((*c)->parts[std::stoul(wanted)]);
-      if (r->parts.size() == before)
+      const auto add_below = [&](const std::string& path) {
         for_each_dataset(in, [&](const std::string& name, const DatasetPtr& d) {
-          if (name == wanted || name.starts_with(wanted + "/")) r->parts.push_back({name, d});
+          if (name == path || name.starts_with(path + "/")) r->parts.push_back({name, d});
         });
+      };
+      if (r->parts.size() == before) add_below(wanted);
+      if (r->parts.size() == before)
+        if (const std::string path = path_ending_in(all_parts(in), wanted, false, "extract blocks"); !path.empty()) add_below(path);
       if (r->parts.size() == before)
         fail_usage(fmt::format("there is no block '{}'", wanted), "extract blocks", unknown_name_hint(wanted, names));
     }

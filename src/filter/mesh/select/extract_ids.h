@@ -33,8 +33,9 @@ inline void describe(Schema& s, ExtractParams& p) {
   s("all_points", p.all_points, "With a region: select a cell only if all its points lie in it (behind the plane), not just one.");
   s("types", p.types, "Cell types to select, e.g. Tetra,Hexahedron.");
   s("levels", p.levels, "Levels of an AMR grid to select; 0 is the coarsest.").at_least(0);
-  s("blocks", p.blocks, "Parts of a collection to select, by name, path or number.");
-  s("part", p.part, "One part of a collection, by its path or by its number among all parts from #0 on: the result is the part itself.");
+  s("blocks", p.blocks, "Parts of a collection to select, by name, path, the end of a path or number.");
+  s("part", p.part,
+    "One part of a collection, by its path (or the end of it) or by its number among all parts from #0 on: the result is the part itself.");
 }
 
 /// The chosen cells as a mesh of their own (see extract_cells), in input order, with all fields. With of=point: the cells that use one
@@ -46,7 +47,8 @@ DatasetPtr extract(const DatasetPtr& in, const ExtractParams& p, Context& ctx);
 std::vector<Collection::Part> all_parts(const Data& data);
 
 /// The part that `part` names, of all_parts(). The parts of a collection that `blocks` names (all where it is empty), by name, path of
-/// names or number among the top parts; those of which something is left after extract(), when there are other conditions.
+/// names, an end of one path alone, or number among the top parts; those of which something is left after extract(), when there are other
+/// conditions.
 Data extract_blocks(const Data& in, const ExtractParams& p, Context& ctx);
 
 }  // namespace sg

@@ -246,11 +246,13 @@ ElementType dicom_type(const DicomPicture& p, bool as_float) {
   if (as_float) return ElementType::f32;
   if (p.slope == 1 && p.intercept == 0)
     return p.photometric == "PALETTE COLOR" ? ElementType::u8 : stored_type(p.bits_allocated, p.is_signed);
-  if (p.slope != std::floor(p.slope) || p.intercept != std::floor(p.intercept)) return ElementType::f32;
   const double most = std::ldexp(1.0, p.bits_stored - (p.is_signed ? 1 : 0)) - 1, least = p.is_signed ? -most - 1 : 0;
   const double a = least * p.slope + p.intercept, b = most * p.slope + p.intercept;
+  // One step of the stored numbers is still seen in f32, whose digits reach 2^24 of them, far from the intercept.
+  const ElementType real = std::max(std::abs(a), std::abs(b)) > std::ldexp(std::abs(p.slope), 23) ? ElementType::f64 : ElementType::f32;
+  if (p.slope != std::floor(p.slope) || p.intercept != std::floor(p.intercept)) return real;
   if (std::min(a, b) >= -32768 && std::max(a, b) <= 32767) return ElementType::i16;
-  return std::min(a, b) >= -2147483648.0 && std::max(a, b) <= 2147483647.0 ? ElementType::i32 : ElementType::f32;
+  return std::min(a, b) >= -2147483648.0 && std::max(a, b) <= 2147483647.0 ? ElementType::i32 : real;
 }
 
 void read_dicom_frames(const DicomPicture& p, size_t first, size_t count, ElementType type, std::byte* out) {
@@ -291,6 +293,7 @@ void read_dicom_frames(const DicomPicture& p, size_t first, size_t count, Elemen
     case ElementType::i16: return convert_to<int16_t>(in, total, c, out);
     case ElementType::u32: return convert_to<uint32_t>(in, total, c, out);
     case ElementType::i32: return convert_to<int32_t>(in, total, c, out);
+    case ElementType::f64: return convert_to<double>(in, total, c, out);
     default: return convert_to<float>(in, total, c, out);
   }
 }

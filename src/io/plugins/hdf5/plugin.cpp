@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "io/plugins/hdf5/enzo.h"
+#include "io/plugins/hdf5/minc/minc_2.h"
 #include "io/plugins/hdf5/vtkhdf.h"
 #include "io/reading_budget.h"
 
@@ -36,8 +37,17 @@ sg::Data read_enzo(const std::string& path, const sg::ReadOptions& options, sg::
   sg::ReadingBudget budget(path, true);
   return sg::read_enzo(path, options, context);
 }
+sg::Data read_minc(const std::string& path, const sg::ReadOptions& options, sg::Context& context) {
+  sg::ReadingBudget budget(path, true);
+  const sg::h5::Turn turn;
+  return sg::minc::read_minc_2(sg::h5::File(path), options, context);
+}
+std::vector<double> times_of_minc(const std::string& path, const sg::ReadOptions&, sg::Context&) {
+  const sg::h5::Turn turn;
+  return sg::minc::minc_2_times(sg::h5::File(path));
+}
 
 }  // namespace
 
 SG_PLUGIN_FORMATS({"vtkhdf", read_vtkhdf, sg::write_vtkhdf, sg::times_of_vtkhdf}, {"enzo", read_enzo, nullptr, sg::times_of_enzo},
-                  {"array", nullptr, nullptr, nullptr, read_array})
+                  {"minc", read_minc, sg::minc::write_minc_2, times_of_minc}, {"array", nullptr, nullptr, nullptr, read_array})

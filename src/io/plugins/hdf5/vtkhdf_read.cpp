@@ -6,6 +6,7 @@
 
 #include "base/bytes.h"
 #include "base/text/text.h"
+#include "io/plugins/hdf5/minc/minc_2.h"
 #include "io/plugins/hdf5/vtkhdf.h"
 #include "io/vtk/vtk_cells.h"
 
@@ -183,7 +184,7 @@ struct Reader {
     found += (found.empty() ? "" : ", ") + name + (file.is_group("/" + name) ? "/" : "");
   }
   fail_data(fmt::format("is an HDF5 file of an unknown kind: it contains {}", found.empty() ? "nothing" : found), file.path(),
-            "supported: VTKHDF (a group 'VTKHDF'), netCDF 4 (.nc), Exodus (.e .exo), CGNS (.cgns), ENZO (open its "
+            "supported: VTKHDF (a group 'VTKHDF'), MINC 2 (.mnc), netCDF 4 (.nc), Exodus (.e .exo), CGNS (.cgns), ENZO (open its "
             ".hierarchy) and XDMF (open its .xdmf)");
 }
 
@@ -198,6 +199,7 @@ void check_version(const h5::File& file, Context& context) {
 Data read_vtkhdf(const std::string& path, const ReadOptions& options, Context& context) {
   const h5::Turn turn;
   const h5::File file(path);
+  if (minc::is_minc_2(file)) return minc::read_minc_2(file, options, context);
   if (!file.is_group("/VTKHDF")) vtkhdf::refuse_other(file);
   vtkhdf::check_version(file, context);
   if (!file.text_attribute("/VTKHDF", "Type")) file.fail("has no attribute 'Type'", "/VTKHDF", "the file is damaged or not complete");
@@ -207,6 +209,7 @@ Data read_vtkhdf(const std::string& path, const ReadOptions& options, Context& c
 std::vector<double> times_of_vtkhdf(const std::string& path, const ReadOptions& options, Context& context) {
   const h5::Turn turn;
   const h5::File file(path);
+  if (minc::is_minc_2(file)) return minc::minc_2_times(file);
   if (!file.is_group("/VTKHDF")) return {};
   return vtkhdf::Reader{file, options, context}.times("/VTKHDF", 0);
 }

@@ -2,18 +2,13 @@
 // VTKHDF files, writing: uniform grids, unstructured and surface meshes, point clouds, AMR grids; one partition, one step. Version 1.0
 // where that has the kind (so that VTK 9.1 reads it), else 2.0, 2.5 with polyhedra.
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <numeric>
 
-#include "base/file/partial_file.h"
 #include "base/text/text.h"
 #include "data/lattice.h"
-#include "io/plugins/hdf5/h5_pack.h"
+#include "io/plugins/hdf5/h5_write.h"
 #include "io/plugins/hdf5/vtkhdf.h"
 #include "io/write_losses.h"
 
@@ -23,100 +18,7 @@ namespace vtkhdf {
 
 namespace {
 
-using h5::Handle;
-
-/// The file in its temporary place; moved by commit(), else removed.
-class Writer {
- public:
-  Writer(const std::string& path, bool compress, Context& context) : path_(path), partial_(path), compress_(compress), context_(context) {
-    h5::silence();
-    const Handle access(H5Pcreate(H5P_FILE_ACCESS));
-    H5Pset_file_locking(access, false, true);
-    file_ = Handle(H5Fcreate(partial_.name().c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access));
-    if (!file_.good()) fail("cannot be written");
-  }
-  ~Writer() { file_ = Handle(); }  // before its place goes
-  Writer(const Writer&) = delete;
-  Writer& operator=(const Writer&) = delete;
-
-  void commit() {
-    const bool flushed = H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0;
-    const bool closed = file_.close();
-    if (!flushed || !closed) fail("cannot be written");
-    partial_.commit();
-  }
-
-  void group(const std::string& path) {
-    if (!Handle(H5Gcreate2(file_, path.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)).good()) fail(fmt::format("cannot hold '{}'", path));
-  }
-  void text(const std::string& object, const char* name, const std::string& value) {
-    const Handle type(H5Tcopy(H5T_C_S1)), space(H5Screate(H5S_SCALAR));
-    H5Tset_size(type, std::max<size_t>(value.size(), 1));
-    H5Tset_strpad(type, H5T_STR_NULLPAD);
-    attribute(object, name, type, space, value.data());
-  }
-  template <class T>
-  void numbers(const std::string& object, const char* name, const std::vector<T>& values) {
-    const hsize_t n = values.size();
-    const Handle space(H5Screate_simple(1, &n, nullptr));
-    attribute(object, name, h5::native_type(element_type_of<T>()), space, values.data());
-  }
-  /// An array with the dimensions `dims`, slowest first; chunked and compressed when requested and worthwhile.
-  void array(const std::string& path, const Array& values, std::vector<hsize_t> dims) {
-    context_.check();
-    const Array packed = values.made_packed();
-    const Handle space(H5Screate_simple(int(dims.size()), dims.data(), nullptr)), make(H5Pcreate(H5P_DATASET_CREATE));
-    H5Pset_obj_track_times(make, false);  // the same data give the same bytes
-    const bool pack = compress_ && packed.bytes() >= 4096;
-    const size_t size = element_size(packed.type());
-    const std::vector<hsize_t> chunk = chunk_of(dims, size);
-    if (pack) {
-      H5Pset_chunk(make, int(dims.size()), chunk.data());
-      H5Pset_shuffle(make);
-      H5Pset_deflate(make, level);
-    }
-    const hid_t type = h5::native_type(packed.type());
-    const Handle set(H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, make, H5P_DEFAULT));
-    const bool written =
-        set.good() && (pack ? h5::write_packed(set, packed.raw(), dims, chunk, size, level, context_)
-                            : packed.bytes() == 0 || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, packed.raw()) >= 0);
-    if (!written) fail(fmt::format("cannot hold '{}'", path));
-  }
-  /// A list of tuples: (n) or (n, components).
-  void list(const std::string& path, const Array& values) {
-    std::vector<hsize_t> dims{values.count()};
-    if (values.components() > 1) dims.push_back(hsize_t(values.components()));
-    array(path, values, dims);
-  }
-  void count(const std::string& path, size_t n) { list(path, Array::from_vector(std::vector<int64_t>{int64_t(n)})); }
-  const std::string& path() const { return path_; }
-
- private:
-  [[noreturn]] void fail(const std::string& what) const {
-    std::string why = h5::library_message();
-    if (errno) why += (why.empty() ? "" : ", ") + std::string(std::strerror(errno));
-    fail_data(what + (why.empty() ? "" : " (" + why + ")"), path_, "check that the folder exists, is writable and has room");
-  }
-  void attribute(const std::string& object, const char* name, hid_t type, hid_t space, const void* value) {
-    const Handle a(H5Acreate_by_name(file_, object.c_str(), name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-    if (!a.good() || H5Awrite(a, type, value) < 0) fail(fmt::format("cannot hold the attribute '{}' of '{}'", name, object));
-  }
-  static constexpr int level = 4;  // of deflate
-  // About a quarter of a mebibyte: the slowest dimensions are cut first.
-  static std::vector<hsize_t> chunk_of(std::vector<hsize_t> dims, size_t size) {
-    for (size_t a = 0; a < dims.size(); ++a) {
-      hsize_t row = size;
-      for (size_t b = a + 1; b < dims.size(); ++b) row *= dims[b];
-      dims[a] = std::clamp<hsize_t>((256 << 10) / std::max<hsize_t>(row, 1), 1, std::max<hsize_t>(dims[a], 1));
-    }
-    return dims;
-  }
-  std::string path_;
-  PartialFile partial_;
-  bool compress_;
-  Context& context_;
-  Handle file_;
-};
+using h5::Writer;
 
 struct Out {
   Writer& w;
@@ -335,8 +237,7 @@ void write_vtkhdf(const std::string& path, const Data& data, const WriteOptions&
   if (compression != Compression::none && compression != Compression::zlib)
     fail_usage(fmt::format("VTKHDF files cannot be compressed with '{}'", word_of(compression)), path, "use zlib or none");
   const h5::Turn turn;
-  errno = 0;
-  vtkhdf::Writer writer(path, compression == Compression::zlib, context);
+  h5::Writer writer(path, compression == Compression::zlib, context);
   WriteLosses losses(path, "VTKHDF");
   vtkhdf::write_kind({writer, *d, "/VTKHDF", losses});
   writer.commit();

@@ -228,8 +228,7 @@ std::vector<double> cf_times(const NcFile& file) { return times_of(file, CfModel
 Data read_cf(const NcFile& file, const ReadOptions& options, Context& context) {
   const CfModel model(file);
   if (model.grids().empty()) {
-    if (file.has_group("minc-2.0"))
-      file.fail("is a MINC 2 file, which is not supported", {}, "convert it to MINC 1 with mincconvert or to NIfTI with mnc2nii");
+    if (file.has_group("minc-2.0")) file.fail("is a MINC 2 file, which the reader for HDF5 reads", {}, "name it .h5");
     file.fail("contains no variable on a grid", {}, "expected a numeric variable with at least one dimension longer than 1");
   }
   const std::vector<double> times = times_of(file, model);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// MINC 1 volumes (medical images in classic netCDF). Source: the MINC 1 file format of the Montreal Neurological Institute.
+// MINC 1 volumes: medical images in classic netCDF (io/minc).
 #pragma once
 #include "base/context.h"
 #include "io/io.h"
@@ -8,8 +8,8 @@
 namespace sg::nc {
 
 bool is_minc(const NcFile& file);
-/// A uniform grid in world coordinates (directions and step signs kept). Field "image": real values (image-min and image-max of
-/// each slice applied), components along a vector_dimension. Field "ImageScalars": the numbers as stored, where they differ.
+/// As minc::read_volume() gives it.
 Data read_minc(const NcFile& file, const ReadOptions& options, Context& context);
+std::vector<double> minc_times(const NcFile& file);
 
 }  // namespace sg::nc

@@ -48,7 +48,7 @@ std::vector<double> times(const std::string& path, const ReadOptions&, Context& 
       [&](Context&) -> std::vector<double> {
         const NcFile file(path);
         if (is_exodus(file)) return exodus_times(file);
-        if (is_minc(file)) return {};
+        if (is_minc(file)) return minc_times(file);
         return cf_times(file);
       },
       context);
