@@ -2,7 +2,7 @@
 """Data: a mesh with its fields, a collection of named parts, or a table."""
 from __future__ import annotations
 
-from typing import Any, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -10,6 +10,10 @@ from . import _core, _operations
 from ._errors import UnknownNameError, usage
 from ._methods import Methods
 from ._numbers import lent, on_grid, tuples
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 
 class Data(Methods):
