@@ -242,6 +242,9 @@ class SIGHTGLASS_API Data {
   std::string kind() const;
   /// One line: "uniform 256x256x94, 6160384 points, 1 field".
   std::string summary() const;
+  /// What read(), source(), run() or at() said while they made it, one line each: what was chosen and why ("values=0.5, the middle of the
+  /// range"), and warnings. None of data from memory.
+  const std::vector<std::string>& notes() const;
   /// Of all parts together; 0 for tables.
   size_t point_count() const;
   size_t cell_count() const;

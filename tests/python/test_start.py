@@ -24,3 +24,7 @@ data.plot(size=(64, 48))
 print(loaded())
 """
     assert told_by(script) == ["False", "False", "True"]
+
+
+def test_a_program_that_does_not_log_works_without_the_module_for_it():
+    assert told_by("import sys, sightglass as sg; print(len(sg.gyroid(size=8).contour().notes), 'logging' in sys.modules)") == ["1", "False"]

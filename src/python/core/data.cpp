@@ -27,6 +27,7 @@ void declare_class(py::module_& m) {
   py::class_<Data>(m, "Data")
       .def_property_readonly("kind", &Data::kind)
       .def("summary", &Data::summary)
+      .def("notes", &Data::notes)
       .def("point_count", &Data::point_count)
       .def("cell_count", &Data::cell_count)
       .def("bounds",

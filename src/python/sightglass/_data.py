@@ -34,6 +34,11 @@ class Data(Methods):
 
     @property
     def n_points(self) -> int:
+    @property
+    def notes(self) -> list[str]:
+        """What the operation (or reader) that made it chose and why, and its warnings, one line each; empty for data of arrays."""
+        return self._core.notes()
+
         """Of all parts together."""
         return self._core.point_count()
 
