@@ -342,6 +342,14 @@ SIGHTGLASS_API Data unstructured_mesh(Array points, Cell type, Array ids);
 SIGHTGLASS_API Data triangle_mesh(Array points, Array ids);
 SIGHTGLASS_API Data polygon_mesh(Array points, Array ids, Array offsets);
 SIGHTGLASS_API Data line_mesh(Array points, Array ids, Array offsets);
+/// Cells of several kinds in one surface, numbered in this order; each kind as lists of point numbers and where each begins, or neither.
+struct SurfaceCells {
+  struct Lists {
+    Array ids, offsets;
+  };
+  Lists vertices, lines, polygons, strips;
+};
+SIGHTGLASS_API Data surface_mesh(Array points, const SurfaceCells& cells);
 SIGHTGLASS_API Data point_cloud(Array points);
 
 /// Patches of one fineness: whole boxes of cells.
