@@ -104,6 +104,11 @@ std::string Data::summary() const {
   });
 }
 
+const std::vector<std::string>& Data::notes() const {
+  static const std::vector<std::string> none;
+  return held_ ? held_->notes : none;
+}
+
 size_t Data::point_count() const {
   return guarded([&] {
     size_t n = 0;

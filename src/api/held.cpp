@@ -84,8 +84,8 @@ const Data::Held& held_by(const Data& data) {
   return *data.held();
 }
 
-Data make_data(sg::Data data, std::shared_ptr<const Made> made) {
-  return Data(std::make_shared<const Data::Held>(Data::Held{std::move(data), std::move(made)}));
+Data make_data(sg::Data data, std::shared_ptr<const Made> made, std::vector<std::string> notes) {
+  return Data(std::make_shared<const Data::Held>(Data::Held{std::move(data), std::move(made), std::move(notes)}));
 }
 
 Data data_from_memory(sg::DatasetPtr data) {

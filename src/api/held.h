@@ -29,7 +29,9 @@ struct Made {
 struct Data::Held {
   sg::Data data;
   std::shared_ptr<const Made> made;
+  std::vector<std::string> notes = {};  ///< what was said while it was made
 };
+
 /// What a function of the program threw while the library worked.
 struct Foreign : sg::Error {
   Foreign(std::string text, std::exception_ptr e) : sg::Error(sg::ErrorKind::data, std::move(text)), thrown(std::move(e)) {}
@@ -40,6 +42,21 @@ struct Array::Held {
 };
 struct Context::State {
   sg::Context core;
+};
+
+/// A context for work on data that keeps what is said, and passes it on.
+class Noting {
+ public:
+  explicit Noting(const Context& context) : core(context.state().core, 0, 1) {
+    core.on_log = [this, &outer = context.state().core](sg::LogLevel level, std::string_view text) {
+      if (level != sg::LogLevel::debug) notes.emplace_back(text);
+      outer.log(level, text);
+    };
+  }
+  Noting(const Noting&) = delete;
+  Noting& operator=(const Noting&) = delete;
+  sg::Context core;
+  std::vector<std::string> notes;
 };
 struct Image::Held {
   sg::Image image;
@@ -80,7 +97,7 @@ std::vector<std::string> stated_words(const sg::Schema& schema);
 /// Throws Error(usage) for empty Data.
 const Data::Held& held_by(const Data& data);
 /// From what an operation of `made` gave.
-Data make_data(sg::Data data, std::shared_ptr<const Made> made);
+Data make_data(sg::Data data, std::shared_ptr<const Made> made, std::vector<std::string> notes = {});
 /// From the caller's numbers; `about`: what a recipe says of them.
 Data data_from_memory(sg::Data data, std::string about);
 Data data_from_memory(sg::DatasetPtr data);

@@ -158,6 +158,17 @@ Data line_mesh(Array points, Array ids, Array offsets) {
   });
 }
 
+Data surface_mesh(Array points, const SurfaceCells& cells) {
+  return guarded([&] {
+    const auto lists = [](const SurfaceCells::Lists& l) { return l.offsets.count() == 0 ? sg::CellArray() : lists_of(l.ids, l.offsets); };
+    sg::SurfaceMesh m;
+    m.points = points_of(points);
+    m.vertices = lists(cells.vertices), m.lines = lists(cells.lines);
+    m.polygons = lists(cells.polygons), m.strips = lists(cells.strips);
+    return from_mesh(std::move(m));
+  });
+}
+
 Data point_cloud(Array points) {
   return guarded([&] { return from_mesh(sg::PointCloud{points_of(points)}); });
 }

@@ -56,9 +56,10 @@ Data run_on(std::string_view name, const Params& stated, const std::vector<const
   made->words = stated_words(params.schema);
   std::vector<const Data::Held*> held;
   for (const Data* d : inputs) held.push_back(&held_by(*d)), made->inputs.push_back(held.back()->made);
-  sg::Context& core = context.state().core;
-  const bool over_time = operation.run_series && !held.empty() && varies(*held[0]->made, core);
-  return make_data(over_time ? run_steps(made, "run()", core) : run_now(operation, params, held, core), made);
+  Noting noting(context);
+  const bool over_time = operation.run_series && !held.empty() && varies(*held[0]->made, noting.core);
+  sg::Data data = over_time ? run_steps(made, "run()", noting.core) : run_now(operation, params, held, noting.core);
+  return make_data(std::move(data), std::move(made), std::move(noting.notes));
 }
 
 }  // namespace
@@ -69,11 +70,12 @@ Data read(const std::string& path, const Params& params, const Context& context)
     sg::Schema schema = sg::schema_of(p);
     set_values(schema, params, "read");
     sg::check(p.options);
-    sg::Data data = sg::read_data(path, p.options, context.state().core);
+    Noting noting(context);
+    sg::Data data = sg::read_data(path, p.options, noting.core);
     auto made = std::make_shared<Made>();
     made->operation = "read";
     made->words = sg::read_words(absolute(path), p.options);
-    return make_data(std::move(data), std::move(made));
+    return make_data(std::move(data), std::move(made), std::move(noting.notes));
   });
 }
 

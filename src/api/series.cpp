@@ -75,10 +75,11 @@ std::vector<double> Data::times(const Context& context) const {
 
 Data Data::at(double time, const Context& context) const {
   return guarded([&] {
-    sg::Context& core = context.state().core;
-    const auto made = made_at(held_by(*this).made, time, core);
+    Noting noting(context);
+    const auto made = made_at(held_by(*this).made, time, noting.core);
     if (!made) sg::fail_usage("does not come from a time series", "at()", "read a series, or make one with series()");
-    return make_data(run_steps(made, "at()", core), made);
+    sg::Data data = run_steps(made, "at()", noting.core);
+    return make_data(std::move(data), made, std::move(noting.notes));
   });
 }
 

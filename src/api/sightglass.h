@@ -242,6 +242,9 @@ class SIGHTGLASS_API Data {
   std::string kind() const;
   /// One line: "uniform 256x256x94, 6160384 points, 1 field".
   std::string summary() const;
+  /// What read(), source(), run() or at() said while they made it, one line each: what was chosen and why ("values=0.5, the middle of the
+  /// range"), and warnings. None of data from memory.
+  const std::vector<std::string>& notes() const;
   /// Of all parts together; 0 for tables.
   size_t point_count() const;
   size_t cell_count() const;
@@ -339,6 +342,14 @@ SIGHTGLASS_API Data unstructured_mesh(Array points, Cell type, Array ids);
 SIGHTGLASS_API Data triangle_mesh(Array points, Array ids);
 SIGHTGLASS_API Data polygon_mesh(Array points, Array ids, Array offsets);
 SIGHTGLASS_API Data line_mesh(Array points, Array ids, Array offsets);
+/// Cells of several kinds in one surface, numbered in this order; each kind as lists of point numbers and where each begins, or neither.
+struct SurfaceCells {
+  struct Lists {
+    Array ids, offsets;
+  };
+  Lists vertices, lines, polygons, strips;
+};
+SIGHTGLASS_API Data surface_mesh(Array points, const SurfaceCells& cells);
 SIGHTGLASS_API Data point_cloud(Array points);
 
 /// Patches of one fineness: whole boxes of cells.

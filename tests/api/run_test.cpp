@@ -47,6 +47,20 @@ TEST_CASE("library: the schema's errors: unknown names, ranges, choices and type
   CHECK(contains(refused([&] { grid.write("x.vti", {{"encoding", "asci"}}); }), "did you mean 'ascii'?"));
 }
 
+TEST_CASE("library: data say what was chosen when they were made, which the context hears as well, and not what was chosen before") {
+  std::vector<std::string> heard;
+  Context context;
+  context.on_message([&](bool, std::string_view text) { heard.emplace_back(text); });
+  const Data surface = ball(16).run("contour", {}, context);
+  REQUIRE(surface.notes().size() == 1);
+  CHECK(contains(surface.notes()[0], "contour: "));
+  CHECK(heard == surface.notes());
+  CHECK(surface.run("normals", {}, context).notes().empty());
+  CHECK(ball(16).run("contour", {{"values", 0.1}}).notes().empty());
+  CHECK(surface.with_cell_field("n", Array(std::vector<float>(surface.cell_count(), 1))).notes().empty());
+  CHECK(Data().notes().empty());
+}
+
 TEST_CASE("library: text and typed values come to the same bytes") {
   const Data grid = ball(16);
   const auto typed = grid.run("contour", {{"values", {-0.1, 0.2}}, {"normals", false}});

@@ -76,6 +76,11 @@ TEST_CASE("library: meshes of every kind from memory have the sizes that follow 
   CHECK(tets.cells().offsets.numbers() == std::vector<double>{0, 4, 8});
   CHECK(polygon_mesh(xyz, std::vector<int32_t>{0, 1, 2, 3}, std::vector<int32_t>{0, 4}).cells().types.get(0) == int(Cell::quad));
   CHECK(line_mesh(xyz, std::vector<int32_t>{0, 1, 2}, std::vector<int32_t>{0, 3}).cell_count() == 1);
+  const Data mixed = surface_mesh(xyz, {.vertices = {std::vector<int32_t>{6, 7}, std::vector<int32_t>{0, 1, 2}},
+                                        .polygons = {std::vector<int64_t>{0, 1, 2, 0, 2, 3, 7}, std::vector<int64_t>{0, 3, 7}},
+                                        .strips = {std::vector<int32_t>{4, 5, 6, 7}, std::vector<int32_t>{0, 4}}});
+  CHECK(mixed.kind() == "surface");
+  CHECK(mixed.cells().types.numbers() == std::vector<double>{1, 1, 5, 9, 6});
   const Data bricks = rectilinear_grid(std::vector<double>{0, 1, 4}, std::vector<float>{0, 1}, std::vector<double>{0});
   CHECK(bricks.dims() == std::array<size_t, 3>{3, 2, 1});
   CHECK(bricks.bounds().hi == Vec3{4, 1, 0});
@@ -90,6 +95,9 @@ TEST_CASE("library: what cannot be is refused with what would be right") {
   const std::vector<double> xyz{0, 0, 0, 1, 0, 0, 1, 1, 0};
   CHECK(refused([&] { triangle_mesh(xyz, std::vector<int32_t>{0, 1, 7}); }).find("7") != std::string::npos);
   CHECK(refused([&] { triangle_mesh(xyz, std::vector<float>{0, 1, 2}); }).find("whole numbers") != std::string::npos);
+  CHECK(refused([&] {
+          surface_mesh(xyz, {.strips = {std::vector<int32_t>{0, 1, 3}, std::vector<int32_t>{0, 3}}});
+        }).find("3") != std::string::npos);
   CHECK(refused([&] { point_cloud(std::vector<double>{1, 2}); }).find("points") != std::string::npos);
   CHECK(refused([&] { uniform_grid({2, 2, 2}).with_point_field("f", std::vector<float>{1, 2, 3}); }) != "");
   CHECK(refused([] { Array(std::vector<float>{1, 2, 3}, 2); }).find("tuples of 2") != std::string::npos);

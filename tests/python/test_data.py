@@ -1,4 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
+import gc
+import weakref
+
 import numpy as np
 import pytest
 import sightglass as sg
@@ -37,6 +40,33 @@ def test_meshes_have_the_volume_that_they_should(tetra):
     assert total.kind == "table"
     volumes = [total[c] for c in total.keys() if "volume" in c.lower() or "measure" in c.lower() or "size" in c.lower()]
     assert any(np.allclose(v, 1) for v in volumes)
+
+
+def address(a):
+    return a.__array_interface__["data"][0]
+
+
+def test_points_are_those_that_were_given():
+    z, y, x = np.mgrid[0:3, 0:4, 0:5].astype(float)
+    xyz = np.stack([x + 0.1 * y, y, z], -1)
+    flat = xyz.reshape(-1, 3)
+    for ds in (sg.curvilinear(xyz), sg.points(flat), sg.surface(flat, [[0, 1, 2]]), sg.unstructured(flat, {"vertex": [[0]]})):
+        assert address(ds.points) == address(xyz) and np.array_equal(ds.points, flat) and not ds.points.flags.writeable
+    f32 = sg.curvilinear(xyz.astype(np.float32)).points
+    assert f32.dtype == np.float64 and np.array_equal(f32, flat.astype(np.float32))
+
+
+@pytest.mark.parametrize("ds", [sg.uniform(dims=(5, 4, 3)), sg.rectilinear([0, 1, 3], [0, 2]), sg.points(np.zeros((4, 3), np.float32)),
+                                sg.amr([(1.0, [((0, 0), np.ones((4, 4)))])])], ids=lambda ds: ds.kind)
+def test_computed_points_are_one_array_as_long_as_somebody_holds_it(ds):
+    first = ds.points
+    assert ds.points is first and not first.flags.writeable
+    with pytest.raises(ValueError):
+        first[0] = 1
+    gone, copy = weakref.ref(first), first.copy()
+    del first
+    gc.collect()
+    assert gone() is None and np.array_equal(ds.points, copy)
 
 
 def test_surfaces_lines_and_points():

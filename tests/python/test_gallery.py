@@ -43,6 +43,21 @@ def test_the_first_ten_minutes_run(tmp_path, monkeypatch):
     assert (tmp_path / "head.png").exists() and (tmp_path / "turn.webm").exists() and (tmp_path / "0.5.png").exists()
 
 
+def test_what_is_rewritten_from_pyvista_draws_and_is_shorter(tmp_path, monkeypatch):
+    """Pairs of blocks in from_pyvista.md, of which ours run."""
+    monkeypatch.chdir(tmp_path)
+    page = (DOCS / "from_pyvista.md").read_text()
+    topics = re.findall(r"^\*\*(\w+)\*\* \(PyVista (\d+), Sightglass (\d+)\)\n+```python\n(.*?)```\n+```python\n(.*?)```", page, re.MULTILINE | re.DOTALL)
+    assert [topic[0] for topic in topics] == ["Volume", "Streamlines", "Clip"]
+    z, y, x = np.mgrid[-1:1:32j, -1:1:32j, -1:1:32j]
+    for topic, lines_there, lines_here, there, here in topics:
+        assert (len(there.splitlines()), len(here.splitlines())) == (int(lines_there), int(lines_here)) and int(lines_here) < int(lines_there)
+        mesh = sg.uniform(x * y + z, name="v").unstructured()
+        exec(here, {"sg": sg, "np": np, "a": x * x + y * y + z, "u": np.stack([-y, x, 0.3 + 0 * z], -1), "mesh": mesh})  # noqa: S102
+        picture = sg.read(f"{topic.lower()}.png")
+        assert np.ptp(picture[picture.keys()[0]].astype(int)) > 100
+
+
 def test_functions_that_the_tables_name_are_there():
     known = {*dir(sg), *dir(sg.gyroid(size=4)), "open", "plot", "render", "save", "movie", "camera", "picture", "add"}
     for page in ("from_pyvista.md", "from_yt_and_xarray.md", "data.md"):

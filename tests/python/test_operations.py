@@ -95,6 +95,21 @@ def test_further_inputs():
     assert sg.append(a, b).n_points == both.n_points
 
 
+def test_data_keep_what_the_operation_that_made_them_chose():
+    ds = sg.gyroid(size=8)
+    (note,) = ds.contour().notes
+    assert note.startswith("contour: gyroid = 0")
+    assert ds.contour(values=[0.1]).notes == [] and ds.contour().normals().notes == []
+    assert sg.uniform(np.zeros((2, 2, 2))).notes == []
+    (note_of_nothing,) = ds.contour(values=[99]).notes
+    assert "the field ranges from -1.46" in note_of_nothing
+    with pytest.warns(sg.SightglassWarning) as heard:
+        still = ds.with_field("u", np.full((512, 3), np.nan)).warp()
+    assert [str(w.message) for w in heard] == still.notes[-1:] and "warp: 512 points" in still.notes[-1]
+    both = sg.collection({"a": ds, "b": ds}).contour()
+    assert both.notes == [note] and len(both.parts) == 2
+
+
 def test_warnings_are_warnings_and_notes_are_logged(caplog):
     import logging
 

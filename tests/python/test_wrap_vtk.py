@@ -262,6 +262,11 @@ def test_pyvista_is_vtk(volume):
     assert isinstance(mesh, pv.DataSet) and np.array_equal(mesh.point_data["T"], volume.reshape(-1)) and mesh.spacing == (1, 2, 3)
     same(sg.wrap(mesh), ds)
     assert sg.wrap(pv.Sphere()).kind == "surface"
+    mixed = pv.Plane(i_resolution=1, j_resolution=1)
+    mixed.verts, mixed.lines = [1, 0], [2, 1, 2]
+    back = sg.wrap(mixed).to_pyvista()
+    assert isinstance(back, pv.PolyData) and (back.n_verts, back.n_lines, back.GetNumberOfPolys()) == (1, 1, 1)
+    assert np.array_equal(back.faces, mixed.faces) and np.array_equal(back.lines, mixed.lines)
     assert list(sg.wrap(pv.MultiBlock({"a": pv.Sphere()})).parts) == ["a"]
 
 

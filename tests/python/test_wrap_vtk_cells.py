@@ -6,6 +6,7 @@ import sightglass as sg
 
 pytest.importorskip("vtkmodules")
 from test_wrap_vtk import CUBE, array, fields_everywhere, same  # noqa: E402
+from sightglass._wrap.vtk_cells import lists  # noqa: E402
 from vtkmodules import vtkCommonCore as core  # noqa: E402
 from vtkmodules import vtkCommonDataModel as model  # noqa: E402
 
@@ -133,12 +134,40 @@ def test_poly_data_of_one_kind_keep_it():
     assert sg.wrap(poly_data()).kind == "points" and sg.wrap(model.vtkPolyData()).n_points == 0
 
 
-def test_poly_data_of_several_kinds_are_unstructured_in_vtks_order():
+def mixed_poly_data():
     mixed = poly_data([(7,), (5, 6)], [(0, 1), (1, 3, 2)], [(0, 1, 3), (0, 1, 3, 2), (0, 1, 3, 2, 6)], [(4, 5, 6, 7)])
     mixed.GetCellData().AddArray(array(np.arange(8.0), "c"))
+    return mixed
+
+
+def test_poly_data_of_several_kinds_are_a_surface_in_vtks_order():
+    mixed = mixed_poly_data()
     ds = sg.wrap(mixed)
-    assert ds.kind == "unstructured" and list(ds.cells[2]) == [mixed.GetCellType(i) for i in range(8)] == [1, 2, 3, 4, 5, 9, 7, 6]
+    assert ds.kind == "surface" and list(ds.cells[2]) == [mixed.GetCellType(i) for i in range(8)] == [1, 2, 3, 4, 5, 9, 7, 6]
     assert list(ds["c"]) == list(range(8)) and list(ds.cells[0][-4:]) == [4, 5, 6, 7]
+
+
+@pytest.mark.parametrize("without", ["", "Verts", "Lines", "Polys", "Strips"])
+def test_poly_data_of_several_kinds_come_back_as_they_went(without):
+    mixed = mixed_poly_data()
+    if without:
+        getattr(mixed, f"Set{without}")(model.vtkCellArray())
+        mixed.GetCellData().GetArray("c").SetNumberOfTuples(mixed.GetNumberOfCells())
+    back = sg.wrap(mixed).to_vtk()
+    assert back.GetClassName() == "vtkPolyData" and back.GetNumberOfCells() == mixed.GetNumberOfCells()
+    for name in ("GetVerts", "GetLines", "GetPolys", "GetStrips"):
+        for ours, theirs in zip(lists(getattr(back, name)()), lists(getattr(mixed, name)())):
+            assert np.array_equal(ours, theirs)
+    same(sg.wrap(back), sg.wrap(mixed))
+    assert sg.wrap(mixed).plot(size=(64, 48)).array.std() > 0
+
+
+def test_vertices_with_values_of_their_own_keep_them():
+    dots = poly_data(verts=[(i,) for i in range(8)])
+    dots.GetCellData().AddArray(array(np.arange(8.0), "c"))
+    ds = sg.wrap(dots)
+    assert ds.kind == "surface" and ds.on("c") == "cells"
+    assert ds.to_vtk().GetClassName() == "vtkPolyData" and ds.to_vtk().GetNumberOfVerts() == 8
 
 
 @pytest.mark.parametrize("made", [

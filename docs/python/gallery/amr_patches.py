@@ -11,6 +11,6 @@ def density(lo, shape, h):
 
 
 levels = [(h, [(lo, density(lo, shape, h))]) for h, lo, shape in (
-    (1 / 8, (0, 0, 0), (8, 8, 8)), (1 / 16, (3, 3, 3), (9, 9, 9)), (1 / 32, (10, 10, 10), (9, 9, 9)))]
+    (1 / 8, (0, 0, 0), (8, 8, 8)), (1 / 16, (4, 4, 4), (8, 8, 8)), (1 / 32, (10, 10, 10), (10, 10, 10)))]
 ds = sg.amr(levels, name="density")
 ds.clip(normal=(1, 1, 0.5), origin=(0.45, 0.45, 0.45)).plot("surface", edges=True, field="density").save("amr_patches.png")

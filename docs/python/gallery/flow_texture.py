@@ -3,4 +3,4 @@
 import sightglass as sg
 
 gyre = sg.double_gyre(size=161, time=3)
-gyre.plot("surface", lic="velocity", lit=False).save("flow_texture.png")
+gyre.plot("surface", field="velocity", lic="velocity", lit=False).save("flow_texture.png")

@@ -57,6 +57,7 @@ Array of_amr(const AmrGrid& g) {
 }  // namespace
 
 Array point_positions(const Mesh& mesh) {
+  if (auto* c = std::get_if<CurvilinearGrid>(&mesh)) return of_listed(c->points);
   if (is_lattice(mesh)) return of_lattice(mesh);
   if (auto* u = std::get_if<UnstructuredMesh>(&mesh)) return of_listed(u->points);
   if (auto* s = std::get_if<SurfaceMesh>(&mesh)) return of_listed(s->points);

@@ -27,6 +27,7 @@ void declare_class(py::module_& m) {
   py::class_<Data>(m, "Data")
       .def_property_readonly("kind", &Data::kind)
       .def("summary", &Data::summary)
+      .def("notes", &Data::notes)
       .def("point_count", &Data::point_count)
       .def("cell_count", &Data::cell_count)
       .def("bounds",
@@ -133,6 +134,13 @@ void declare_meshes(py::module_& m) {
   });
   m.def("line_mesh", [](const Numbers& points, const Numbers& ids, const Numbers& offsets) {
     return line_mesh(array_of(points), array_of(ids), array_of(offsets));
+  });
+  m.def("surface_mesh", [](const Numbers& points, const std::array<std::optional<std::pair<Numbers, Numbers>>, 4>& cells) {
+    SurfaceCells made;
+    SurfaceCells::Lists* const kinds[] = {&made.vertices, &made.lines, &made.polygons, &made.strips};
+    for (size_t k = 0; k < 4; ++k)
+      if (cells[k]) *kinds[k] = {array_of(cells[k]->first), array_of(cells[k]->second)};
+    return surface_mesh(array_of(points), made);
   });
   m.def("point_cloud", [](const Numbers& points) { return point_cloud(array_of(points)); });
   m.def("amr_grid", [](const std::vector<std::pair<Vec3, std::vector<std::array<std::array<int64_t, 3>, 2>>>>& levels, Vec3 origin) {

@@ -10,8 +10,6 @@ them. What is chosen goes to the logger "sightglass", warnings to `warnings`.
 """
 from __future__ import annotations
 
-from typing import Any
-
 from . import _core, _operations
 from ._data import Data
 from ._errors import CancelledError, DataError, Error, InternalError, SightglassWarning, UnknownNameError, UsageError
@@ -19,8 +17,14 @@ from ._groups import amr, collection, series, table
 from ._meshes import CELL_TYPES, curvilinear, lines, points, rectilinear, surface, uniform, unstructured
 from ._pipeline import Pipeline, open, pipeline
 from ._progress import set_progress
-from ._scene import Legend, Picture, Scene
+from ._scene import Picture, Scene
 from ._wrap import wrap
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from ._legend import Legend
 
 __version__ = _core.version()
 __all__ = ["CELL_TYPES", "CancelledError", "Data", "DataError", "Error", "InternalError", "Legend", "Picture", "Pipeline", "Scene", "SightglassWarning",
@@ -55,6 +59,10 @@ def help(name: str = "") -> None:  # noqa: A001  what Python's own does, for ope
 
 # What follows is for names that are not written down above: the operations. Type checkers take them from the stub.
 def __getattr__(name: str) -> Any:
+    if name == "Legend":
+        from ._legend import Legend
+
+        return Legend
     f = _operations.function(name) if not name.startswith("_") else None
     if f is None:
         near = _operations.nearest(name) if not name.startswith("_") else ""

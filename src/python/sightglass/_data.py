@@ -2,7 +2,8 @@
 """Data: a mesh with its fields, a collection of named parts, or a table."""
 from __future__ import annotations
 
-from typing import Any, Iterator, Mapping
+from collections.abc import Iterator, Mapping
+from weakref import ref
 
 import numpy as np
 
@@ -11,15 +12,20 @@ from ._errors import UnknownNameError, usage
 from ._methods import Methods
 from ._numbers import lent, on_grid, tuples
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
 
 class Data(Methods):
     """A mesh with its fields, a collection of named parts, or a table of columns. It never changes: what operations return is new and
     shares what stayed the same. Arrays that were handed in are read-only while data hold them."""
 
-    __slots__ = ("_core", "__weakref__")
+    __slots__ = ("_core", "_points", "__weakref__")
 
     def __init__(self, core: _core.Data):
         self._core = core
+        self._points: ref[np.ndarray] | None = None
 
     # ---- what it is
 
@@ -27,6 +33,11 @@ class Data(Methods):
     def kind(self) -> str:
         """"uniform", "rectilinear", "curvilinear", "unstructured", "surface", "points", "amr", "collection" or "table"."""
         return self._core.kind
+
+    @property
+    def notes(self) -> list[str]:
+        """What the operation (or reader) that made it chose and why, and its warnings, one line each; empty for data of arrays."""
+        return self._core.notes()
 
     @property
     def n_points(self) -> int:
@@ -74,8 +85,13 @@ class Data(Methods):
 
     @property
     def points(self) -> np.ndarray:
-        """Positions of all points, (n, 3)."""
-        return self._core.points()
+        """Positions of all points, (n, 3), read-only: those that the mesh lists, where they are float64; others are computed, once as long
+        as somebody holds them."""
+        points = self._points() if self._points is not None else None
+        if points is None:
+            points = self._core.points()
+            self._points = ref(points)
+        return points
 
     @property
     def cells(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -2,11 +2,8 @@
 """What goes wrong, and what the library says while it works."""
 from __future__ import annotations
 
-import logging
+import sys
 import warnings
-
-log = logging.getLogger("sightglass")
-log.addHandler(logging.NullHandler())
 
 
 class Error(Exception):
@@ -60,8 +57,8 @@ def usage(what: str, where: str = "", right: str = "") -> UsageError:
 
 
 def say(warning: bool, text: str) -> None:
-    """Notes go to the logger ``sightglass``, warnings to ``warnings``."""
+    """Notes go to the logger ``sightglass``, if the program logs at all, warnings to ``warnings``."""
     if warning:
         warnings.warn(text, SightglassWarning, stacklevel=4)
-    else:
-        log.info(text)
+    elif logging := sys.modules.get("logging"):
+        logging.getLogger("sightglass").info(text)

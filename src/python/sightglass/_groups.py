@@ -2,7 +2,7 @@
 """What holds several: collections, tables, levels of patches, series over time."""
 from __future__ import annotations
 
-from typing import Any, Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -11,6 +11,10 @@ from ._data import Data
 from ._errors import usage
 from ._meshes import _three
 from ._numbers import known, lent, tuples
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 
 def collection(parts: Mapping[str, Data] | Sequence[Data]) -> Data:

@@ -2,7 +2,7 @@
 """Data of numpy arrays, which are used where they lie if their layout permits, and read-only from then on."""
 from __future__ import annotations
 
-from typing import Any, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -10,6 +10,10 @@ from . import _core, _operations
 from ._data import Data
 from ._errors import say, usage
 from ._numbers import known, lent, on_grid, tuples, whole
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 #: VTK's numbers of the types of cells, by names.
 CELL_TYPES = {

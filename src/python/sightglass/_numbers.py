@@ -2,11 +2,13 @@
 """Which numpy arrays can be used as they lie, and copies of those that cannot."""
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from ._errors import say, usage
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 
 def lent(used: np.ndarray, given: Any) -> Any:

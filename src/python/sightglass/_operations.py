@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import keyword
+from collections.abc import Callable, Sequence
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence, Union
 
 from . import _core
 
+TYPE_CHECKING = False  # the module typing takes as long to import as all of this package
 if TYPE_CHECKING:
     import inspect
+    from typing import Any
 
     from ._data import Data
 
@@ -43,6 +45,8 @@ _types = {"integer": int, "number": float, "string": str, "boolean": bool}
 
 
 def _annotation(schema: dict[str, Any]) -> Any:
+    from typing import Any, Union
+
     for several in ("anyOf", "oneOf"):
         if several in schema:
             return Union[tuple(_annotation(s) for s in schema[several])]
@@ -76,6 +80,7 @@ def _line(name: str, schema: dict[str, Any]) -> str:
 
 def _document(f: Callable, entry: dict[str, Any], first: Sequence["inspect.Parameter"]) -> Callable:
     import inspect
+    from typing import Optional
 
     properties = entry["params"].get("properties", {})
     parameters = list(first)

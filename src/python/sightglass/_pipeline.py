@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import os
 import warnings
-from typing import Any
 
 from . import _core
 from ._data import Data
 from ._errors import SightglassWarning
 from ._scene import Picture
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 
 class Pipeline:

@@ -2,7 +2,7 @@
 """What is to be seen, from where, and the picture of it."""
 from __future__ import annotations
 
-from typing import Any, Mapping, NamedTuple
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -10,37 +10,16 @@ from . import _core
 from ._data import Data
 from ._errors import usage
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from ._legend import Legend
+
 
 def _at_values(value: Any) -> Any:
     """A mapping from values to opacities or colours in the words of the command line."""
     return ",".join(f"@{float(at)!r}:{what}" for at, what in value.items()) if isinstance(value, Mapping) else value
-
-
-class Entry(NamedTuple):
-    """One label in a legend."""
-
-    value: float
-    #: "" where only the number is known.
-    name: str
-    #: sRGB, 0 to 255.
-    color: tuple[int, int, int]
-
-
-class Legend(NamedTuple):
-    """What a legend says of a field."""
-
-    title: str
-    unit: str
-    #: How values are mapped to colours: "linear", "log" or "symlog".
-    scale: str
-    #: The values at the two ends of the bar.
-    range: tuple[float, float]
-    #: (256, 3) bytes, sRGB, evenly along the bar; (0, 3) where there are entries.
-    colors: np.ndarray
-    #: Of labels and bands of values.
-    entries: list[Entry]
-    #: (n, 2): of volumes the opacity over values, linear in between.
-    opacity: np.ndarray
 
 
 class Picture:
@@ -70,6 +49,8 @@ class Picture:
     @property
     def legend(self) -> list[Legend]:
         """What the legends say; empty without legends."""
+        from ._legend import Entry, Legend
+
         return [Legend(title, unit, scale, (low, high), colors, [Entry(*e) for e in entries], np.array(opacity, float).reshape(-1, 2))
                 for title, unit, scale, low, high, colors, entries, opacity in self._core.legends()]
 

@@ -99,7 +99,8 @@ double steady_duration(const Data& data, const FtleParams& p, Context& context) 
 
 }  // namespace
 
-DatasetPtr ftle_of(const UniformGrid& grid, double duration, std::optional<double> offset, const FlowMap& map, bool geographic) {
+DatasetPtr ftle_of(const UniformGrid& grid, double duration, std::optional<double> offset, const FlowMap& map, bool geographic,
+                   const Context* context) {
   check_duration(duration);
   if (offset && !(*offset > 0)) fail_usage("is not a valid distance", "offset", "give a small positive length");
   const std::array<size_t, 3> n = grid.dims;
@@ -117,13 +118,17 @@ DatasetPtr ftle_of(const UniformGrid& grid, double duration, std::optional<doubl
               "give a smaller size");
   std::vector<Vec3> from(count * each), to;
   std::vector<uint8_t> known;
-  parallel_for(count, 1 << 12, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const Vec3 index(double(i % n[0]), double(i / n[0] % n[1]), double(i / (n[0] * n[1])));
-      const Vec3 x = from[i * each] = grid.origin + grid.direction * (grid.spacing * index);
-      for (size_t k = 1; k < each; ++k) from[i * each + k] = x + grid.direction.column(axes[(k - 1) / 2]) * (k % 2 ? -*offset : *offset);
-    }
-  });
+  parallel_for(
+      count, 1 << 12,
+      [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+          const Vec3 index(double(i % n[0]), double(i / n[0] % n[1]), double(i / (n[0] * n[1])));
+          const Vec3 x = from[i * each] = grid.origin + grid.direction * (grid.spacing * index);
+          for (size_t k = 1; k < each; ++k)
+            from[i * each + k] = x + grid.direction.column(axes[(k - 1) / 2]) * (k % 2 ? -*offset : *offset);
+        }
+      },
+      context);
   map(from, to, known);
 
   float *value = nullptr, *went = nullptr, *values = nullptr, *largest = nullptr, *smallest = nullptr;
@@ -131,33 +136,36 @@ DatasetPtr ftle_of(const UniformGrid& grid, double duration, std::optional<doubl
   Array arrays[5] = {Array::make<float>(count, 1, &value), Array::make<float>(count, 3, &went),
                      Array::make<float>(count, dimension, &values), Array::make<float>(count, 3, &largest),
                      Array::make<float>(count, 3, &smallest)};
-  parallel_for(count, 1 << 12, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const size_t index[3] = {i % n[0], i / n[0] % n[1], i / (n[0] * n[1])}, step[3] = {1, n[0], n[0] * n[1]}, here = i * each;
-      Vec3 f[3];
-      bool all = true;
-      for (size_t k = 0; k < axes.size(); ++k) {
-        const auto a = size_t(axes[k]);
-        const size_t less = offset ? here + 1 + 2 * k : here - step[a], more = offset ? less + 1 : here + step[a];
-        const bool has_less = (offset || index[a] > 0) && known[less], has_more = (offset || index[a] + 1 < n[a]) && known[more];
-        all = all && difference(has_less ? &to[less] : nullptr, to[here], known[here], has_more ? &to[more] : nullptr,
-                                offset ? *offset : grid.spacing[int(a)], f[a]);
-      }
-      Vec3 unit(1, 1, 1);
-      if (geographic) {
-        const Vec3 there = globe_scale(to[here].y);
-        unit = globe_scale(from[here].y);
-        for (int a = 0; a < 3; ++a) f[a] = f[a] * there / unit[a];
-      }
-      const Stretch s = all ? stretch_of(f, counts, dimension, duration) : Stretch();
-      value[i] = float(s.ftle);
-      for (size_t k = 0; k < dims; ++k) values[dims * i + k] = float(s.values[k]);
-      for (int k = 0; k < 3; ++k) {
-        went[3 * i + size_t(k)] = known[here] ? float(to[here][k]) : NAN;
-        largest[3 * i + size_t(k)] = float(s.largest[k] / unit[k]), smallest[3 * i + size_t(k)] = float(s.smallest[k] / unit[k]);
-      }
-    }
-  });
+  parallel_for(
+      count, 1 << 12,
+      [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+          const size_t index[3] = {i % n[0], i / n[0] % n[1], i / (n[0] * n[1])}, step[3] = {1, n[0], n[0] * n[1]}, here = i * each;
+          Vec3 f[3];
+          bool all = true;
+          for (size_t k = 0; k < axes.size(); ++k) {
+            const auto a = size_t(axes[k]);
+            const size_t less = offset ? here + 1 + 2 * k : here - step[a], more = offset ? less + 1 : here + step[a];
+            const bool has_less = (offset || index[a] > 0) && known[less], has_more = (offset || index[a] + 1 < n[a]) && known[more];
+            all = all && difference(has_less ? &to[less] : nullptr, to[here], known[here], has_more ? &to[more] : nullptr,
+                                    offset ? *offset : grid.spacing[int(a)], f[a]);
+          }
+          Vec3 unit(1, 1, 1);
+          if (geographic) {
+            const Vec3 there = globe_scale(to[here].y);
+            unit = globe_scale(from[here].y);
+            for (int a = 0; a < 3; ++a) f[a] = f[a] * there / unit[a];
+          }
+          const Stretch s = all ? stretch_of(f, counts, dimension, duration) : Stretch();
+          value[i] = float(s.ftle);
+          for (size_t k = 0; k < dims; ++k) values[dims * i + k] = float(s.values[k]);
+          for (int k = 0; k < 3; ++k) {
+            went[3 * i + size_t(k)] = known[here] ? float(to[here][k]) : NAN;
+            largest[3 * i + size_t(k)] = float(s.largest[k] / unit[k]), smallest[3 * i + size_t(k)] = float(s.smallest[k] / unit[k]);
+          }
+        }
+      },
+      context);
   DatasetParts parts;
   parts.mesh = grid;
   constexpr const char* names[] = {"ftle", "flow map", "stretch", "stretch direction", "shrink direction"};
@@ -215,8 +223,12 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
   const DatasetPtr out = ftle_of(
       grid, duration, p.offset,
       [&](std::span<const Vec3> from, std::vector<Vec3>& to, std::vector<uint8_t>& known) {
-        std::vector<Particle> particles(from.size());
-        for (size_t i = 0; i < from.size(); ++i) particles[i].x = from[i], particles[i].t = start;
+        std::vector<Particle> particles;
+        particles.reserve(from.size());
+        for (size_t i = 0; i < from.size(); ++i) {  // the memory comes with them, which takes longer than computing their places
+          if (i % 65536 == 0) context.check();
+          particles.push_back({.x = from[i], .t = start});
+        }
         for (;; k = size_t(ptrdiff_t(k) + sign)) {
           flow.open(k, context);
           advance(flow, particles, k == last ? until : sign > 0 ? flow.end() : flow.begin(), sign, options, context);
@@ -227,11 +239,12 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
         to.resize(from.size()), known.resize(from.size());
         all = from.size();
         for (size_t i = 0; i < from.size(); ++i) {
+          if (i % 65536 == 0) context.check();
           to[i] = particles[i].x, known[i] = particles[i].started && !particles[i].ended;
           gone += !known[i];
         }
       },
-      p.geographic);
+      p.geographic, &context);
   if (gone > 0)
     context.info(fmt::format("ftle: {:.3g} % of the particles start outside the flow or leave it within {:.4g}: the result has holes there",
                              100 * double(gone) / double(all), std::abs(duration)));

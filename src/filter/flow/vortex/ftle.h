@@ -37,8 +37,9 @@ using FlowMap = std::function<void(std::span<const Vec3> from, std::vector<Vec3>
 /// map: central differences between neighbours of the grid (second order; one-sided at the borders), or between points at a distance of
 /// `offset` from each point. Where a neighbour left the flow the difference is one-sided; without any: NaN. Axes of one point do not count.
 /// `geographic`: x and y are degrees of longitude and latitude, z metres; distances are those on a sphere of 6371 km, and the two
-/// directions are a degree of latitude long, in the mesh's coordinates.
-DatasetPtr ftle_of(const UniformGrid& grid, double duration, std::optional<double> offset, const FlowMap& map, bool geographic = false);
+/// directions are a degree of latitude long, in the mesh's coordinates. Stops when `context` is cancelled.
+DatasetPtr ftle_of(const UniformGrid& grid, double duration, std::optional<double> offset, const FlowMap& map, bool geographic = false,
+                   const Context* context = nullptr);
 
 /// FTLE of a time series from `start` (default: its first time; backwards its last one) over `duration`, or of a steady flow when there is
 /// one step. Without a duration: the whole series, or the time in which the mean speed of a steady flow goes a tenth of the mesh's

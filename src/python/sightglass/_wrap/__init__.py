@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import inspect
+from collections.abc import Callable
 from importlib import import_module
-from typing import Any, Callable
 
 from .._data import Data
 from .._errors import usage
 from .._meshes import uniform
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 # The package that a class comes from, and the module here that takes its objects. Classes derived elsewhere (PyVista's) count as well.
 _takers = {"vtkmodules": "vtk", "xarray": "xarray", "pandas": "pandas", "meshio": "meshio", "nibabel": "nibabel", "openvdb": "openvdb",

@@ -10,9 +10,10 @@ from .. import _core
 from .._data import Data
 from .._errors import say, usage
 from .._groups import table
-from .._meshes import _lent_positions, curvilinear, points, rectilinear, surface, uniform, unstructured
+from .._meshes import _lent_positions, curvilinear, points, rectilinear, uniform, unstructured
+from .._numbers import whole
 from .vtk_arrays import fields, is_numbers, numbers, unit_of, words
-from .vtk_cells import check_shapes, joined, lists, polyhedra
+from .vtk_cells import check_shapes, lists, polyhedra
 from .vtk_out import to_pyvista, to_vtk
 from .shared import unused, with_fields
 
@@ -100,29 +101,16 @@ def _as_unstructured(x: Any) -> Data:
 
 
 def _poly_data(x: Any) -> Data:
-    """Polygons alone are a surface, lines alone lines, one vertex for each point (or none) points; mixtures are unstructured."""
-    kinds = [lists(x.GetVerts()), lists(x.GetLines()), lists(x.GetPolys()), lists(x.GetStrips())]
-    filled = [k for k, (_, offsets) in enumerate(kinds) if len(offsets) > 1]
+    """A vertex for each point, or no cells, are points; all else is a surface, whose cells have VTK's numbers."""
     xyz = _positions(x)
-    if not filled:
+    kinds = [lists(cells) if cells.GetNumberOfCells() else None for cells in (x.GetVerts(), x.GetLines(), x.GetPolys(), x.GetStrips())]
+    if not any(kinds):
         return points(xyz)
-    ids, offsets = kinds[filled[0]]
-    if filled == [2]:
-        return surface(xyz, ids, offsets)
-    if filled == [1]:
-        return Data(_core.line_mesh(_lent_positions(xyz), ids, offsets))
-    if filled == [0] and len(ids) == len(xyz) and len(offsets) == len(ids) + 1 and np.array_equal(ids, np.arange(len(ids))):
-        if not x.GetCellData().GetNumberOfArrays():  # points have no place for them
+    if kinds[0] and not any(kinds[1:]) and not x.GetCellData().GetNumberOfArrays():  # points have no place for fields of cells
+        ids, offsets = kinds[0]
+        if len(ids) == len(xyz) and len(offsets) == len(ids) + 1 and np.array_equal(ids, np.arange(len(ids))):
             return points(xyz)
-    return unstructured(xyz, joined([(kinds[k][0], kinds[k][1], _types(k, np.diff(kinds[k][1]))) for k in filled]))
-
-
-def _types(kind: int, sizes: np.ndarray) -> np.ndarray:
-    """VTK's numbers of the types of vertices, lines, polygons and strips of so many points."""
-    if kind == 2:
-        return np.select([sizes == 3, sizes == 4], [5, 9], 7).astype(np.uint8)
-    one, several, least = {0: (1, 2, 1), 1: (3, 4, 2), 3: (6, 6, 0)}[kind]
-    return np.where(sizes == least, one, several).astype(np.uint8)
+    return Data(_core.surface_mesh(_lent_positions(xyz), [k and (whole(k[0], "point numbers"), whole(k[1], "offsets")) for k in kinds]))
 
 
 def _table(x: Any) -> Data:

@@ -31,13 +31,6 @@ def cell_array(ids: np.ndarray, offsets: np.ndarray) -> Any:
     return cells
 
 
-def joined(kinds: list[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> Triple:
-    """Several lists (ids, offsets, types) as one."""
-    ids = np.concatenate([i.astype(np.int64) for i, _, _ in kinds])
-    sizes = np.concatenate([np.diff(o) for _, o, _ in kinds])
-    return ids, begins_of(sizes), np.concatenate([t for _, _, t in kinds])
-
-
 def polyhedra(grid: Any) -> Triple | None:
     """The faces of its polyhedra, as Data.polyhedra gives them; None without any."""
     if hasattr(grid, "GetPolyhedronFaces"):  # from VTK 9.4 on: lists of points, and for each cell a list of faces

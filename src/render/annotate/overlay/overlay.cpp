@@ -2,7 +2,6 @@
 #include "render/annotate/overlay/overlay.h"
 
 #include <fmt/core.h>
-#include <pango/pangocairo.h>
 
 #include <algorithm>
 #include <cstring>
@@ -12,30 +11,29 @@
 #include "base/parallel.h"
 #include "base/text/text.h"
 #include "base/text/utf8.h"
+#include "render/annotate/overlay/pango.h"
 
 namespace sg {
 namespace {
 
-template <class T, void (*free_it)(T*)>
+template <class T, auto free_it>
 struct Free {
-  void operator()(T* p) const { free_it(p); }
+  void operator()(T* p) const { (pango().*free_it)(p); }
 };
 template <class T>
-struct Unref {
-  void operator()(T* p) const { g_object_unref(p); }
-};
-using Surface = std::unique_ptr<cairo_surface_t, Free<cairo_surface_t, cairo_surface_destroy>>;
-using Cairo = std::unique_ptr<cairo_t, Free<cairo_t, cairo_destroy>>;
+using Unref = Free<T, &Pango::g_object_unref>;
+using Surface = std::unique_ptr<cairo_surface_t, Free<cairo_surface_t, &Pango::cairo_surface_destroy>>;
+using Cairo = std::unique_ptr<cairo_t, Free<cairo_t, &Pango::cairo_destroy>>;
 using Layout = std::unique_ptr<PangoLayout, Unref<PangoLayout>>;
 
-void use(cairo_t* cr, Vec3f c, double alpha = 1) { cairo_set_source_rgba(cr, double(c.x), double(c.y), double(c.z), alpha); }
+void use(cairo_t* cr, Vec3f c, double alpha = 1) { pango().cairo_set_source_rgba(cr, double(c.x), double(c.y), double(c.z), alpha); }
 
 void require_a_font(PangoContext* context) {
-  PangoFontDescription* wanted = pango_font_description_from_string("DejaVu Sans 10");
-  PangoFont* font = pango_context_load_font(context, wanted);
-  pango_font_description_free(wanted);
+  PangoFontDescription* wanted = pango().pango_font_description_from_string("DejaVu Sans 10");
+  PangoFont* font = pango().pango_context_load_font(context, wanted);
+  pango().pango_font_description_free(wanted);
   if (!font) fail_internal("no font is installed, so pictures cannot have text; install the package fonts-dejavu-core", "annotate");
-  g_object_unref(font);
+  pango().g_object_unref(font);
 }
 
 }  // namespace
@@ -80,27 +78,28 @@ struct Overlay::Parts {
   std::unique_ptr<PangoContext, Unref<PangoContext>> context;
 
   Layout layout(const std::string& text, const TextStyle& style) const {
-    Layout layout(pango_layout_new(context.get()));
-    PangoFontDescription* font = pango_font_description_from_string(style.bold ? "DejaVu Sans Bold" : "DejaVu Sans");
-    pango_font_description_set_absolute_size(font, style.size * PANGO_SCALE);
-    pango_layout_set_font_description(layout.get(), font);
-    pango_font_description_free(font);
+    Layout layout(pango().pango_layout_new(context.get()));
+    PangoFontDescription* font = pango().pango_font_description_from_string(style.bold ? "DejaVu Sans Bold" : "DejaVu Sans");
+    pango().pango_font_description_set_absolute_size(font, style.size * PANGO_SCALE);
+    pango().pango_layout_set_font_description(layout.get(), font);
+    pango().pango_font_description_free(font);
     const std::string shown = shown_text(text);
     // Breaking a text into lines takes the square of its length: what no picture has room for is left out.
     constexpr long most_characters = 2000;
-    const bool cut = g_utf8_strlen(shown.data(), gssize(shown.size())) > most_characters;
-    const auto bytes = cut ? g_utf8_offset_to_pointer(shown.data(), most_characters) - shown.data() : ptrdiff_t(shown.size());
-    pango_layout_set_text(layout.get(), shown.data(), int(bytes));
-    PangoAttrList* attributes = pango_attr_list_new();
-    pango_attr_list_insert(attributes, pango_attr_insert_hyphens_new(FALSE));  // a broken field name must not gain a letter
-    pango_layout_set_attributes(layout.get(), attributes);
-    pango_attr_list_unref(attributes);
+    const bool cut = pango().g_utf8_strlen(shown.data(), gssize(shown.size())) > most_characters;
+    const auto bytes = cut ? pango().g_utf8_offset_to_pointer(shown.data(), most_characters) - shown.data() : ptrdiff_t(shown.size());
+    pango().pango_layout_set_text(layout.get(), shown.data(), int(bytes));
+    PangoAttrList* attributes = pango().pango_attr_list_new();
+    pango().pango_attr_list_insert(attributes, pango().pango_attr_insert_hyphens_new(FALSE));  // a broken field name must not gain a letter
+    pango().pango_layout_set_attributes(layout.get(), attributes);
+    pango().pango_attr_list_unref(attributes);
     if (style.wrap > 0) {
-      pango_layout_set_width(layout.get(), int(style.wrap * PANGO_SCALE));
-      if (style.ellipsize) pango_layout_set_ellipsize(layout.get(), PANGO_ELLIPSIZE_END), pango_layout_set_height(layout.get(), -1);
-      else pango_layout_set_wrap(layout.get(), style.break_words ? PANGO_WRAP_WORD_CHAR : PANGO_WRAP_WORD);
+      pango().pango_layout_set_width(layout.get(), int(style.wrap * PANGO_SCALE));
+      if (style.ellipsize)
+        pango().pango_layout_set_ellipsize(layout.get(), PANGO_ELLIPSIZE_END), pango().pango_layout_set_height(layout.get(), -1);
+      else pango().pango_layout_set_wrap(layout.get(), style.break_words ? PANGO_WRAP_WORD_CHAR : PANGO_WRAP_WORD);
     }
-    if (style.centred) pango_layout_set_alignment(layout.get(), PANGO_ALIGN_CENTER);
+    if (style.centred) pango().pango_layout_set_alignment(layout.get(), PANGO_ALIGN_CENTER);
     return layout;
   }
 };
@@ -108,25 +107,25 @@ struct Overlay::Parts {
 Overlay::Overlay(int width, int height, bool dark_background)
     : width_(width), height_(height), dark_(dark_background), parts_(std::make_unique<Parts>()) {
   Parts& p = *parts_;
-  p.surface.reset(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height));
-  if (cairo_surface_status(p.surface.get()) != CAIRO_STATUS_SUCCESS)
+  p.surface.reset(pango().cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height));
+  if (pango().cairo_surface_status(p.surface.get()) != CAIRO_STATUS_SUCCESS)
     fail_usage(fmt::format("a picture of {} x {} pixels cannot be annotated", width, height), "annotate",
                "at most 32767 along each side are supported");
-  p.cr.reset(cairo_create(p.surface.get()));
-  PangoFontMap* fonts = pango_cairo_font_map_get_default();  // kept by Pango, one per thread: loading fonts is slow
-  p.context.reset(pango_font_map_create_context(fonts));
+  p.cr.reset(pango().cairo_create(p.surface.get()));
+  PangoFontMap* fonts = pango().pango_cairo_font_map_get_default();  // kept by Pango, one per thread: loading fonts is slow
+  p.context.reset(pango().pango_font_map_create_context(fonts));
   require_a_font(p.context.get());
-  pango_cairo_context_set_resolution(p.context.get(), 96);
+  pango().pango_cairo_context_set_resolution(p.context.get(), 96);
   // Nothing that depends on the machine: no hinting, no subpixel order, no rounding to pixels.
-  cairo_font_options_t* options = cairo_font_options_create();
-  cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
-  cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
-  cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
-  pango_cairo_context_set_font_options(p.context.get(), options);
-  cairo_font_options_destroy(options);
-  pango_context_set_round_glyph_positions(p.context.get(), FALSE);
-  pango_context_set_language(p.context.get(), pango_language_from_string("en"));
-  pango_context_set_base_dir(p.context.get(), PANGO_DIRECTION_LTR);
+  cairo_font_options_t* options = pango().cairo_font_options_create();
+  pango().cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
+  pango().cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
+  pango().cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
+  pango().pango_cairo_context_set_font_options(p.context.get(), options);
+  pango().cairo_font_options_destroy(options);
+  pango().pango_context_set_round_glyph_positions(p.context.get(), FALSE);
+  pango().pango_context_set_language(p.context.get(), pango().pango_language_from_string("en"));
+  pango().pango_context_set_base_dir(p.context.get(), PANGO_DIRECTION_LTR);
 }
 
 Overlay::~Overlay() = default;
@@ -134,129 +133,129 @@ Overlay::~Overlay() = default;
 TextExtent Overlay::measure(const std::string& text, const TextStyle& style) const {
   const Layout layout = parts_->layout(text, style);
   PangoRectangle logical;
-  pango_layout_get_extents(layout.get(), nullptr, &logical);
-  return {double(logical.width) / PANGO_SCALE, double(logical.height) / PANGO_SCALE, pango_layout_get_line_count(layout.get())};
+  pango().pango_layout_get_extents(layout.get(), nullptr, &logical);
+  return {double(logical.width) / PANGO_SCALE, double(logical.height) / PANGO_SCALE, pango().pango_layout_get_line_count(layout.get())};
 }
 
 void Overlay::show(const std::string& text, const TextStyle& style, bool halo, Vec3f color) {
   cairo_t* cr = parts_->cr.get();
   const Layout layout = parts_->layout(text, style);
   PangoRectangle logical;
-  pango_layout_get_extents(layout.get(), nullptr, &logical);
+  pango().pango_layout_get_extents(layout.get(), nullptr, &logical);
   // With a wrap width, Pango aligns within that width; move the lines' own box to the corner.
-  cairo_rel_move_to(cr, -double(logical.x) / PANGO_SCALE, 0);
+  pango().cairo_rel_move_to(cr, -double(logical.x) / PANGO_SCALE, 0);
   // As outlines: cached glyph pictures would be set to whole pixels, and small text would look uneven.
-  pango_cairo_layout_path(cr, layout.get());
+  pango().pango_cairo_layout_path(cr, layout.get());
   if (halo) {
     use(cr, rim(), 0.75);
-    cairo_set_line_width(cr, std::max(2.0, style.rim * style.size));
-    cairo_set_line_join(cr, CAIRO_LINE_JOIN_BEVEL);
-    cairo_set_tolerance(cr, 0.3);
-    cairo_stroke_preserve(cr);
-    cairo_set_tolerance(cr, 0.1);
+    pango().cairo_set_line_width(cr, std::max(2.0, style.rim * style.size));
+    pango().cairo_set_line_join(cr, CAIRO_LINE_JOIN_BEVEL);
+    pango().cairo_set_tolerance(cr, 0.3);
+    pango().cairo_stroke_preserve(cr);
+    pango().cairo_set_tolerance(cr, 0.1);
   }
   use(cr, color);
-  cairo_fill(cr);
-  cairo_new_path(cr);
+  pango().cairo_fill(cr);
+  pango().cairo_new_path(cr);
 }
 
 void Overlay::text(const std::string& text, double x, double y, const TextStyle& style, bool halo) {
-  cairo_move_to(parts_->cr.get(), x, y);
+  pango().cairo_move_to(parts_->cr.get(), x, y);
   show(text, style, halo, ink());
 }
 
 void Overlay::colored_text(const std::string& text, double x, double y, const TextStyle& style, Vec3f color) {
-  cairo_move_to(parts_->cr.get(), x, y);
+  pango().cairo_move_to(parts_->cr.get(), x, y);
   show(text, style, true, color);
 }
 
 void Overlay::set_origin(int x, int y) {
-  cairo_identity_matrix(parts_->cr.get());
-  cairo_translate(parts_->cr.get(), x, y);
+  pango().cairo_identity_matrix(parts_->cr.get());
+  pango().cairo_translate(parts_->cr.get(), x, y);
   x_ = x, y_ = y;
 }
 
 void Overlay::keep_clear(const std::vector<Rect>& rects) {
   cairo_t* cr = parts_->cr.get();
-  cairo_reset_clip(cr);
+  pango().cairo_reset_clip(cr);
   for (const Rect& r : rects) {
-    cairo_set_fill_rule(cr, CAIRO_FILL_RULE_EVEN_ODD);
-    cairo_rectangle(cr, -x_, -y_, width_, height_);
-    cairo_rectangle(cr, r.x, r.y, r.width, r.height);
-    cairo_clip(cr);
+    pango().cairo_set_fill_rule(cr, CAIRO_FILL_RULE_EVEN_ODD);
+    pango().cairo_rectangle(cr, -x_, -y_, width_, height_);
+    pango().cairo_rectangle(cr, r.x, r.y, r.width, r.height);
+    pango().cairo_clip(cr);
   }
-  cairo_set_fill_rule(cr, CAIRO_FILL_RULE_WINDING);
+  pango().cairo_set_fill_rule(cr, CAIRO_FILL_RULE_WINDING);
 }
 
 void Overlay::text_upwards(const std::string& text, double x, double y, const TextStyle& style) {
   cairo_t* cr = parts_->cr.get();
-  cairo_save(cr);
-  cairo_translate(cr, x, y + measure(text, style).width);
-  cairo_rotate(cr, -1.57079632679489662);
-  cairo_move_to(cr, 0, 0);
+  pango().cairo_save(cr);
+  pango().cairo_translate(cr, x, y + measure(text, style).width);
+  pango().cairo_rotate(cr, -1.57079632679489662);
+  pango().cairo_move_to(cr, 0, 0);
   show(text, style, true, ink());
-  cairo_restore(cr);
+  pango().cairo_restore(cr);
 }
 
 void Overlay::text_turned(const std::string& text, Vec2 center, double angle, const TextStyle& style, const Vec3f* color) {
   cairo_t* cr = parts_->cr.get();
   const TextExtent e = measure(text, style);
-  cairo_save(cr);
-  cairo_translate(cr, center.x, center.y);
-  cairo_rotate(cr, -angle);
-  cairo_move_to(cr, -0.5 * e.width, -0.5 * e.height);
+  pango().cairo_save(cr);
+  pango().cairo_translate(cr, center.x, center.y);
+  pango().cairo_rotate(cr, -angle);
+  pango().cairo_move_to(cr, -0.5 * e.width, -0.5 * e.height);
   show(text, style, true, color ? *color : ink());
-  cairo_restore(cr);
+  pango().cairo_restore(cr);
 }
 
 void Overlay::line(Vec2 from, Vec2 to, double width, double alpha) {
   cairo_t* cr = parts_->cr.get();
   use(cr, ink(), alpha);
-  cairo_set_line_width(cr, width);
-  cairo_move_to(cr, from.x, from.y);
-  cairo_line_to(cr, to.x, to.y);
-  cairo_stroke(cr);
+  pango().cairo_set_line_width(cr, width);
+  pango().cairo_move_to(cr, from.x, from.y);
+  pango().cairo_line_to(cr, to.x, to.y);
+  pango().cairo_stroke(cr);
 }
 
 void Overlay::colored_line(Vec2 from, Vec2 to, double width, Vec3f color) {
   cairo_t* cr = parts_->cr.get();
-  cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
+  pango().cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
   for (const auto& [w, c, alpha] : {std::tuple{width + 2, rim(), 0.6}, std::tuple{width, color, 1.0}}) {
     use(cr, c, alpha);
-    cairo_set_line_width(cr, w);
-    cairo_move_to(cr, from.x, from.y);
-    cairo_line_to(cr, to.x, to.y);
-    cairo_stroke(cr);
+    pango().cairo_set_line_width(cr, w);
+    pango().cairo_move_to(cr, from.x, from.y);
+    pango().cairo_line_to(cr, to.x, to.y);
+    pango().cairo_stroke(cr);
   }
-  cairo_set_line_cap(cr, CAIRO_LINE_CAP_BUTT);
+  pango().cairo_set_line_cap(cr, CAIRO_LINE_CAP_BUTT);
 }
 
 void Overlay::frame(const Rect& r, double alpha) {
   cairo_t* cr = parts_->cr.get();
   use(cr, ink(), alpha);
-  cairo_set_line_width(cr, 1);
-  cairo_rectangle(cr, r.x, r.y, r.width, r.height);
-  cairo_stroke(cr);
+  pango().cairo_set_line_width(cr, 1);
+  pango().cairo_rectangle(cr, r.x, r.y, r.width, r.height);
+  pango().cairo_stroke(cr);
 }
 
 void Overlay::polygon(const std::vector<Vec2>& points, Vec3f color, bool outlined) {
   cairo_t* cr = parts_->cr.get();
-  for (const Vec2& p : points) cairo_line_to(cr, p.x, p.y);
-  cairo_close_path(cr);
+  for (const Vec2& p : points) pango().cairo_line_to(cr, p.x, p.y);
+  pango().cairo_close_path(cr);
   use(cr, color);
-  outlined ? cairo_fill_preserve(cr) : cairo_fill(cr);
+  outlined ? pango().cairo_fill_preserve(cr) : pango().cairo_fill(cr);
   if (!outlined) return;
   use(cr, ink(), 0.6);
-  cairo_set_line_width(cr, 1);
-  cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
-  cairo_stroke(cr);
+  pango().cairo_set_line_width(cr, 1);
+  pango().cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
+  pango().cairo_stroke(cr);
 }
 
 void Overlay::put_on(Image& image) const {
   cairo_surface_t* surface = parts_->surface.get();
-  cairo_surface_flush(surface);
-  const uint8_t* data = cairo_image_surface_get_data(surface);
-  const size_t stride = size_t(cairo_image_surface_get_stride(surface));
+  pango().cairo_surface_flush(surface);
+  const uint8_t* data = pango().cairo_image_surface_get_data(surface);
+  const size_t stride = size_t(pango().cairo_image_surface_get_stride(surface));
   const bool alpha = image.channels % 2 == 0;
   const int colors = image.channels - alpha;
   parallel_for(size_t(height_), 32, [&](size_t begin, size_t end) {

@@ -39,6 +39,9 @@ struct TextExtent {
 /// The text of a number for readers: a real minus sign, and "2e-6" with the power of ten raised.
 std::string typeset_number(const std::string& text);
 
+/// Loads a library that has what sets text (Pango; the first overlay does). Throws Error(internal) that names the package to install.
+void load_text_library(const std::string& name);
+
 class Overlay {
  public:
   /// Throws Error(internal) naming the package when no font is installed.
