@@ -31,7 +31,8 @@ struct RawText {
 struct FlagName {
   std::string_view param, flag, about = {};  // about: of a switch
 };
-constexpr FlagName reading_flags[] = {{"times", "series-times"}, {"big_endian", ""}, {"piece", ""}, {"pieces", ""}, {"ghost_levels", ""}};
+constexpr FlagName reading_flags[] = {
+    {"format", "input-format"}, {"times", "series-times"}, {"big_endian", ""}, {"piece", ""}, {"pieces", ""}, {"ghost_levels", ""}};
 constexpr FlagName writing_flags[] = {{"binary", "!ascii", "Write numbers as text."}};
 
 std::string flag_of(std::string_view param, std::span<const FlagName> names) {

@@ -303,7 +303,7 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
     context.warn("the picture is empty: there are no points to show");
   if (!file.show.empty()) {
     const std::string& first = shown_step(file, 0);
-    if (look.shows.empty()) look.camera = choose_view(shown[0].box, extension_of(origin_of(file, first)), shown[0].patient);
+    if (look.shows.empty()) look.camera = choose_view(shown[0].box, extension_of_origin(file, first), shown[0].patient);
     if (pose) picture.notes.push_back(face_unstated(*pose, look.camera));
     face_cut(file, first, look.camera);
     face_slab(file, first, shown[0].box, look.camera);

@@ -167,7 +167,8 @@ void add_shows(const Look& look, PipelineFile& file, std::vector<PipelineFile::S
 Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file, std::vector<PipelineFile::Show>& shows,
                 std::vector<std::string>& notes, Context& context) {
   std::string end = wanted.of;
-  const std::string origin = origin_of(file, end), stated = word_value(wanted.words, "field").value_or("");
+  const std::string origin = origin_of(file, end), extension = extension_of_origin(file, end),
+                    stated = word_value(wanted.words, "field").value_or("");
   leave_out_sets(file, end, data, stated.empty() ? std::vector<std::string>() : std::vector{stated}, notes, context);
   if (const auto* table = std::get_if<TablePtr>(&data))
     if (const auto curve = look_at_table(**table, stated)) {
@@ -192,13 +193,13 @@ Look choose_for(const PipelineFile::Show& wanted, Data data, PipelineFile& file,
   std::vector<std::string> coloring = wanted.words;
   if (field != stated) coloring.push_back("field=" + field);
   PipelineFile::Step* reading = parts.size() > 1 ? nullptr : plain_reading(file, end);
-  Look look = choose_look(*largest, field, extension_of(origin), reading != nullptr);
+  Look look = choose_look(*largest, field, extension, reading != nullptr);
   if (!look.source.empty()) reading->operation = look.source;
   // What is seen of a volume was told for the scale that is chosen.
   if (states_scale(wanted))
     if (const size_t at = look.reason.find("shown as a volume;"); at != look.reason.npos) look.reason.resize(look.reason.find(';', at));
   if (const Field* u = displacement_of(*largest)) look.reason += fmt::format("; -f warp shows its shape displaced by '{}'", u->name);
-  face_detail(look, parts, extension_of(origin), context);
+  face_detail(look, parts, extension, context);
   cut_open(look, largest, field, context);
   if (parts.size() == 1) show_flow(look, largest, field, context);
   cut_to_crowd(data, field, look);
