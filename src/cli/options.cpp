@@ -243,7 +243,7 @@ void finish_raw(const RawText& raw, Options& o) {
         for (const std::string& n : option->get_lnames()) names.push_back("--" + n);
     }
     const std::string same = same_word(word, names);
-    if (const std::string said = said_here(word, names); same.empty() && said.starts_with("here"))
+    if (const std::string said = known_elsewhere(word); same.empty() && !said.empty())
       fail_usage(fmt::format("unknown argument '{}'", word), "sightglass " + command.get_name(), said);
     const std::string near = same.empty() ? nearest_name(word, names) : same;
     fail_usage(fmt::format("unknown argument '{}'", word), "sightglass " + command.get_name(),
