@@ -28,6 +28,7 @@
 #include "io/formats.h"
 #include "pipeline/film/film.h"
 #include "pipeline/graph/slabs.h"
+#include "pipeline/graph/step_report.h"
 #include "pipeline/picture/picture.h"
 #include "pipeline/picture/picture_cost.h"
 #include "pipeline/picture/picture_sets.h"
@@ -142,7 +143,9 @@ int render_to(PipelineFile& file, const std::string& output, PictureOptions opti
     if (std::fwrite(png.data(), 1, png.size(), stdout) != png.size()) fail_data("cannot write to standard output");
     return 0;
   }
+  const StopWatch watch;
   write_image(output, picture.image);
+  context.log(LogLevel::debug, fmt::format("writing '{}': {}", output, watch.text()));
   if (!o.quiet) {
     std::string line = printable(output);
     if (!picture.drafts.empty()) {
@@ -321,7 +324,9 @@ int run_convert(const Options& given, Context& context) {
     leave_out_sets(file, last, data, {}, notes, context);
     for (const std::string& note : notes) context.info(note);
   }
+  const StopWatch watch;
   write_data(o.output, in_pieces(data, write.pieces, context), write, context);
+  context.log(LogLevel::debug, fmt::format("writing '{}': {}", o.output, watch.text()));
   if (!o.quiet)
     for_each_dataset(data, [&](const std::string& part, const DatasetPtr& d) {
       say(fmt::format("{}: {}{}\n", printable(o.output), part.empty() ? "" : printable(part) + ": ", summary(*d)));
