@@ -7,6 +7,7 @@
 
 #include "base/text/text.h"
 #include "base/text/utf8.h"
+#include "cli/info_names.h"
 #include "data/lattice.h"
 #include "data/patient/patient_frame.h"
 
@@ -63,6 +64,7 @@ std::string dataset_json(const Dataset& d, bool quick, const std::vector<double>
                      association_name(f.association), element_name(f.array.type()), f.components());
     if (f.association == Association::whole) r += fmt::format(",\"tuples\":{}", f.array.count());
     if (!f.unit.empty()) r += ",\"unit\":" + json_string(f.unit);
+    r += names_json(d, f);
     if (!quick) {
       const FieldStats& s = d.stats(f);
       r += fmt::format(",\"range\":{},\"nan\":{}", range_json(s), s.nan);
@@ -124,7 +126,7 @@ std::string field_line(const Dataset& d, const Field& f, size_t width, bool quic
     if (s.nan) line += fmt::format("; {} NaN", s.nan);
     if (s.infinite) line += fmt::format("; {} infinite", s.infinite);
   }
-  return line + "\n";
+  return line + names_text(d, f) + "\n";
 }
 
 std::string dataset_text(const Dataset& d, const std::string& name, bool quick) {
