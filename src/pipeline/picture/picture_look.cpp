@@ -225,9 +225,30 @@ bool surrounds(const Box3& outer, const Box3& inner) {
   return true;
 }
 
+// "a.vtp", "a.vtp and b.vtp", "a.vtp, b.vtp and 9 others".
+std::string names_text(const std::vector<std::string>& names) {
+  if (names.size() == 1) return names[0];
+  if (names.size() == 2) return fmt::format("{} and {}", names[0], names[1]);
+  return fmt::format("{}, {} and {} other{}", names[0], names[1], names.size() - 2, names.size() == 3 ? "" : "s");
+}
+
+// Inputs of which the same is said, in the order of the first of each.
+class ByNote {
+ public:
+  void add(const std::string& note, const std::string& name) {
+    const auto at = std::find_if(all_.begin(), all_.end(), [&](const auto& a) { return a.first == note; });
+    (at == all_.end() ? all_.emplace_back(note, std::vector<std::string>()) : *at).second.push_back(name);
+  }
+  const auto& all() const { return all_; }
+
+ private:
+  std::vector<std::pair<std::string, std::vector<std::string>>> all_;
+};
+
 // No input hides another: the surface of one that surrounds an earlier or a smaller one is drawn see-through.
 void see_through(const std::vector<Chosen>& inputs, std::vector<PipelineFile::Show>& shows, std::vector<std::string>& notes) {
   constexpr const char* faint = "opacity=0.35";
+  ByNote by_inner;
   for (size_t outer = 0; outer < inputs.size(); ++outer)
     for (size_t inner = 0; inner < inputs.size(); ++inner) {
       const Chosen &o = inputs[outer], &i = inputs[inner];
@@ -236,8 +257,11 @@ void see_through(const std::vector<Chosen>& inputs, std::vector<PipelineFile::Sh
       for (size_t s = o.begin; s < o.end; ++s)
         if (find_show(shows[s].kind).is<SurfaceShow>() && !word_value(shows[s].words, "opacity"))
           shows[s].words.push_back(faint), changed = true;
-      if (changed) notes.push_back(fmt::format("{} surrounds {}: drawn with {}, so that both are seen", o.name, i.name, faint));
+      if (changed) by_inner.add(i.name, o.name);
     }
+  for (const auto& [inner, outer] : by_inner.all())
+    notes.push_back(fmt::format("{} {} {}: drawn with {}, so that {} are seen", names_text(outer),
+                                outer.size() == 1 ? "surrounds" : "surround", inner, faint, outer.size() == 1 ? "both" : "all"));
 }
 
 // Several views of one thing: where nothing is said of the view, and each gets enough pixels.
@@ -262,6 +286,7 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const Graph
   Look first;
   std::vector<PipelineFile::Show> shows;
   std::vector<Chosen> inputs;
+  ByNote reasons;
   for (size_t i = 0; i < file.show.size(); ++i) {
     PipelineFile::Show wanted = file.show[i];
     if (wanted.of.empty()) wanted.of = built.nodes.back().first;  // steps may follow
@@ -274,9 +299,10 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const Graph
     for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { input.box.add(d->bounds()); });
     const Look look = choose_for(wanted, data, file, shows, notes, context);
     input.end = shows.size();
-    notes.push_back(open > 1 ? fmt::format("{}: {}", input.name, look.reason) : look.reason);
+    reasons.add(look.reason, input.name);
     if (first.shows.empty()) first = look;
   }
+  for (const auto& [reason, names] : reasons.all()) notes.push_back(open > 1 ? fmt::format("{}: {}", names_text(names), reason) : reason);
   const StatedPicture stated = stated_in(file);
   if (!in_panels(stated.picture)) see_through(inputs, shows, notes);
   if (shows.size() == 1) {
