@@ -44,7 +44,9 @@ Image swatch(const Colormap& map, const LightnessReport& report) {
 std::string verdict(const Colormap& map, const LightnessReport& r) {
   switch (map.kind) {
     case MapKind::sequential:
-      return r.falls_float == 0 ? "lightness rises throughout: order can be seen without a legend" : "lightness falls in places";
+      if (r.falls_float == 0) return "lightness rises throughout: order can be seen without a legend";
+      return r.falls_float + 1 == int(r.lightness.size()) ? "lightness falls throughout: order can be seen without a legend"
+                                                          : "lightness falls in places";
     case MapKind::diverging: return "lightness rises to the middle and falls again: distance from the middle can be seen";
     case MapKind::cyclic: return "starts and ends with the same colour: for angles and phases";
     case MapKind::categorical: return "unordered: one colour per label";

@@ -7,7 +7,7 @@
 
 #include "base/text/text.h"
 #include "base/text/utf8.h"
-#include "data/fields/label_names.h"
+#include "cli/info_names.h"
 #include "data/lattice.h"
 #include "data/patient/patient_frame.h"
 
@@ -64,6 +64,7 @@ std::string dataset_json(const Dataset& d, bool quick, const std::vector<double>
                      association_name(f.association), element_name(f.array.type()), f.components());
     if (f.association == Association::whole) r += fmt::format(",\"tuples\":{}", f.array.count());
     if (!f.unit.empty()) r += ",\"unit\":" + json_string(f.unit);
+    r += names_json(d, f);
     if (!quick) {
       const FieldStats& s = d.stats(f);
       r += fmt::format(",\"range\":{},\"nan\":{}", range_json(s), s.nan);
@@ -104,22 +105,6 @@ std::string range_text(const Range& r) {
   return r.lo == r.hi ? short_number(r.lo) + " (constant)" : short_number(r.lo) + " .. " + short_number(r.hi);
 }
 
-// What the numbers of labels stand for, as far as they occur: "truck", or "1 truck, 2 glass, ...".
-std::string names_text(const Dataset& d, const Field& f, bool quick) {
-  constexpr size_t most_named = 8;
-  for (const auto& [key, text] : d.notes()) {
-    if (key != "labels of " + f.name) continue;
-    const Range r = quick ? Range{-HUGE_VAL, HUGE_VAL} : d.range(f);
-    std::vector<std::string> named;
-    for (const auto& [number, word] : names_in_note(text))
-      if (number >= r.lo && number <= r.hi) named.push_back(r.lo == r.hi ? printable(word) : short_number(number) + " " + printable(word));
-    std::string all;
-    for (size_t i = 0; i < std::min(named.size(), most_named); ++i) all += (i ? ", " : "") + named[i];
-    return named.size() > most_named ? fmt::format("{}, ... ({} names)", all, named.size()) : all;
-  }
-  return "";
-}
-
 std::string field_line(const Dataset& d, const Field& f, size_t width, bool quick) {
   std::string type(element_name(f.array.type()));
   if (f.components() > 1) type += fmt::format(" x{}", f.components());
@@ -141,8 +126,7 @@ std::string field_line(const Dataset& d, const Field& f, size_t width, bool quic
     if (s.nan) line += fmt::format("; {} NaN", s.nan);
     if (s.infinite) line += fmt::format("; {} infinite", s.infinite);
   }
-  if (const std::string names = names_text(d, f, quick); !names.empty()) line += (quick ? "  " : "; ") + names;
-  return line + "\n";
+  return line + names_text(d, f) + "\n";
 }
 
 std::string dataset_text(const Dataset& d, const std::string& name, bool quick) {

@@ -51,6 +51,9 @@ std::string other_names_list() {
     const auto some = all.begin() + std::ptrdiff_t(std::min<size_t>(all.size(), 4));
     r += fmt::format("{:<58} {}\n", fmt::format("{}", fmt::join(all.begin(), some, ", ")), n.here);
   }
+  r += "\nno operation\n";
+  for (const MissingName& n : missing_names())
+    r += fmt::format("{:<58} {}\n", words(n.words)[0], n.nearest.empty() ? "-" : fmt::format("nearest: {}", n.nearest));
   return r;
 }
 

@@ -11,6 +11,7 @@
 #include "base/file/file.h"
 #include "base/schema/other_words.h"
 #include "base/text/text.h"
+#include "cli/hints/loose_words.h"
 #include "io/file_series.h"
 #include "io/options.h"
 #include "pipeline/film/film_params.h"
@@ -31,7 +32,8 @@ struct RawText {
 struct FlagName {
   std::string_view param, flag, about = {};  // about: of a switch
 };
-constexpr FlagName reading_flags[] = {{"times", "series-times"}, {"big_endian", ""}, {"piece", ""}, {"pieces", ""}, {"ghost_levels", ""}};
+constexpr FlagName reading_flags[] = {
+    {"format", "input-format"}, {"times", "series-times"}, {"big_endian", ""}, {"piece", ""}, {"pieces", ""}, {"ghost_levels", ""}};
 constexpr FlagName writing_flags[] = {{"binary", "!ascii", "Write numbers as text."}};
 
 std::string flag_of(std::string_view param, std::span<const FlagName> names) {
@@ -241,7 +243,7 @@ void finish_raw(const RawText& raw, Options& o) {
         for (const std::string& n : option->get_lnames()) names.push_back("--" + n);
     }
     const std::string same = same_word(word, names);
-    if (const std::string said = said_here(word, names); same.empty() && said.starts_with("here"))
+    if (const std::string said = known_elsewhere(word); same.empty() && !said.empty())
       fail_usage(fmt::format("unknown argument '{}'", word), "sightglass " + command.get_name(), said);
     const std::string near = same.empty() ? nearest_name(word, names) : same;
     fail_usage(fmt::format("unknown argument '{}'", word), "sightglass " + command.get_name(),
@@ -365,15 +367,6 @@ void declare(const Declaration& d, CLI::App& a, Options& o, RawText& raw) {
   d.declare(a, o, raw);
 }
 
-// `-f contour values=3` without quotes: the second word arrives as a file.
-void refuse_loose_word(const std::string& input, Command command) {
-  const size_t equals = input.find('=');
-  if (equals == input.npos || input.find('/') < equals || names_series(input) || file_exists(input)) return;
-  if (command != Command::render && command != Command::convert && command != Command::info) return;
-  fail_usage(fmt::format("there is no file '{}'", input), fmt::format("sightglass {}", word_of(command)),
-             fmt::format("words of an operation or a way to show stand in quotes with it, like -f 'contour {}'", input));
-}
-
 // `sightglass FILE ...` is a picture of it. A name with a dot or a slash is no command that was mistyped.
 bool names_input(const std::string& word) {
   return word == "-" || (!word.starts_with('-') && (word.find_first_of("./") != word.npos || file_exists(word)));
@@ -435,7 +428,8 @@ Options parse_options(int argc, char** argv) {
   finish_raw(raw, o);
   for (std::string& input : o.inputs)
     if (input == "-") input = "/dev/stdin";
-  for (const std::string& input : o.inputs) refuse_loose_word(input, *command);
+  if (*command == Command::render || *command == Command::convert || *command == Command::info)
+    refuse_loose_words({argv + words_from, argv + argc}, o.inputs, std::string(word_of(*command)));
   if (o.series && o.inputs.empty()) fail_usage("names no files", "--series", "write e.g. --series flow_*.vtk");
   if (o.series) o.inputs = {series_path(std::move(o.inputs), true)};
   o.command = *command;

@@ -17,6 +17,7 @@
 #include "base/text/utf8.h"
 #include "cli/chain.h"
 #include "cli/cli.h"
+#include "cli/hints/step_files.h"
 #include "cli/info.h"
 #include "cli/say.h"
 #include "color/legend_content.h"
@@ -27,6 +28,7 @@
 #include "io/formats.h"
 #include "pipeline/film/film.h"
 #include "pipeline/graph/slabs.h"
+#include "pipeline/graph/step_report.h"
 #include "pipeline/picture/picture.h"
 #include "pipeline/picture/picture_cost.h"
 #include "pipeline/picture/picture_sets.h"
@@ -62,17 +64,6 @@ std::string stem_of(const std::string& path) {
   if (name.empty() || name[0] == '.') name = "series" + name;
   const size_t dot = name.rfind('.');
   return dot == std::string::npos || dot == 0 ? name : name.substr(0, dot);
-}
-
-// Files of one name but for a number, as a shell makes them of a pattern without quotes.
-bool look_like_steps(const std::vector<std::string>& paths) {
-  constexpr size_t few = 3;
-  const auto without_digits = [](std::string s) {
-    std::erase_if(s, [](char c) { return c >= '0' && c <= '9'; });
-    return s;
-  };
-  return paths.size() >= few &&
-         std::all_of(paths.begin(), paths.end(), [&](const std::string& p) { return without_digits(p) == without_digits(paths[0]); });
 }
 
 // The name with the input's in the place of {name}.
@@ -152,7 +143,9 @@ int render_to(PipelineFile& file, const std::string& output, PictureOptions opti
     if (std::fwrite(png.data(), 1, png.size(), stdout) != png.size()) fail_data("cannot write to standard output");
     return 0;
   }
+  const StopWatch watch;
   write_image(output, picture.image);
+  context.log(LogLevel::debug, fmt::format("writing '{}': {}", output, watch.text()));
   if (!o.quiet) {
     std::string line = printable(output);
     if (!picture.drafts.empty()) {
@@ -198,10 +191,9 @@ int render_into(PipelineFile file, const FilmParams& film, const PictureOptions&
 }  // namespace
 
 int run_render(const Options& o, Context& context) {
-  if (look_like_steps(o.inputs) && o.filters.empty() && o.layout.empty())
-    context.info(
-        fmt::format("{} files whose names differ by a number are drawn together: --series FILES... takes them as steps of one series",
-                    o.inputs.size()));
+  if (const std::string series = as_series(o.inputs); !series.empty() && o.layout.empty())
+    context.info(fmt::format("{} files whose names differ by numbers are drawn together in one picture; as steps of one series: {}",
+                             o.inputs.size(), series));
   PipelineFile file = pipeline_of(o);
   PictureOptions options;
   if (!o.field.empty()) options.coloring.push_back("field=" + o.field);
@@ -307,7 +299,14 @@ int run_convert(const Options& given, Context& context) {
   Options o = given;
   if (!o.inputs.empty()) o.output = output_name(o.output, stem_of(o.inputs[0]));
   PipelineFile file = pipeline_of(o);
-  if (o.inputs.size() > 1) fail_usage("converts one file at a time", "sightglass convert");
+  if (o.inputs.size() > 1) {
+    const std::string series = as_series(o.inputs);
+    fail_usage(
+        "converts one file at a time", "sightglass convert",
+        fmt::format("each by itself: for f in FILES; do sightglass convert \"$f\" -o '{{name}}.{}'; done{}", extension_of(given.output),
+                    series.empty() ? "; one mesh of all: -f 'append with=FILE'"
+                                   : fmt::format("; one step of the series: --step K and {}", series)));
+  }
   if (o.explain) {
     print_explanation(file);
     return 0;
@@ -325,7 +324,9 @@ int run_convert(const Options& given, Context& context) {
     leave_out_sets(file, last, data, {}, notes, context);
     for (const std::string& note : notes) context.info(note);
   }
+  const StopWatch watch;
   write_data(o.output, in_pieces(data, write.pieces, context), write, context);
+  context.log(LogLevel::debug, fmt::format("writing '{}': {}", o.output, watch.text()));
   if (!o.quiet)
     for_each_dataset(data, [&](const std::string& part, const DatasetPtr& d) {
       say(fmt::format("{}: {}{}\n", printable(o.output), part.empty() ? "" : printable(part) + ": ", summary(*d)));

@@ -12,6 +12,9 @@
 #include "base/text/text.h"
 #include "color/map_construction.h"
 #include "color/map_files/colormap_file.h"
+#include "color/maps/brewer_maps.h"
+#include "color/maps/maps_elsewhere.h"
+#include "color/maps/segment_maps.h"
 #include "color/published_maps.h"
 
 namespace sg {
@@ -101,10 +104,26 @@ constexpr Entry entries[] = {
     {"rainbow", MapKind::unsafe, rainbow,
      "HSV hues from blue to red; its lightness rises and falls and shows edges that are not in the data."},
 };
-constexpr size_t own = std::size(entries);
-
-size_t count() { return own + published_maps().size(); }
-std::string_view name_of(size_t i) { return i < own ? entries[i].name : published_maps()[i - own].name; }
+// All built-in maps by number: ours, then those of published colours and of published stops.
+struct BuiltIn {
+  std::string_view name;
+  const Entry* own = nullptr;
+  const PublishedMap* published = nullptr;
+  const SegmentMap* segments = nullptr;
+};
+const std::vector<BuiltIn>& built_in() {
+  static const std::vector<BuiltIn> all = [] {
+    std::vector<BuiltIn> maps;
+    for (const Entry& e : entries) maps.push_back({e.name, &e});
+    for (const PublishedMap& m : published_maps()) maps.push_back({m.name, nullptr, &m});
+    for (const SegmentMap& m : segment_maps()) maps.push_back({m.name, nullptr, nullptr, &m});
+    for (const PublishedMap& m : brewer_maps()) maps.push_back({m.name, nullptr, &m});
+    return maps;
+  }();
+  return all;
+}
+size_t count() { return built_in().size(); }
+std::string_view name_of(size_t i) { return built_in()[i].name; }
 
 // The map of that name, in any case; count() when there is none.
 size_t index_of(std::string_view name) {
@@ -113,32 +132,22 @@ size_t index_of(std::string_view name) {
   return i;
 }
 
-/// What people know by other names, and the nearest of ours.
-constexpr std::pair<std::string_view, std::string_view> elsewhere[] = {
-    {"parula", "sight"},      {"hot", "ember"},  {"fire", "ember"},   {"ocean", "ice"},    {"blues", "ice"},
-    {"grey", "gray"},         {"greys", "gray"}, {"binary", "gray"},  {"bwr", "coolwarm"}, {"seismic", "coolwarm"},
-    {"prgn", "purple_green"}, {"hsv", "phase"},  {"tab10", "labels"}, {"tab20", "labels"}, {"glasbey", "labels"},
-};
-
 /// Each built on first use: a picture needs one map.
 const Colormap& built(size_t i) {
   static std::vector<std::once_flag> once(count());
   static std::vector<Colormap> maps(count());
   std::call_once(once[i], [i] {
-    if (i < own) {
-      maps[i] = {entries[i].name, entries[i].kind, entries[i].about, entries[i].make(), {}};
-    } else {
-      const PublishedMap& m = published_maps()[i - own];
-      maps[i] = {std::string(m.name), m.kind, std::string(m.about), colors_of(m), {}};
-    }
+    const BuiltIn& b = built_in()[i];
+    if (b.own) maps[i] = {b.own->name, b.own->kind, b.own->about, b.own->make(), {}};
+    else if (b.segments) maps[i] = colormap_of(*b.segments);
+    else maps[i] = {std::string(b.name), b.published->kind, std::string(b.published->about), colors_of(*b.published), {}};
   });
   return maps[i];
 }
 
 [[noreturn]] void fail_unknown(std::string_view name) {
-  for (const auto& [theirs, ours] : elsewhere)
-    if (to_lower(name) == theirs || to_lower(name) == std::string(theirs) + "_r")
-      fail_usage(fmt::format("colour map '{}' is not built in", name), "colour map", fmt::format("the nearest built-in one is '{}'", ours));
+  if (const std::string near = nearest_map(name); !near.empty())
+    fail_usage(fmt::format("colour map '{}' is not built in", name), "colour map", fmt::format("the nearest built-in one is '{}'", near));
   std::vector<std::string> names;
   for (size_t i = 0; i < count(); ++i) names.emplace_back(name_of(i));
   const bool reversed = name.size() > 2 && name.ends_with("_r");

@@ -179,7 +179,7 @@ bool own_times(Steps& s, bool order, const ReadOptions& options, Context& contex
 std::shared_ptr<const Steps> steps_of(const std::string& path, ReadOptions options, Context& context) {
   static std::mutex mutex;
   static std::map<std::string, std::shared_ptr<const Steps>> known;
-  const std::string key = path + '\n' + options.times;
+  const std::string key = path + '\n' + options.times + '\n' + options.format;
   auto steps = std::make_shared<Steps>();
   steps->files = series_files(path);
   steps->stamps = stamps_of(steps->files);

@@ -18,6 +18,7 @@
 #include "io/options.h"
 #include "io/plugin.h"
 #include "io/reading_budget.h"
+#include "io/stated_format.h"
 #include "io/y_up.h"
 
 namespace sg {
@@ -31,6 +32,11 @@ constexpr Format reads_with(void (*describe)(Schema&, ReadOptions&), Format f) {
 }
 constexpr Format writes_with(void (*describe)(Schema&, WriteOptions&), Format f) {
   f.describe_write = describe;
+  return f;
+}
+
+constexpr Format known_unnamed(bool (*recognize)(std::span<const std::byte>), Format f) {
+  f.recognize = recognize;
   return f;
 }
 
@@ -83,9 +89,10 @@ const Format* raw_format() {
   return nullptr;
 }
 
-const Format& format_of_folder(const std::string& path) {
+const Format& format_of_folder(const std::string& path, const ReadOptions& options) {
   for (const Format& f : formats())
-    if (f.sniff_folder && f.sniff_folder(path)) return f;
+    if (f.sniff_folder && (options.format.empty() || is_called(f, options.format)) && f.sniff_folder(path)) return f;
+  if (!options.format.empty()) fail_data(fmt::format("is stated to be {}, but is a folder of another kind", options.format), path);
   fail_data("is a folder of unknown kind", path,
             "supported folders: DICOM slices, OpenFOAM cases, AMReX plotfiles, Zarr images, stacks of pictures");
 }
@@ -96,6 +103,7 @@ const Format& format_of_file(const std::string& path, const ReadOptions& options
     for (const Format& f : formats())
       if ((f.honours & may_be_empty) && has_extension(f, path)) return f;
   if (file.size() == 0) fail_data("is empty", path, "a data file has at least a header");
+  if (!options.format.empty()) return stated_format(options.format, {file.data(), file.size()}, path);
   if (options.raw_dims[0] > 0) return *raw_format();
   const std::span<const std::byte> head(file.data(), std::min<size_t>(file.size(), 4096));
   const Format* found = nullptr;
@@ -110,14 +118,18 @@ const Format& format_of_file(const std::string& path, const ReadOptions& options
   for (const Format& f : formats())
     if (f.read && !f.sniff && !f.sniff_file && has_extension(f, path)) return f;
   for (const Format& f : formats())
-    if (f.read && has_extension(f, path)) fail_data(fmt::format("is named like {}, but its content is not", f.name), path);
-  fail_data("has an unknown format", path, "supported: " + known_extensions(false) + "; for a raw brick give --dims and --type");
+    if (f.read && has_extension(f, path))
+      fail_data(fmt::format("is named like {}, but its content is not", f.name), path, recognized_hint({file.data(), file.size()}));
+  if (const Format* f = recognized({file.data(), file.size()})) return *f;
+  fail_data("has an unknown format", path,
+            fmt::format("supported: {}; name it with format=EXTENSION (--input-format); for a raw brick give --dims and --type",
+                        known_extensions(false)));
 }
 
 const Format& format_of(std::string& path, const ReadOptions& options) {
   while (path.size() > 1 && path.back() == '/') path.pop_back();
   check_may_read(path);
-  return is_folder(path) ? format_of_folder(path) : format_of_file(path, options);
+  return is_folder(path) ? format_of_folder(path, options) : format_of_file(path, options);
 }
 
 /// Runs f(format, path); errors without a location get the path.
@@ -163,7 +175,9 @@ Data read_data(const std::string& path, const ReadOptions& options, Context& con
   if (is_lent(path)) return cropped(read_lent(path, options, context), options.region);
   if (names_series(path)) return read_of_series(path, options, context);
   return with_format(path, options, [&](const Format& f, const std::string& at) {
-    const Data data = map_datasets(read_unchanged(f, at, options, context), with_known_looks);
+    ReadOptions inside = options;
+    inside.format.clear();  // what the file names may be of others
+    const Data data = map_datasets(read_unchanged(f, at, inside, context), with_known_looks);
     return f.honours & honours_region ? data : cropped(data, options.region);
   });
 }

@@ -35,6 +35,13 @@ void write_obj(const std::string& path, const Data& data, const WriteOptions& op
 Data read_csv(const std::string& path, const ReadOptions& options, Context& context);
 void write_csv(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
 
+// Of files whose name says nothing (Format::recognize).
+bool looks_like_stl(std::span<const std::byte> whole);
+bool looks_like_obj(std::span<const std::byte> whole);
+bool looks_like_csv(std::span<const std::byte> whole);
+bool looks_like_json(std::span<const std::byte> whole);
+bool looks_like_gltf(std::span<const std::byte> whole);
+
 bool sniff_geojson(std::span<const std::byte> head);
 bool sniff_whole_geojson(std::span<const std::byte> whole);
 Data read_geojson(const std::string& path, const ReadOptions& options, Context& context);

@@ -36,6 +36,7 @@ constexpr auto enum_words(HeaderLine) {
 
 /// What a reader may leave out. It may always return more than requested; read_data() then cuts what it can (see Format::honours).
 struct ReadOptions {
+  std::string format;                       ///< an extension or the name of a format; "" = by content, then by the file's name
   std::vector<std::string> fields;          ///< names to load; empty = all. Readers may skip the bytes of the others.
   bool header_only = false;                 ///< no field values needed: readers may leave fields out that cost reading
   std::optional<double> time;               ///< of a series: the step nearest to this time
@@ -116,9 +117,12 @@ struct Format {
   /// Declare the options of this format besides the common ones (io/options.h); null = none.
   void (*describe_read)(Schema& s, ReadOptions& options) = nullptr;
   void (*describe_write)(Schema& s, WriteOptions& options) = nullptr;
+  /// Content test for files whose name says nothing (standard input); asked last, as what it looks for is no magic number. `whole` is
+  /// mapped: touch little of it.
+  bool (*recognize)(std::span<const std::byte> whole) = nullptr;
 };
 std::span<const Format> formats();
-/// The format of a file or folder, by content, then by extension. Throws Error(data) when none knows it.
+/// The format of a file or folder: the stated one, else by content, then by extension. Throws Error(data) when none knows it.
 const Format& find_format(const std::string& path, const ReadOptions& options);
 /// The format that write_data() takes for a file of this name. Throws Error(usage) for an extension that no writer has.
 const Format& format_to_write(const std::string& path);

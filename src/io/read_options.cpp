@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/text/text.h"
 #include "io/options.h"
+#include "io/stated_format.h"
 
 namespace sg {
 
@@ -58,6 +59,11 @@ void describe_path(Schema& s, ReadParams& p) {
       .required();
 }
 
+void describe_format(Schema& s, ReadOptions& p) {
+  s("format", p.format,
+    "Format of the file: one of its extensions (obj, csv, nii.gz) or its name; default: detected from the content, then the file's name.");
+}
+
 void describe_fields(Schema& s, ReadOptions& p) { s("fields", p.fields, "Fields to load; default: those needed."); }
 
 void describe_parts(Schema& s, ReadOptions& p) {
@@ -90,6 +96,7 @@ void describe_csv(Schema& s, ReadOptions& p) {
 }
 
 void describe(Schema& s, ReadOptions& p) {
+  describe_format(s, p);
   describe_fields(s, p);
   std::set<void (*)(Schema&, ReadOptions&)> described;  // formats may share their options
   for (const Format& f : formats())
@@ -106,6 +113,7 @@ void describe(Schema& s, ReadParams& p, const Format& format) {
 }
 
 void check(const ReadOptions& o) {
+  check_stated_format(o.format);
   ElementType ignored;
   if (!o.raw_type.empty() && !parse_element_type(o.raw_type, ignored))
     fail_usage(fmt::format("'{}' is not a number type", o.raw_type), "read type", "available: u8 i8 u16 i16 u32 i32 u64 i64 f32 f64");

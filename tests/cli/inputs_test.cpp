@@ -27,3 +27,20 @@ TEST_CASE("render: three files whose names differ by a number are drawn together
   CHECK(contains(together.err, "--series"));
   CHECK_FALSE(contains(sightglass({"render", "s0.off", "s1.off", "t.off", "-o", "b.png", "--size", "80x60"}, f).err, "--series"));
 }
+
+TEST_CASE("--input-format: names the format of a file whose name and content do not tell it") {
+  const std::string f = fresh_folder("stated");
+  write_file(f + "t.dat", "# by hand\nname level\nlow 1\nhigh 2\n");
+  CHECK(sightglass({"info", "t.dat"}, f).status == 3);
+  const auto told = sightglass({"info", "t.dat", "--input-format", "csv", "--csv-header", "yes"}, f);
+  INFO(told.err);
+  CHECK(told.status == 0);
+  const auto wrong = sightglass({"info", "t.dat", "--input-format", "cvs"}, f);
+  CHECK(wrong.status == 2);
+  CHECK(contains(wrong.err, "did you mean 'csv'"));
+  // A picture remembers it.
+  write_file(f + "s.bin", "# a triangle\nhello\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  CHECK(sightglass({"render", "s.bin", "-o", "s.png", "--size", "80x60"}, f).status != 0);
+  CHECK(sightglass({"render", "s.bin", "--input-format", "obj", "-o", "s.png", "--size", "80x60"}, f).status == 0);
+  CHECK(contains(sightglass({"open", "s.png", "--recipe"}, f).out, "format: obj"));
+}

@@ -12,6 +12,7 @@
 #include "base/file/file.h"
 #include "base/text/utf8.h"
 #include "cli/program.h"
+#include "image/codec.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -203,6 +204,21 @@ TEST_CASE("streams: info <(command) and /dev/stdin read what can be told from it
     CHECK(status_within({"info"}, 20, "", " <(cat '" + here + name + "')") == 0);
     CHECK(status_within({"info", "/dev/stdin"}, 20, "cat '" + here + name + "' |") == 0);
   }
+  write_file(here + "t.csv", "a,b\n1,2\n3,4\n"), write_file(here + "words", "a b\nc d\n");
+  REQUIRE(sightglass({"convert", "--source", "sphere size=8", "-f", "contour values=0", "-o", here + "s.obj"}).status == 0);
+  REQUIRE(sightglass({"convert", "--source", "sphere size=8", "-f", "contour values=0", "-o", here + "s.stl"}).status == 0);
+  REQUIRE(sightglass({"convert", "--source", "sphere size=8", "-f", "contour values=0", "--ascii", "-o", here + "text.stl"}).status == 0);
+  for (const std::string name : {"t.csv", "s.obj", "s.stl", "text.stl"}) {
+    INFO(name);
+    CHECK(status_within({"info", "-"}, 20, "cat '" + here + name + "' |") == 0);
+  }
+  CHECK(status_within({"info", "-"}, 20, "cat '" + here + "words' |") == 3);
+  CHECK(status_within({"info", "-", "--input-format", "csv"}, 20, "cat '" + here + "words' |") == 0);
+  // What is up in a format is so in a pipe as well.
+  CHECK(status_within({"render", "-", "--size", "40x30", "-o", here + "piped.png"}, 20, "cat '" + here + "s.obj' |") == 0);
+  REQUIRE(sightglass({"render", here + "s.obj", "--size", "40x30", "-o", here + "named.png"}).status == 0);
+  const auto picture = [&](const char* name) { return read_png(here + name); };
+  CHECK(compare(picture("piped.png"), picture("named.png")).pixels == 0);
   CHECK(status_within({"info", "--memory", "1M"}, 20, "", " <(cat /dev/zero)") == 3);
   CHECK(status_within({"info"}, 20, "", " <(cat /dev/null)") == 3);
   CHECK(status_within({"render", "--size", "40x30", "-o", here + "o.png"}, 20, "", " <(cat '" + here + "a.vti')") == 0);

@@ -22,7 +22,7 @@ bool same(const ReadOptions& a, const ReadOptions& b) {
   return a.fields == b.fields && a.time == b.time && a.step == b.step && a.region == b.region && a.piece == b.piece &&
          a.pieces == b.pieces && a.ghost_levels == b.ghost_levels && a.raw_dims == b.raw_dims && a.raw_type == b.raw_type &&
          a.raw_big_endian == b.raw_big_endian && a.raw_header == b.raw_header && a.raw_components == b.raw_components &&
-         a.raw_spacing == b.raw_spacing && a.csv_header == b.csv_header && a.times == b.times;
+         a.raw_spacing == b.raw_spacing && a.csv_header == b.csv_header && a.times == b.times && a.format == b.format;
 }
 
 }  // namespace
@@ -37,6 +37,7 @@ TEST_CASE("property: options of a reader survive the way through words") {
     if (maybe()) o.time = random.in(-5, 5);
     if (maybe()) o.step = random.whole(0, 100);
     if (maybe()) o.times = "0:0.5";
+    if (maybe()) o.format = maybe() ? "nii.gz" : "delimited text";
     if (maybe()) o.csv_header = maybe() ? HeaderLine::yes : HeaderLine::no;
     for (size_t a = 0; a < 3; ++a) {
       if (maybe()) o.region.lo[a] = size_t(random.whole(0, 9)), o.region.hi[a] = o.region.lo[a] + size_t(random.whole(0, 9));

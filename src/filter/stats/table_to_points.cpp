@@ -3,10 +3,14 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <array>
+
 #include "base/error.h"
 #include "base/text/text.h"
 #include "data/field_ops.h"
 #include "data/fields/label_names.h"
+#include "filter/stats/vector_columns.h"
 
 namespace sg {
 
@@ -50,8 +54,10 @@ DatasetPtr table_to_points(const Data& in, const TableToPointsParams& p, Context
   if (!table) fail_usage("needs a table", "table_to_points", "read a .csv or .json file");
   const Table& t = **table;
   const Columns columns(t);
-  const int at[3] = {columns.find(p.x, {"x", "longitude", "lon"}, 0), columns.find(p.y, {"y", "latitude", "lat"}, 1),
-                     columns.find(p.z, {"z"}, SIZE_MAX)};
+  // Ours, where a field is named x; usual ones; ParaView's.
+  const std::array<int, 3> at = {columns.find(p.x, {"position_x", "x", "longitude", "lon", "points_0", "points:0"}, 0),
+                                 columns.find(p.y, {"position_y", "y", "latitude", "lat", "points_1", "points:1"}, 1),
+                                 columns.find(p.z, {"position_z", "z", "points_2", "points:2"}, SIZE_MAX)};
   if (at[0] < 0 || at[1] < 0) fail_usage("has fewer than two numeric columns", "table_to_points", "name the coordinates: x=... y=...");
   std::vector<int64_t> rows, ids, offsets{0};
   std::vector<double> xyz;
@@ -63,7 +69,7 @@ DatasetPtr table_to_points(const Data& in, const TableToPointsParams& p, Context
   for (size_t r = 0; r < n; ++r) {
     double v[3] = {0, 0, 0};
     for (int a = 0; a < 3; ++a)
-      if (at[a] >= 0) v[a] = t.columns[size_t(at[a])].array.get(r);
+      if (at[size_t(a)] >= 0) v[a] = t.columns[size_t(at[size_t(a)])].array.get(r);
     if (std::isnan(v[0] + v[1] + v[2])) {
       end_line();
       continue;
@@ -76,7 +82,18 @@ DatasetPtr table_to_points(const Data& in, const TableToPointsParams& p, Context
   Points points;
   points.xyz = Array::from_vector(std::move(xyz), 3);
   DatasetParts parts;
+  const std::vector<VectorColumns> vectors = p.vectors ? vector_columns(t, at) : std::vector<VectorColumns>();
   for (size_t i = 0; i < t.columns.size(); ++i) {
+    const auto of = std::find_if(vectors.begin(), vectors.end(), [&](const VectorColumns& v) {
+      return std::find(v.columns.begin(), v.columns.end(), i) != v.columns.end();
+    });
+    if (of != vectors.end()) {
+      if (of->columns[0] != i) continue;
+      Field f = joined(t, *of);
+      f.array = gather(f.array, rows);
+      parts.fields.add(std::move(f));
+      continue;
+    }
     Field f = t.columns[i];
     if (const std::vector<std::string>* words = t.words(i)) {
       LabelNames names(f.name);

@@ -11,6 +11,7 @@
 #include "base/text/text.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
+#include "data/ranks/over_all.h"
 #include "filter/field/automatic_values.h"
 #include "filter/scalar/contour/lattice/contour_surfels.h"
 
@@ -172,9 +173,10 @@ DatasetPtr assemble(const Dataset& in, const Field& field, double value, Points 
                     std::span<const int64_t> cells, std::span<const int64_t> corners, std::span<const double> weights, Context& ctx) {
   const size_t count = normals.count();
   if (count == 0) {
-    const Range r = in.range(field);
-    ctx.info(fmt::format("surfels: nothing at {} = {}; the field ranges from {} to {}", field.name, short_number(value), short_number(r.lo),
-                         short_number(r.hi)));
+    const Range r = ctx.communicator ? in.range(field) : range_over_all(in, field, -1, ctx);  // not all processes may come here
+    if (!ctx.parts || value < r.lo || value > r.hi)                                           // else it is met in another part
+      ctx.info(fmt::format("surfels: nothing at {} = {}; the field ranges from {} to {}", field.name, short_number(value),
+                           short_number(r.lo), short_number(r.hi)));
   }
   DatasetParts out;
   FieldSet rest;

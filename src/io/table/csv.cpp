@@ -6,8 +6,8 @@
 
 #include "base/file/file.h"
 #include "base/text/text.h"
-#include "data/cells/point_positions.h"
 #include "io/formats.h"
+#include "io/table/mesh_table.h"
 #include "io/table/table_columns.h"
 #include "io/table/table_parts.h"
 #include "io/write_losses.h"
@@ -176,12 +176,7 @@ std::string cell_text(const Table& t, size_t column, size_t row, int component) 
 TablePtr table_of(const Data& data) {
   if (auto* t = std::get_if<TablePtr>(&data)) return *t;
   if (all_tables(data)) return joined_tables(*std::get<CollectionPtr>(data));
-  const DatasetPtr d = single_dataset(data, "writing a table");
-  auto table = std::make_shared<Table>();
-  table->columns.push_back({"position", Association::whole, point_positions(d->mesh()), "", Role::none});
-  for (const Field& f : d->fields())
-    if (f.association == Association::point) table->columns.push_back(f);
-  return table;
+  return table_of_points(*single_dataset(data, "writing a table"));
 }
 
 }  // namespace
@@ -230,7 +225,7 @@ std::string header_line(const Table& table, char delimiter, bool single) {
   bool number = false;
   for (const Field& f : table.columns)
     for (int c = 0; c < f.components(); ++c) {
-      names.push_back(f.components() == 1 ? f.name : fmt::format("{}_{}", f.name, c));
+      names.push_back(column_name(f, c));
       number = number || is_number(names.back());
     }
   std::string line;

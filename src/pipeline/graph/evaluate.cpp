@@ -5,10 +5,12 @@
 #include <algorithm>
 
 #include "base/all_ranks.h"
+#include "base/text/text.h"
 #include "filter/mesh/select/piece.h"
 #include "pipeline/file/read_part.h"
 #include "pipeline/graph/graph_state.h"
 #include "pipeline/graph/series_input.h"
+#include "pipeline/graph/step_report.h"
 #include "pipeline/operation/check_inputs.h"
 
 namespace sg {
@@ -101,7 +103,8 @@ class Evaluation {
     Context part(context_, from, fraction());
     part.communicator = communicator_of(s);
     part.progress(0, doing);
-    return with_context(doing, [&]() -> Data {
+    const StopWatch watch;
+    const Data made = with_context(doing, [&]() -> Data {
       if (s.cut)
         return map_datasets(
             inputs[0], [&](const DatasetPtr& d) { return take_share(d, s.request.piece, s.request.pieces, s.request.ghost_levels, part); });
@@ -120,6 +123,9 @@ class Evaluation {
       };
       return operation.run_series(series, inputs, s.params, part);
     });
+    const std::string at = one_time_ && s.varies && s.request.time ? fmt::format(" at the time {}", short_number(*s.request.time)) : "";
+    context_.log(LogLevel::debug, fmt::format("{}{}: {}: {}", doing, at, watch.text(), result_text(made)));
+    return made;
   }
 
   Data read_file(const ReadNode& read, const Step& s, Context& context) {

@@ -41,7 +41,7 @@ Key read_key(const std::string& path, const ReadOptions& o, const Request& reque
   for (const size_t n : o.raw_dims) key.add(uint64_t(n));
   key.add(o.raw_type).add(uint64_t(o.raw_big_endian)).add(uint64_t(o.raw_header)).add(uint64_t(o.raw_components));
   for (int i = 0; i < 3; ++i) key.add(std::bit_cast<uint64_t>(o.raw_spacing[i]));
-  key.add(o.time ? exact_number(*o.time) : "first").add(uint64_t(o.step)).add(o.times).add(word_of(o.csv_header));
+  key.add(o.time ? exact_number(*o.time) : "first").add(uint64_t(o.step)).add(o.times).add(word_of(o.csv_header)).add(o.format);
   for (size_t a = 0; a < 3; ++a) key.add(uint64_t(o.region.lo[a])).add(uint64_t(o.region.hi[a])).add(uint64_t(o.region.stride[a]));
   key.add(uint64_t(o.piece)).add(uint64_t(o.pieces)).add(uint64_t(o.ghost_levels));
   if (request.pieces > 1) key.add("of several");

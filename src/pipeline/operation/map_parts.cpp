@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/text/alike_notes.h"
 #include "data/cells/cell_type.h"
 #include "data/lattice.h"
 #include "pipeline/operation/operation.h"
@@ -36,8 +37,6 @@ struct Note {
   LogLevel level;
   std::string text;
   bool of_empty;  // nothing is left of the part
-
-  bool same(const Note& o) const { return level == o.level && text == o.text; }
 };
 
 class Parts {
@@ -67,13 +66,10 @@ class Parts {
       if (left_out_.size() > 3) names += fmt::format(" and {} more", left_out_.size() - 3);
       context_.info(fmt::format("{}: parts of points and lines alone are left out: {}", who, names));
     }
-    std::vector<Note> told;
-    for (const Note& n : notes_) {
-      if (n.of_empty && n.level != LogLevel::warning && filled_ > 0) continue;
-      if (std::any_of(told.begin(), told.end(), [&](const Note& m) { return m.same(n); })) continue;
-      context_.log(n.level, n.text);
-      told.push_back(n);
-    }
+    AlikeNotes told;
+    for (const Note& n : notes_)
+      if (!n.of_empty || n.level == LogLevel::warning || filled_ == 0) told.add(n.level, n.text);
+    told.tell(context_);
   }
 
  private:

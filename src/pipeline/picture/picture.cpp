@@ -306,7 +306,7 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   if (!file.show.empty()) {
     const std::string& first = shown_step(file, 0);
     if (look.shows.empty()) {
-      const std::string extension = extension_of(origin_of(file, first));
+      const std::string extension = extension_of_origin(file, first);
       look.camera = choose_view(shown[0].box, extension, shown[0].patient);
       std::vector<DatasetPtr> parts;
       for_each_dataset(results[0], [&](const std::string&, const DatasetPtr& d) { parts.push_back(d); });

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The picture without its legends, and the box behind the data.
+#include <fmt/core.h>
+
+#include "pipeline/graph/step_report.h"
 #include "pipeline/picture/picture_parts.h"
+#include "pipeline/picture/picture_report.h"
 #include "render/render.h"
 
 namespace sg {
@@ -99,6 +103,7 @@ DrawnPicture draw_picture(const Scene& scene, const Camera& camera, const Stated
   // The frame, one of single samples, and one of all pixels if a legend is next to it.
   check_picture_memory(s.width, s.height, 1 + (beside || options.adaptive > 0 ? 1 : 0));
   Frame frame;
+  const StopWatch drawing;
   if (scene.background_top && options.height < s.height) {
     Scene part = scene;
     take_background_of(int(area.y), options.height, s.height, part);
@@ -106,6 +111,9 @@ DrawnPicture draw_picture(const Scene& scene, const Camera& camera, const Stated
   } else {
     frame = render(scene, camera, options, context);
   }
+  context.log(LogLevel::debug,
+              fmt::format("drawing {}x{}: {}: {}", options.width, options.height, drawing.text(), drawn_text(scene, options)));
+  const StopWatch annotating;
   const Projection projection = make_projection(camera, options.width, options.height);
   Annotation with_texts = annotation;
   with_texts.texts = seen_texts(scene, projection, frame);
@@ -120,6 +128,7 @@ DrawnPicture draw_picture(const Scene& scene, const Camera& camera, const Stated
   if (beside) frame = placed(frame, scene, camera, options, area, s.width, s.height, context);
   Image image = to_image(frame, scene.transparent);
   annotate(image, with_texts, projection, int(area.x), int(area.y));
+  context.log(LogLevel::debug, fmt::format("legends, axes and texts: {}", annotating.text()));
   for (uint32_t& id : frame.ids) id = id > 0 && id <= scene.shows.size() ? scene.shows[id - 1] : 0;
   return {std::move(image), {std::move(frame.depth), std::move(frame.ids)}};
 }

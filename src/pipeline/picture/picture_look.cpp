@@ -170,7 +170,8 @@ void add_shows(const Look& look, PipelineFile& file, std::vector<PipelineFile::S
 Look choose_for(const PipelineFile::Show& wanted, Data data, bool alone, PipelineFile& file, std::vector<PipelineFile::Show>& shows,
                 std::vector<std::string>& notes, Context& context) {
   std::string end = wanted.of;
-  const std::string origin = origin_of(file, end), stated = word_value(wanted.words, "field").value_or("");
+  const std::string origin = origin_of(file, end), extension = extension_of_origin(file, end),
+                    stated = word_value(wanted.words, "field").value_or("");
   leave_out_sets(file, end, data, stated.empty() ? std::vector<std::string>() : std::vector{stated}, notes, context);
   if (const auto* table = std::get_if<TablePtr>(&data))
     if (const auto curve = look_at_table(**table, stated)) {
@@ -195,14 +196,14 @@ Look choose_for(const PipelineFile::Show& wanted, Data data, bool alone, Pipelin
   std::vector<std::string> coloring = wanted.words;
   if (field != stated) coloring.push_back("field=" + field);
   PipelineFile::Step* reading = parts.size() > 1 ? nullptr : plain_reading(file, end);
-  Look look = choose_look(*largest, field, extension_of(origin), reading != nullptr);
+  Look look = choose_look(*largest, field, extension, reading != nullptr);
   if (!look.source.empty()) reading->operation = look.source;
   // What is seen of a volume was told for the scale that it chooses by itself.
   if (states_scale(wanted) || !alone)
     if (const size_t at = look.reason.find("shown as a volume;"); at != look.reason.npos) look.reason.resize(look.reason.find(';', at));
   if (const Field* u = displacement_of(*largest)) look.reason += fmt::format("; -f warp shows its shape displaced by '{}'", u->name);
-  if (const std::string up = stand_upright(parts, extension_of(origin), look.camera); !up.empty()) look.reason += "; " + up;
-  face_detail(look, parts, extension_of(origin), context);
+  if (const std::string up = stand_upright(parts, extension, look.camera); !up.empty()) look.reason += "; " + up;
+  face_detail(look, parts, extension, context);
   cut_open(look, largest, field, context);
   if (parts.size() == 1) show_flow(look, largest, field, context);
   cut_to_crowd(data, field, look);
@@ -229,9 +230,30 @@ bool surrounds(const Box3& outer, const Box3& inner) {
   return true;
 }
 
+// "a.vtp", "a.vtp and b.vtp", "a.vtp, b.vtp and 9 others".
+std::string names_text(const std::vector<std::string>& names) {
+  if (names.size() == 1) return names[0];
+  if (names.size() == 2) return fmt::format("{} and {}", names[0], names[1]);
+  return fmt::format("{}, {} and {} other{}", names[0], names[1], names.size() - 2, names.size() == 3 ? "" : "s");
+}
+
+// Inputs of which the same is said, in the order of the first of each.
+class ByNote {
+ public:
+  void add(const std::string& note, const std::string& name) {
+    const auto at = std::find_if(all_.begin(), all_.end(), [&](const auto& a) { return a.first == note; });
+    (at == all_.end() ? all_.emplace_back(note, std::vector<std::string>()) : *at).second.push_back(name);
+  }
+  const auto& all() const { return all_; }
+
+ private:
+  std::vector<std::pair<std::string, std::vector<std::string>>> all_;
+};
+
 // No input hides another: the surface of one that surrounds an earlier or a smaller one is drawn see-through.
 void see_through(const std::vector<Chosen>& inputs, std::vector<PipelineFile::Show>& shows, std::vector<std::string>& notes) {
   constexpr const char* faint = "opacity=0.35";
+  ByNote by_inner;
   for (size_t outer = 0; outer < inputs.size(); ++outer)
     for (size_t inner = 0; inner < inputs.size(); ++inner) {
       const Chosen &o = inputs[outer], &i = inputs[inner];
@@ -240,8 +262,11 @@ void see_through(const std::vector<Chosen>& inputs, std::vector<PipelineFile::Sh
       for (size_t s = o.begin; s < o.end; ++s)
         if (find_show(shows[s].kind).is<SurfaceShow>() && !word_value(shows[s].words, "opacity"))
           shows[s].words.push_back(faint), changed = true;
-      if (changed) notes.push_back(fmt::format("{} surrounds {}: drawn with {}, so that both are seen", o.name, i.name, faint));
+      if (changed) by_inner.add(i.name, o.name);
     }
+  for (const auto& [inner, outer] : by_inner.all())
+    notes.push_back(fmt::format("{} {} {}: drawn with {}, so that {} are seen", names_text(outer),
+                                outer.size() == 1 ? "surrounds" : "surround", inner, faint, outer.size() == 1 ? "both" : "all"));
 }
 
 // Several views of one thing: where nothing is said of the view, and each gets enough pixels.
@@ -266,6 +291,7 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const Graph
   Look first;
   std::vector<PipelineFile::Show> shows;
   std::vector<Chosen> inputs;
+  ByNote reasons;
   for (size_t i = 0; i < file.show.size(); ++i) {
     PipelineFile::Show wanted = file.show[i];
     if (wanted.of.empty()) wanted.of = built.nodes.back().first;  // steps may follow
@@ -278,9 +304,10 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const Graph
     for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { input.box.add(d->bounds()); });
     const Look look = choose_for(wanted, data, open == 1, file, shows, notes, context);
     input.end = shows.size();
-    notes.push_back(open > 1 ? fmt::format("{}: {}", input.name, look.reason) : look.reason);
+    reasons.add(look.reason, input.name);
     if (first.shows.empty()) first = look;
   }
+  for (const auto& [reason, names] : reasons.all()) notes.push_back(open > 1 ? fmt::format("{}: {}", names_text(names), reason) : reason);
   const StatedPicture stated = stated_in(file);
   if (!in_panels(stated.picture)) see_through(inputs, shows, notes);
   if (shows.size() == 1) {

@@ -33,8 +33,10 @@ StatedPicture stated_in(const PipelineFile& file);
 
 /// A step and, one after the other, the first inputs that lead to it.
 std::vector<const PipelineFile::Step*> steps_behind(const PipelineFile& file, std::string name);
-/// The file a step's data comes from, for hints by extension; "" for sources.
+/// The file a step's data comes from, for messages; "" for sources.
 std::string origin_of(const PipelineFile& file, const std::string& step);
+/// telling_extension() of that file; "" for sources.
+std::string extension_of_origin(const PipelineFile& file, const std::string& step);
 /// Where the result of a step was cut open by the plane of a `clip`, turns the view to the side of the cut (mirrored in that plane).
 void face_cut(const PipelineFile& file, const std::string& step, CameraDefaults& camera);
 /// Tensor glyphs of a thin slab stand out of it a little; it is seen straight on as if it were flat.

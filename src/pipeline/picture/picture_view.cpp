@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/file/file.h"
 #include "filter/mesh/clip/clip.h"
 #include "filter/scalar/contour/contour.h"
 #include "filter/scalar/line_labels.h"
 #include "filter/tensor/glyphs/tensor_glyphs.h"
+#include "io/stated_format.h"
 #include "pipeline/operation/operation.h"
 #include "pipeline/picture/picture_parts.h"
 #include "scene/show/lines.h"
@@ -74,6 +74,12 @@ std::string origin_of(const PipelineFile& file, const std::string& step) {
   return !chain.empty() && chain.back()->reads() ? word_value(chain.back()->words, "path").value_or("") : "";
 }
 
+std::string extension_of_origin(const PipelineFile& file, const std::string& step) {
+  const auto chain = steps_behind(file, step);
+  if (chain.empty() || !chain.back()->reads()) return "";
+  return telling_extension(origin_of(file, step), word_value(chain.back()->words, "format").value_or(""));
+}
+
 void face_cut(const PipelineFile& file, const std::string& step, CameraDefaults& camera) {
   if (camera.parallel) return;
   for (const PipelineFile::Step* s : steps_behind(file, step))
@@ -91,7 +97,7 @@ void face_slab(const PipelineFile& file, const std::string& step, Box3 box, Came
   const int a = s.x <= s.y && s.x <= s.z ? 0 : s.y <= s.z ? 1 : 2;
   if (s[a] > thin * std::min(s[(a + 1) % 3], s[(a + 2) % 3])) return;
   box.lo[a] = box.hi[a] = box.center()[a];
-  camera = choose_view(box, extension_of(origin_of(file, step)), false);
+  camera = choose_view(box, extension_of_origin(file, step), false);
 }
 
 void show_what_is_labelled(PipelineFile& file, std::vector<std::string>& notes) {

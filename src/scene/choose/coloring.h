@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How values become colours: the parameters that every way to show shares, and the field that they mean.
 #pragma once
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,8 +38,9 @@ struct ColoringParams {
   std::optional<double> legend_bar;
   // Of all datasets that are coloured alike (shared_scale.h); no word states them.
   Labels labels;
-  Range range_of;           ///< of their values, where `range` was chosen for them
-  bool map_chosen = false;  ///< `map` was chosen for them
+  Range range_of;                                 ///< of their values, where `range` was chosen for them
+  bool map_chosen = false;                        ///< `map` was chosen for them
+  std::optional<std::array<uint64_t, 3>> beyond;  ///< count_beyond() of them, where `range` was stated
 
   bool states_range() const { return !range.empty() && range_of.empty(); }
   bool states_map() const { return map && !map_chosen; }

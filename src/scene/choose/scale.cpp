@@ -19,6 +19,7 @@
 #include "data/patient/patient_frame.h"
 #include "data/ranks/over_all.h"
 #include "scene/choose/histogram.h"
+#include "scene/choose/shared_scale.h"
 #include "scene/choose/shown_range.h"
 #include "scene/choose/telling_field.h"
 
@@ -133,24 +134,6 @@ void show_what_lies_beyond(const Range& values, ColorScale& s) {
   const bool under = values.lo<lo - slack, over = values.hi> hi + slack;
   if (!s.below && (s.lo <= s.hi ? under : over)) s.below = s.map.at(0);
   if (!s.above && (s.lo <= s.hi ? over : under)) s.above = s.map.at(1);
-}
-
-// Who states colours for what lies beyond a range looks for it.
-void tell_share_beyond(const Field& field, const ColoringParams& p, const Context& context) {
-  uint64_t counts[3] = {0, 0, 0};  // below, above, all
-  const Array values = scalar_of(field, p.component, ElementType::f64);
-  for (size_t i = 0; i < values.count(); ++i) {
-    const double v = values.get(i);
-    if (std::isnan(v)) continue;
-    counts[0] += v<p.range[0], counts[1] += v> p.range[1], ++counts[2];
-  }
-  all_sum(std::span<uint64_t>(counts), context.communicator);
-  if (counts[2] == 0) return;
-  const auto share = [&](uint64_t n) {
-    const double percent = 100 * double(n) / double(counts[2]);
-    return n == 0 ? std::string("none") : percent < 0.1 ? std::string("less than 0.1 %") : fmt::format("{:.2g} %", percent);
-  };
-  context.info(fmt::format("of the values of '{}' {} lie below the range and {} above", field.name, share(counts[0]), share(counts[1])));
 }
 
 // Numbers of a file that says what they stand for are labels also where they are stored as floats, with NaN for none.
@@ -423,7 +406,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   if (!p.below.empty()) s.below = parse_color(p.below, "below");
   if (!p.above.empty()) s.above = parse_color(p.above, "above");
   if (!p.nan.empty()) s.nan = parse_color(p.nan, "nan");
-  if (!p.range.empty() && p.range_of.empty() && !labels && (!p.below.empty() || !p.above.empty())) tell_share_beyond(field, p, context);
+  if (tells_beyond(p) && !labels) tell_beyond(field, p.beyond ? *p.beyond : count_beyond({&itself, 1}, p), context);
   s.clamp = p.clamp;
   if (zeros && !s.below) s.below = Vec3f{0.82f, 0.82f, 0.82f};  // else zeros look like the least that is more than nothing
   if (!p.range.empty() || ct || below_log) show_what_lies_beyond(data.range(field, p.component), s);

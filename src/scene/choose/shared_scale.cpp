@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/choose/shared_scale.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
+#include "base/all_ranks.h"
 #include "color/map_files/colormap_file.h"
 #include "color/parse_color.h"
+#include "data/field_ops.h"
 #include "data/ranks/over_all.h"
 #include "scene/choose/scale.h"
 
@@ -48,6 +52,31 @@ bool share_range(const Field& one, Range all, ColoringParams& p) {
   }
   p.range = {all.lo, all.hi};
   return true;
+}
+
+std::array<uint64_t, 3> count_beyond(std::span<const FieldOf> fields, const ColoringParams& p) {
+  std::array<uint64_t, 3> counts{};
+  for (const FieldOf& f : fields) {
+    const Array values = scalar_of(*f.field, p.component, ElementType::f64);
+    for (size_t i = 0; i < values.count(); ++i) {
+      const double v = values.get(i);
+      if (std::isnan(v)) continue;
+      counts[0] += v<p.range[0], counts[1] += v> p.range[1], ++counts[2];
+    }
+  }
+  return counts;
+}
+
+bool tells_beyond(const ColoringParams& p) { return p.range.size() == 2 && p.range_of.empty() && (!p.below.empty() || !p.above.empty()); }
+
+void tell_beyond(const Field& field, std::array<uint64_t, 3> counts, const Context& context) {
+  all_sum(std::span<uint64_t>(counts), context.communicator);
+  if (counts[2] == 0) return;
+  const auto share = [&](uint64_t n) {
+    const double percent = 100 * double(n) / double(counts[2]);
+    return n == 0 ? std::string("none") : percent < 0.1 ? std::string("less than 0.1 %") : fmt::format("{:.2g} %", percent);
+  };
+  context.info(fmt::format("of the values of '{}' {} lie below the range and {} above", field.name, share(counts[0]), share(counts[1])));
 }
 
 }  // namespace sg

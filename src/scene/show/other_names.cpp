@@ -13,51 +13,85 @@ namespace sg {
 namespace {
 
 constexpr OtherName names[] = {
-    {"contour isosurface isosurfaces iso isocontour isovalue marchingcubes flyingedges contours levelset", "-f 'contour values=...'"},
+    {"contour isosurface isosurfaces iso isocontour isovalue marchingcubes marchingsquares flyingedges flyingedges3d contours contour3d "
+     "levelset",
+     "-f 'contour values=...'"},
     {"isolines contourlines isoline levels", "-f 'isolines count=10'"},
-    {"filledcontours bandedcontour contourf", "-f 'bands count=10'"},
-    {"slice cut cutter cutplane plane section slices crosssection orthoslice", "-f 'slice axis=z'"},
-    {"clip halfspace cutaway clipplane", "-f 'clip axis=z'"},
-    {"glyph arrow arrows quiver quivers vectors hedgehog glyph3d", "--show glyphs"},
-    {"streamlines streamline streamtracer stream flowlines fieldlines integralcurves", "-f streamlines"},
+    {"filledcontours bandedcontour contourf contourbanded bandedpolydatacontour", "-f 'bands count=10'"},
+    {"slice cut cutter cutplane plane planecutter section slices crosssection orthoslice sliceimplicit", "-f 'slice axis=z'"},
+    {"sliceorthogonal orthogonalslices threeslices", "-f 'slice planes=xyz'"},
+    {"slicealongaxis parallelslices", "-f 'slice axis=z positions=...'"},
+    {"clip halfspace cutaway clipplane clipdataset clippolydata tablebasedclipdataset", "-f 'clip axis=z'"},
+    {"clipbox boxclip boxclipdataset extractbox", "-f 'clip box=...'"},
+    {"clipscalar clipbyscalar", "-f 'clip value=...'"},
+    {"clipsurface selectenclosedpoints selectinteriorpoints enclosedpoints boolean booleanoperation booleandifference booleanintersection",
+     "-f 'clip with=...'"},
+    {"intersection intersectionpolydata surfaceintersection", "-f 'slice with=...'"},
+    {"glyph arrow arrows quiver quivers vectors hedgehog glyph3d glyph2d glyph3dmapper", "--show glyphs"},
+    {"streamlines streamline streamtracer stream flowlines fieldlines integralcurves streamlinesfromsource", "-f streamlines"},
+    {"streamlinesevenlyspaced2d evenlyspacedstreamlines2d evenlyspacedstreamlines", "-f even_streamlines"},
     {"pathline particletracer trajectories", "-f pathlines"},
-    {"tubes tube tubefilter", "-f tubes"},
-    {"ribbon ribbonfilter", "-f ribbons"},
+    {"tubes tube", "-f tubes"},
+    {"ribbon", "-f ribbons"},
     {"wireframe wire mesh gridlines", "--show 'surface style=wireframe'"},
     {"edges grid", "--show 'surface edges=true'"},
-    {"outline boundingbox box bounds frame", "--show outline"},
-    {"points pointcloud scatter scatterplot vertices dots point", "--show points"},
+    {"outline outlinecorners boundingbox box bounds frame", "--show outline"},
+    {"points pointcloud scatter scatterplot vertices dots point vertexglyph", "--show points"},
     {"surface solid shaded", "--show surface"},
-    {"extractsurface skin boundary outersurface externalfaces geometry datasetsurface hull", "-f faces"},
-    {"connectivity connectedcomponents regions islands", "-f components"},
-    {"subset extractsubset voi subvolume extractvoi", "-f crop"},
-    {"calculator expression formula math", "-f 'calc expr=...'"},
-    {"height elevationfilter", "-f elevation"},
-    {"linearextrusion rotationalextrusion sweep", "-f 'extrude direction=0,0,1'"},
+    {"extractalledges extractedges alledges", "-f 'feature_edges manifold=true'"},
+    {"extractsurface extractgeometry skin boundary outersurface externalfaces geometry datasetsurface hull", "-f faces"},
+    {"connectivity connectedcomponents regions islands polydataconnectivity splitbodies bodies", "-f components"},
+    {"extractlargest largest largestregion", "-f 'components keep=1'"},
+    {"labelconnectivity imageconnectivity sortlabels packlabels", "-f label_components"},
+    {"contourlabels contourlabeled discretemarchingcubes discreteflyingedges3d surfacenets surfacenets3d", "-f label_surface"},
+    {"subset extractsubset voi subvolume extractvoi extractgrid", "-f crop"},
+    {"calculator arraycalculator pythoncalculator programmable expression formula math", "-f 'calc expr=...'"},
+    {"height", "-f elevation"},
+    {"linearextrusion extrusion", "-f 'extrude direction=0,0,1'"},
     {"warpbyvector warpbyscalar warpvector warpscalar deform displace displacement terrain relief", "-f warp"},
-    {"reflect reflection symmetry", "-f 'mirror axis=x'"},
-    {"flip", "-f 'transform scale=-1,1,1'"},
+    {"reflect reflection symmetry axisalignedreflection", "-f 'mirror axis=x'"},
+    {"flip flipx flipy flipz", "-f 'transform scale=-1,1,1'"},
     {"exaggeration verticalexaggeration zscale aspect", "--picture stretch=1,1,10"},
-    {"rotate translate move rescale", "-f transform"},
-    {"triangulate tetrahedralize triangles linearize refine", "-f tessellate"},
-    {"resampletoimage voxelize togrid rasterize", "-f resample"},
-    {"plotoverline overline sampleline lineprobe plot chart graph lineplot", "-f probe_at"},
-    {"integratevariables integral area", "-f integrate"},
+    {"rotate rotatex rotatey rotatez rotatevector translate move rescale transformpolydata", "-f transform"},
+    {"linearize nonlinearsubdivision", "-f tessellate"},
+    {"resampletoimage voxelize voxelizebinarymask voxelmodeller togrid rasterize", "-f resample"},
+    {"sample resamplewithdataset interpolatefrom", "-f 'probe with=...'"},
+    {"plotoverline overline sampleline sampleoverline lineprobe plot chart graph lineplot", "-f probe_at"},
+    {"sampleovercirculararc plotovercirculararc sampleovermultiplelines", "-f 'probe_at points=...'"},
+    {"integratevariables integrateattributes integratedata integral area arclength computearclength", "-f integrate"},
+    {"massproperties centerofmass centroid enclosedvolume", "-f mass_properties"},
+    {"computecellsizes cellsizes cellsize cellvolumes cellareas", "-f 'quality measures=size'"},
+    {"curvatures plotcurvature", "-f curvature"},
+    {"computederivatives computederivative derivatives derivative cellderivatives", "-f gradient"},
+    {"vectornorm vectormagnitude norm", "-f magnitude"},
     {"volume dvr raycast raycasting volumerender volumerendering", "--show volume"},
     {"mip maximumintensity maximumintensityprojection maximumprojection", "--show 'volume mode=maximum'"},
     {"vorticity rot rotation", "-f curl"},
     {"qcriterion q lambda2 swirl vortices", "-f vortex_measures"},
     {"cores vortexcorelines", "-f vortex_cores"},
-    {"merge groupdatasets appenddatasets combine join", "-f append"},
-    {"surfacenormals normal computenormals", "-f normals"},
-    {"smoothing laplacian taubin", "-f smooth"},
-    {"featureangle sharpedges", "-f feature_edges"},
-    {"cellquality meshquality", "-f quality"},
-    {"pointdatatocelldata pointtocelldata", "-f point_to_cell"},
-    {"celldatatopointdata celltopointdata", "-f cell_to_point"},
-    {"stats describe summary minmax range", "-f statistics"},
-    {"hist distribution", "-f histogram"},
-    {"blur gaussian denoise", "-f gaussian_smooth"},
+    {"merge groupdatasets appenddatasets appendpolydata combine concatenate join", "-f append"},
+    {"surfacenormals normal computenormals polydatanormals", "-f normals"},
+    {"flipnormals flipfaces reversesense", "-f 'normals flip=true'"},
+    {"fillholes closeholes", "-f cap"},
+    {"cleanpolydata staticcleanpolydata cleangrid cleantogrid removeunusedpoints removeduplicates", "-f clean"},
+    {"cellcenters cellcentres centers centres", "-f 'glyph_points mode=cells'"},
+    {"maskpoints randompoints subsamplepoints", "-f 'glyph_points mode=random'"},
+    {"strip stripper joinlines", "-f polylines"},
+    {"casttounstructuredgrid tounstructured", "-f unstructured"},
+    {"extractcells extractpoints extractselection extractcellsbytype selection", "-f extract"},
+    {"extractblock extractblocks multiblockblock", "-f 'extract blocks=...'"},
+    {"thresholdpercent selectvalues extractvalues splitvalues imagethreshold", "-f threshold"},
+    {"imagedilateerode dilate erode dilation erosion opening closing", "-f morphology"},
+    {"distancetransform imageeuclideandistance", "-f distance_map"},
+    {"tabletopolydata tabletopoints tabletostructuredgrid", "-f table_to_points"},
+    {"smoothing laplacian taubin smoothtaubin smoothpolydata windowedsinc windowedsincpolydata smoothmesh", "-f smooth"},
+    {"featureangle sharpedges extractfeatureedges boundaryedges", "-f feature_edges"},
+    {"cellquality meshquality computecellquality", "-f quality"},
+    {"pointdatatocelldata pointtocelldata ptc", "-f point_to_cell"},
+    {"celldatatopointdata celltopointdata ctp", "-f cell_to_point"},
+    {"stats describe summary minmax range descriptivestatistics", "-f statistics"},
+    {"hist distribution extracthistogram", "-f histogram"},
+    {"blur gaussian gaussiansmoothing imagegaussiansmooth denoise", "-f gaussian_smooth"},
     {"label labels annotate text", "--show labels"},
     {"vonmises mises tresca", "-f stress_measures"},
     {"fa fractionalanisotropy anisotropy", "-f tensor_measures"},
@@ -78,16 +112,40 @@ constexpr OtherName names[] = {
     {"below above outofrange", "--show 'surface below=blue above=red'"},
 };
 
+// As the tables hold it; behind it without what class names of VTK have around it.
+std::vector<std::string> plain_forms(std::string_view name) {
+  std::string plain = to_lower(name);
+  std::erase_if(plain, [](char c) { return c == '_' || c == '-' || c == ' '; });
+  std::vector<std::string> forms = {plain};
+  std::string_view bare = plain;
+  constexpr std::string_view prefix = "vtk", suffix = "filter";
+  if (bare.starts_with(prefix)) bare.remove_prefix(prefix.size()), forms.emplace_back(bare);
+  if (bare.size() > suffix.size() && bare.ends_with(suffix)) forms.emplace_back(bare.substr(0, bare.size() - suffix.size()));
+  return forms;
+}
+
 }  // namespace
 
 std::span<const OtherName> other_names() { return names; }
 
+std::string known_elsewhere(std::string_view name) {
+  for (const std::string& plain : plain_forms(name)) {
+    for (const OtherName& n : names)
+      for (const std::string_view word : words(n.words))
+        if (word == plain) return fmt::format("here it is said {}", n.here);
+    for (const MissingName& n : missing_names())
+      for (const std::string_view word : words(n.words))
+        if (word == plain)
+          return fmt::format("there is no operation that {}{}", n.what, n.nearest.empty() ? "" : fmt::format("; nearest: {}", n.nearest));
+  }
+  return "";
+}
+
 std::string said_here(std::string_view name, std::span<const std::string> candidates) {
-  std::string plain = to_lower(name);
-  std::erase_if(plain, [](char c) { return c == '_' || c == '-' || c == ' '; });
-  for (const OtherName& n : names)
-    for (const std::string_view word : words(n.words))
-      if (word == plain) return fmt::format("here it is said {}", n.here);
+  if (const std::string said = known_elsewhere(name); !said.empty()) return said;
+  for (const std::string& plain : plain_forms(name))
+    for (const std::string& candidate : candidates)
+      if (plain_forms(candidate)[0] == plain) return fmt::format("here it is called {}", candidate);
   return unknown_name_hint(name, candidates);
 }
 

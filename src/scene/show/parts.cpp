@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "base/error.h"
+#include "base/text/alike_notes.h"
 #include "scene/choose/shared_scale.h"
 #include "scene/show/volume.h"
 #include "scene/show/volume_parts.h"
@@ -36,6 +38,7 @@ void share_colors(const std::vector<DatasetPtr>& parts, const ShowKind& kind, co
   if (fields.empty()) return;  // the show says what there is instead
   const bool own_colors = std::all_of(fields.begin(), fields.end(), [](const FieldOf& f) { return f.field->role == Role::colors; });
   if (!own_colors) share_scale(fields, shared);
+  if (tells_beyond(shared)) shared.beyond = count_beyond(fields, shared);
   for (size_t i = 0; i < parts.size(); ++i) {
     ColoringParams& own = *kind.coloring(params[i]);
     const bool has = parts[i]->fields().find(name) != nullptr;
@@ -113,7 +116,17 @@ std::vector<Legend> add_parts(Scene& scene, const ShownParts& shown, const std::
 
 std::vector<Legend> show_parts(Scene& scene, const ShownParts& shown, const std::vector<DatasetPtr>& beside, uint32_t group,
                                Context& context) {
-  std::vector<Legend> legends = add_parts(scene, shown, beside, group, context);
+  AlikeNotes notes;  // of all parts, told when all is shown or one of them could not be
+  Context each(context, 0, 1);
+  each.on_log = [&](LogLevel level, std::string_view text) { notes.add(level, text); };
+  std::vector<Legend> legends;
+  try {
+    legends = add_parts(scene, shown, beside, group, each);
+  } catch (const Error&) {
+    notes.tell(context);
+    throw;
+  }
+  notes.tell(context);
   if (const ColoringParams* c = shown.kind->coloring ? shown.kind->coloring(*shown.stated) : nullptr)
     for (Legend& l : legends) l.place = c->legend_place, l.bar = c->legend_bar;
   return legends;

@@ -57,3 +57,32 @@ TEST_CASE("table_to_points: a line through the rows, broken where one has no pla
   CHECK(mesh->points.at(size_t(lines.point(1, 0))) == Vec3{3, 8, 0});
   CHECK(mesh->points.at(size_t(lines.point(1, 2))) == Vec3{5, 4, 0});
 }
+
+TEST_CASE("table to points: columns named after the axes are one vector, those of words, places and incomplete ones are none") {
+  const auto names = [](const std::vector<std::string>& columns, bool words = false, bool vectors = true) {
+    auto t = std::make_shared<Table>();
+    for (size_t i = 0; i < columns.size(); ++i)
+      t->columns.push_back({columns[i], Association::whole, Array::from_vector(std::vector<double>{double(i), 1}), "", Role::none});
+    if (words) t->labels.resize(columns.size()), t->labels.back() = {"a", "b", "c", "d"};
+    Context context;
+    TableToPointsParams p;
+    p.vectors = vectors;
+    return table_to_points(TablePtr(t), p, context);
+  };
+  const DatasetPtr d = names({"x", "y", "wind_x", "wind_y", "wind_z", "flat_x", "flat_y"});
+  CHECK(d->fields().names() == std::vector<std::string>{"x", "y", "wind", "flat"});
+  const Field& wind = d->fields().require("wind", Association::point);
+  CHECK(wind.role == Role::vectors);
+  CHECK(wind.components() == 3);
+  for (int c = 0; c < 3; ++c) CHECK(wind.array.get(0, c) == 2 + c);
+  CHECK(d->fields().require("flat", Association::point).components() == 2);
+  using Names = std::vector<std::string>;
+  CHECK(names({"x", "y", "a_x", "a_z"})->fields().names() == Names{"x", "y", "a_x", "a_z"});
+  CHECK(names({"x", "y", "a_x", "a_y"}, true)->fields().names() == Names{"x", "y", "a_x", "a_y"});
+  CHECK(names({"p_x", "p_y", "a"})->fields().names() == Names{"p_x", "p_y", "a"});
+  CHECK(names({"x", "y", "a_x", "a_y", "a"})->fields().names() == Names{"x", "y", "a_x", "a_y", "a"});
+  CHECK(names({"x", "y", "a_x", "a_y"}, false, false)->fields().names() == Names{"x", "y", "a_x", "a_y"});
+  // ParaView's names of coordinates, wherever they stand.
+  CHECK(names({"T", "Points_0", "Points_1", "Points_2"})->bounds().lo == Vec3(1, 1, 1));
+  CHECK(names({"T", "Points_0", "Points_1", "Points_2"})->bounds().hi == Vec3(1, 2, 3));
+}

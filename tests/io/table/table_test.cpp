@@ -109,7 +109,32 @@ TEST_CASE("csv: the points of a mesh with their fields are a table") {
   Context context;
   const std::string path = test::temp_folder() + "mesh.csv";
   write_data(path, make_dataset(g, std::move(f)), {}, context);
-  CHECK(MappedFile(path).text() == "position_0,position_1,position_2,T\n0,0,0,0.1\n1,0,0,2\n");
+  CHECK(MappedFile(path).text() == "x,y,z,T\n0,0,0,0.1\n1,0,0,2\n");
+}
+
+TEST_CASE("csv: components of vectors are named after the axes, coordinates otherwise where a field has their names") {
+  UniformGrid g;
+  g.dims = {2, 1, 1};
+  const auto header = [&](std::vector<Field> fields) {
+    FieldSet set;
+    for (Field& f : fields) set.add(std::move(f));
+    Context context;
+    const std::string path = test::temp_folder() + "mesh.csv";
+    write_data(path, make_dataset(g, std::move(set)), {}, context);
+    const MappedFile file(path);
+    return std::string(file.text().substr(0, file.text().find('\n')));
+  };
+  const auto numbers = [](int components, std::vector<double> v) {
+    v.resize(size_t(2 * components));
+    return Array::from_vector(std::move(v), components);
+  };
+  CHECK(header({{"v", Association::point, numbers(3, {}), "", Role::vectors}, {"w", Association::point, numbers(2, {}), "", Role::none}}) ==
+        "x,y,z,v_x,v_y,v_z,w_x,w_y");
+  CHECK(header({{"rgb", Association::point, numbers(3, {}), "", Role::colors},
+                {"s", Association::point, numbers(6, {}), "", Role::tensors}}) == "x,y,z,rgb_0,rgb_1,rgb_2,s_0,s_1,s_2,s_3,s_4,s_5");
+  // A field x that is no coordinate keeps its name; one that repeats the coordinate is written once.
+  CHECK(header({{"X", Association::point, numbers(1, {5, 5}), "", Role::scalars}}) == "position_x,position_y,position_z,X");
+  CHECK(header({{"x", Association::point, numbers(1, {0, 1}), "", Role::scalars}}) == "x,y,z");
 }
 
 TEST_CASE("json: lists of objects, objects of lists, grids, and named tables") {

@@ -115,3 +115,13 @@ TEST_CASE("collections: a value that is chosen is chosen once for all parts, rou
   });
   CHECK(pieces <= 1);  // the middle lies between the two
 }
+
+TEST_CASE("collections: a contour tells of values that no part has, once, with the range of all") {
+  const Data in = collection({{"small", surface_of(2)}, {"large", surface_of(9)}});  // T over 0..2 and 0..9
+  Told some;
+  run("contour", in, {"values=1,5"}, some.context);
+  CHECK(some.text == "");
+  Told none;
+  run("contour", in, {"values=5,20"}, none.context);
+  CHECK(none.text == "contour: nothing at T = 20; the field ranges from 0 to 9\n");
+}
