@@ -244,8 +244,9 @@ def check_csv(sightglass, path, info):
     bad = [] if open(once, "rb").read() == open(again, "rb").read() else ["the second .csv is another than the first"]
     columns = {c["name"]: c for c in sightglass.info(once)["columns"]}
     for f in info["fields"]:
+        ends = "xyz" if f["components"] <= 3 and f"{f['name']}_x" in columns else "0123456789"  # vectors by axes, others by numbers
         for c, r in enumerate(f["range"]) if f["association"] == "point" else ():
-            name = f["name"] if f["components"] == 1 else f"{f['name']}_{c}"
+            name = f["name"] if f["components"] == 1 else f"{f['name']}_{ends[c] if c < len(ends) else c}"
             if name not in columns:
                 bad.append(f"no column '{name}'")
             elif r and not np.allclose(r, columns[name]["range"][0], rtol=1e-6, atol=0):  # f32 is written with as many digits as it needs

@@ -61,7 +61,7 @@ void describe_path(Schema& s, ReadParams& p) {
 
 void describe_format(Schema& s, ReadOptions& p) {
   s("format", p.format,
-    "Format of the file: one of its extensions (obj, csv, nii.gz) or its name; default: detected from the content, then the file's name.");
+    "Format of what is read, by one of its extensions (obj, csv, nii.gz) or its name; default: detected from the content, then the name.");
 }
 
 void describe_fields(Schema& s, ReadOptions& p) { s("fields", p.fields, "Fields to load; default: those needed."); }

@@ -12,6 +12,7 @@
 #include "data/field_ops.h"
 #include "data/lattice.h"
 #include "data/ranks/over_all.h"
+#include "data/ranks/part_ranges.h"
 #include "filter/field/automatic_values.h"
 #include "filter/scalar/contour/lattice/contour_surfels.h"
 
@@ -174,7 +175,7 @@ DatasetPtr assemble(const Dataset& in, const Field& field, double value, Points 
   const size_t count = normals.count();
   if (count == 0) {
     const Range r = ctx.communicator ? in.range(field) : range_over_all(in, field, -1, ctx);  // not all processes may come here
-    if (!ctx.parts || value < r.lo || value > r.hi)                                           // else it is met in another part
+    if (!met_in_a_part(field, -1, value, ctx))
       ctx.info(fmt::format("surfels: nothing at {} = {}; the field ranges from {} to {}", field.name, short_number(value),
                            short_number(r.lo), short_number(r.hi)));
   }

@@ -124,4 +124,10 @@ TEST_CASE("collections: a contour tells of values that no part has, once, with t
   Told none;
   run("contour", in, {"values=5,20"}, none.context);
   CHECK(none.text == "contour: nothing at T = 20; the field ranges from 0 to 9\n");
+  // Between the parts there may be a gap.
+  const Data high = run("calc", Data(surface_of(2)), {"expr=T+6", "name=T"}, none.context);
+  const Data apart = collection({{"low", surface_of(2)}, {"high", std::get<DatasetPtr>(high)}});
+  Told gap;
+  run("contour", apart, {"field=T", "values=4"}, gap.context);
+  CHECK(gap.text == "contour: nothing at T = 4; the field ranges from 0 to 8\n");
 }

@@ -10,6 +10,7 @@
 #include "base/text/text.h"
 #include "data/cells/mesh_dimension.h"
 #include "data/ranks/over_all.h"
+#include "data/ranks/part_ranges.h"
 #include "data/trusted.h"
 #include "filter/field/automatic_values.h"
 #include "filter/field/sampling/point_cell.h"
@@ -358,8 +359,9 @@ DatasetPtr contour(const DatasetPtr& given, const ContourParams& params, Context
   }
   for (size_t i = 0; i < pieces.size(); ++i) {
     if (pieces[i].lines.count() + pieces[i].triangles.count() > 0 || context.communicator) continue;
-    const Range range = range_over_all(*input, field, component, context);          // not before: it is a pass over all samples
-    if (context.parts && values[i] >= range.lo && values[i] <= range.hi) continue;  // it is met in another part
+    // Not before: it is a pass over all samples.
+    if (met_in_a_part(field, component, values[i], context)) continue;
+    const Range range = range_over_all(*input, field, component, context);
     context.info(range.empty() ? fmt::format("contour: field '{}' has no values", field.name)
                                : fmt::format("contour: nothing at {} = {}; the field ranges from {} to {}{}", field.name,
                                              short_number(values[i]), short_number(range.lo), short_number(range.hi),
