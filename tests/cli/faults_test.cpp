@@ -43,7 +43,8 @@ std::vector<std::vector<std::string>> writers() {
     }
   };
   const std::string source = "hydrogen size=24";
-  add({"vti", "nrrd", "mhd", "mha", "nii", "nii.gz", "npy", "vdb", "vtkhdf", "zarr", "pvti", "vtm"}, {"convert", "--source", source});
+  add({"vti", "nrrd", "mhd", "mha", "nii", "nii.gz", "hdr", "mnc", "dcm", "npy", "vdb", "vtkhdf", "zarr", "pvti", "vtm"},
+      {"convert", "--source", source});
   add({"vtu", "pvtu"}, {"convert", "--source", source, "-f", "threshold min=0"});
   add({"ply", "stl", "obj", "vtp", "pvtp", "glb", "gltf"}, {"convert", "--source", source, "-f", "faces"});
   add({"png", "jpg", "webp"}, {"render", "--source", source, "--size", "600x500"});

@@ -2,6 +2,7 @@
 // Words of the command line: those of the chain and those of operations.
 #include <nlohmann/json.hpp>
 
+#include "base/file/file.h"
 #include "cli/program.h"
 #include "support/test.h"
 
@@ -45,4 +46,16 @@ TEST_CASE("ops calc: every function and operator has its line, in JSON too") {
   const auto one = nlohmann::json::parse(sightglass({"ops", "calc", "--json"}).out);
   CHECK(one["words"].size() > 50);
   for (const auto& w : one["words"]) CHECK(text.find(w["form"].get<std::string>()) != std::string::npos);
+}
+
+TEST_CASE("info: labels are told with their names, and threshold takes these") {
+  const std::string f = test::fresh_folder("label_names");
+  write_file(f + "m.mtl", "newmtl steel\nKd 1 0 0\nnewmtl glass\nKd 0 0 1\n");
+  write_file(f + "m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl steel\nf 1 2 3\nusemtl glass\nf 3 2 1\nf 2 3 1\n");
+  const auto told = sightglass({"info", "m.obj"}, f);
+  CHECK(told.out.find("steel, 2 glass") != std::string::npos);
+  CHECK(sightglass({"info", "m.obj", "--quick"}, f).out.find("glass") != std::string::npos);
+  const auto kept = sightglass({"info", "m.obj", "-f", "threshold field=MaterialIds names=glass"}, f);
+  CHECK(kept.out.find("2 cells") != std::string::npos);
+  CHECK(kept.out.find("2 (constant); glass") != std::string::npos);
 }

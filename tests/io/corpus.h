@@ -16,7 +16,7 @@ namespace sg::test {
 struct PluginRow {
   std::string_view plugin, formats;
 };
-inline constexpr PluginRow plugins[] = {{"hdf5", "vtkhdf enzo xdmf"},
+inline constexpr PluginRow plugins[] = {{"hdf5", "vtkhdf minc-2 enzo xdmf"},
                                         {"netcdf", "netcdf exodus-ii minc"},
                                         {"cgns", "cgns"},
                                         {"gdcm", "dicom dicom-without-preamble"},

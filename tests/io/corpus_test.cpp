@@ -75,6 +75,6 @@ TEST_CASE("corpus: DICOM" * doctest::skip(test::missing("gdcm"))) { check_format
 // These start a process for each attempt: fewer of them.
 TEST_CASE("corpus: netCDF, Exodus II, MINC" * doctest::skip(test::missing("netcdf"))) { check_formats("netcdf", {16, 32, 32}); }
 TEST_CASE("corpus: TIFF" * doctest::skip(test::missing("tiff"))) { check_formats("tiff", {16, 64, 32}); }
-TEST_CASE("corpus: VTKHDF, ENZO, XDMF" * doctest::skip(test::missing("hdf5"))) { check_formats("hdf5", {16, 32, 32}); }
+TEST_CASE("corpus: VTKHDF, MINC 2, ENZO, XDMF" * doctest::skip(test::missing("hdf5"))) { check_formats("hdf5", {16, 32, 32}); }
 TEST_CASE("corpus: CGNS" * doctest::skip(test::missing("cgns"))) { check_formats("cgns", {16, 32, 32}); }
 TEST_CASE("corpus: OpenVDB" * doctest::skip(test::missing("openvdb"))) { check_formats("openvdb", {16, 32, 32}); }

@@ -207,7 +207,7 @@ TEST_CASE("missing pieces: what a file names and is not there is named by the er
         // A folder of pictures names none of them, and one is no stack; an .img says which .hdr it needs.
         const std::string name = files[gone].name.substr(files[gone].name.rfind('/') + 1);
         if (said.empty() || slug == "stack-of-pictures") continue;
-        CHECK_MESSAGE(contains(said, slug == "nifti-image" ? ".hdr" : name), said);
+        CHECK_MESSAGE(contains(said, slug == "analyze-image" ? ".hdr" : name), said);
       }
     }
   }

@@ -85,6 +85,6 @@ TEST_CASE("hostile sizes: DICOM" * doctest::skip(test::missing("gdcm"))) { check
 // These start a process for each attempt: fewer of them. tests/hdf5 has counts of VTKHDF by name.
 TEST_CASE("hostile sizes: netCDF, Exodus II, MINC" * doctest::skip(test::missing("netcdf"))) { check_sizes("netcdf", 0, 0, 600, 44); }
 TEST_CASE("hostile sizes: TIFF" * doctest::skip(test::missing("tiff"))) { check_sizes("tiff", 0, 0, 400, 26); }
-TEST_CASE("hostile sizes: VTKHDF, ENZO, XDMF" * doctest::skip(test::missing("hdf5"))) { check_sizes("hdf5", 5, 0, 600, 64); }
+TEST_CASE("hostile sizes: VTKHDF, MINC 2, ENZO, XDMF" * doctest::skip(test::missing("hdf5"))) { check_sizes("hdf5", 5, 0, 600, 64); }
 TEST_CASE("hostile sizes: CGNS" * doctest::skip(test::missing("cgns"))) { check_sizes("cgns", 0, 0, 800, 128); }
 TEST_CASE("hostile sizes: OpenVDB" * doctest::skip(test::missing("openvdb"))) { check_sizes("openvdb", 0, 0, 300, 60); }
