@@ -25,6 +25,7 @@ std::string stand_upright(std::span<const DatasetPtr> parts, const std::string& 
   if (stands >= clear) return "";
   const auto name = [](int axis) { return axis == 1 ? "y" : "z"; };
   const double stands_otherwise = stability(surfaces, other);
+  if (stands_otherwise <= stands) return "";
   if (stands_otherwise < clear || stands > slight * stands_otherwise)
     return fmt::format("up is {}, as in most files of this kind (--camera up={} is the other)", name(usual), y_up ? "0,0,1" : "0,1,0");
   camera = view_with_up(box, !y_up);

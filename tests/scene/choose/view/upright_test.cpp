@@ -73,7 +73,24 @@ TEST_CASE("upright: up is where a shape stands, whatever is customary in files o
   CHECK(up_of(z_up, "glb") == Vec3{0, 1, 0});  // glTF defines it
 }
 
-TEST_CASE("upright: of what stands nowhere it is said what is taken for up") {
+TEST_CASE("upright: where the other axis is better, but not clearly, it is said what is taken for up") {
+  SurfaceMesh m;  // a bar of six sides along x, on one that is narrow
+  m.points.xyz = Array::from_vector<float>(
+      {-2, -0.15f, -1, 2, -0.15f, -1, 2, 0.15f, -1, -2, 0.15f, -1, -2, -1, 0, 2, -1, 0, 2, 1, 0, -2, 1, 0, -2, 0, 1.5f, 2, 0, 1.5f}, 3);
+  m.polygons = {Array::from_vector<int32_t>({0, 3, 2, 1, 0, 1, 5, 4, 2, 3, 7, 6, 4, 5, 9, 8, 6, 7, 8, 9}), {}, 4};
+  DatasetParts parts;
+  parts.mesh = m;
+  const DatasetPtr d = make_dataset(std::move(parts));
+  CHECK(stands(d, 2) == doctest::Approx(0.3 / 2));
+  CHECK(stands(d, 1) == 0);
+  CameraDefaults camera = choose_view(d->bounds(), "obj", false);
+  CHECK(stand_upright({&d, 1}, "obj", camera).find("up is y, as in most files of this kind") != std::string::npos);
+  CHECK(camera.up == Vec3{0, 1, 0});
+  CHECK(stand_upright({&d, 1}, "stl", camera).empty());
+  CHECK(stand_upright({&d, 1}, "", camera).empty());  // not of a file
+}
+
+TEST_CASE("upright: a ball stands nowhere, and nothing is said of it") {
   SurfaceMesh m;  // an octahedron on its tip
   m.points.xyz = Array::from_vector<float>({1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1}, 3);
   m.polygons = {Array::from_vector<int32_t>({0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5}), {}, 3};
@@ -82,7 +99,5 @@ TEST_CASE("upright: of what stands nowhere it is said what is taken for up") {
   const DatasetPtr d = make_dataset(std::move(parts));
   CHECK(stands(d, 2) == 0);
   CameraDefaults camera = choose_view(d->bounds(), "stl", false);
-  CHECK(stand_upright({&d, 1}, "stl", camera).find("up is z, as in most files of this kind") != std::string::npos);
-  CHECK(stand_upright({&d, 1}, "obj", camera).find("up is y") != std::string::npos);
-  CHECK(stand_upright({&d, 1}, "", camera).empty());  // not of a file
+  CHECK(stand_upright({&d, 1}, "stl", camera).empty());
 }
