@@ -94,7 +94,7 @@ void fix_volume(PipelineFile::Show& show, const std::vector<PipelineFile>& some,
   words.push_back(fmt::format("range={},{}", exact_number(item.color.lo), exact_number(item.color.hi)));
   std::erase_if(words, [&](const std::string& word) { return states(show, word); });
   show.words.insert(show.words.end(), words.begin(), words.end());
-  context.info(fmt::format("one range and one opacity for all pictures: {} to {}, chosen over {} steps spread over the series",
+  context.info(fmt::format("one range for all pictures: {} to {}, and one opacity, chosen over {} steps spread over the series",
                            short_number(item.color.lo), short_number(item.color.hi), some.size()));
 }
 

@@ -24,7 +24,7 @@ std::vector<std::vector<size_t>> steps_alike(const PipelineFile& file) {
   for (size_t i = 0; i < file.steps.size(); ++i) {
     const PipelineFile::Step& s = file.steps[i];
     const Operation* op = known_operation(s.operation);
-    if (!op || !op->choose || !is_open(*make_params(*op, s.words).schema.find(op->alike))) continue;
+    if (!op || !op->choose || word_value(s.words, op->alike)) continue;
     const auto same = std::find_if(groups.begin(), groups.end(), [&](const std::vector<size_t>& g) {
       const PipelineFile::Step& first = file.steps[g[0]];
       return first.operation == s.operation && first.words == s.words &&
@@ -79,15 +79,16 @@ std::optional<std::string> common_choice(const std::vector<DatasetPtr>& parts, c
 
 void settle_choices(PipelineFile& file, std::span<PipelineFile> moments, const GraphOptions& graph, const StepResults& results,
                     std::vector<Data>& held, Context& context) {
-  constexpr size_t samples = 0;       // ranges alone
-  build_graph(file, graph, results);  // throws for what is misspelt, with its line
+  constexpr size_t samples = 0;  // ranges alone
+  const PipelineFile& now = moments.empty() ? file : moments[0];
+  build_graph(now, graph, results);  // throws for what is misspelt, with its line
   for (const std::vector<size_t>& steps : steps_alike(file)) {
     if (steps.size() < 2 && moments.size() < 2) continue;
     const Operation& op = *known_operation(file.steps[steps[0]].operation);
     std::vector<std::vector<DatasetPtr>> parts(steps.size());
     std::vector<DatasetPtr> all;
     for (size_t m = 0; m < std::max<size_t>(1, moments.size()); ++m) {
-      const std::vector<Data> inputs = inputs_of(moments.empty() ? file : moments[m], steps, graph, results, context);
+      const std::vector<Data> inputs = inputs_of(m == 0 ? now : moments[m], steps, graph, results, context);
       const bool first = m == 0;
       for (size_t k = 0; k < steps.size(); ++k)
         for (const DatasetPtr& d : datasets_of(inputs[k])) {
@@ -103,7 +104,7 @@ void settle_choices(PipelineFile& file, std::span<PipelineFile> moments, const G
       if (told.emplace(text).second) context.log(level, text);
     };
     for (size_t k = 0; k < steps.size(); ++k) {
-      const ParamSet params = make_params(op, file.steps[steps[k]].words);
+      const ParamSet params = make_params(op, now.steps[steps[k]].words);
       const std::optional<std::string> value = common_choice(parts[k], op, params, choosing);
       if (!value) continue;
       const std::string word = fmt::format("{}={}", op.alike, *value);

@@ -137,7 +137,7 @@ void show_what_lies_beyond(const Range& values, ColorScale& s) {
 }
 
 // Numbers of a file that says what they stand for are labels also where they are stored as floats, with NaN for none.
-bool holds_whole_numbers(const Field& field) { return !is_float(field.array.type()) || field.role == Role::labels; }
+bool holds_whole_numbers(const Field& field) { return !is_float(field.array.type()) || field.role == Role::labels || names_numbers(field); }
 
 bool names_its_labels(const Dataset& d, const Field& field) {
   return field.role == Role::labels &&

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <set>
 #include <span>
 
 #include "base/text/text.h"
@@ -77,12 +78,25 @@ bool holds_whole_values(const Field& f) {
   return true;
 }
 
+bool is_id(const Field& f, const std::vector<std::string>& words) {
+  const std::string name = to_lower(f.name);
+  const bool ends = name.ends_with("id") || name.ends_with("ids");
+  return ends && (!is_float(f.array.type()) || words.back() == "id" || words.back() == "ids");  // no "solid" of real numbers
+}
+
+// More different values than a legend can name.
+bool has_many_values(const Field& f) {
+  std::set<double> values;
+  for (size_t i = 0; i < f.array.count() && values.size() <= few_numbers; ++i) values.insert(f.array.get(i));
+  return values.size() > few_numbers;
+}
+
 // Numbers under which a program keeps its groups (the objects of an OBJ file), or of more things than a legend can name: a bar of colours
 // over them would be read as a quantity.
-bool ids_of_groups(const Field& f, const std::vector<std::string>& words, const Range& r) {
+bool ids_of_groups(const Field& f, const std::vector<std::string>& words) {
   if (words.empty() || (words.back() != "id" && words.back() != "ids") || f.role == Role::labels || !holds_whole_values(f)) return false;
   const bool of_groups = std::any_of(words.begin(), words.end(), [](const std::string& w) { return w == "group" || w == "groups"; });
-  return of_groups || r.hi - r.lo + 1 > double(few_numbers);
+  return of_groups || has_many_values(f);
 }
 
 // Of any point; nothing for AMR grids.
@@ -132,23 +146,26 @@ bool is_rounding(const Dataset& d, const Field& f, double size) {
 
 }  // namespace
 
+bool names_numbers(const Field& f) {
+  const std::vector<std::string> words = words_of(f.name);
+  return f.components() == 1 && (is_id(f, words) || any_of(words, divisions)) && holds_whole_values(f);
+}
+
 Telling telling(const Dataset& d, const Field& f) {
   if (f.look.texture) return Telling::numbering;
   const Range r = d.range(f);
   if (r.empty()) return Telling::values;  // NaN alone: that is told elsewhere
   const double size = size_of(r);
   if (!(r.hi - r.lo > rounding * size) || is_rounding(d, f, size)) return Telling::nothing;
-  const bool whole = !is_float(f.array.type());
+  const bool whole = holds_whole_values(f), integers = !is_float(f.array.type());
   const std::vector<std::string> words = words_of(f.name);
   if (f.components() == 1) {
-    const bool named_id =
-        any_of(words, numberings) ||
-        (whole && (any_of(words, whole_numberings) || to_lower(f.name).ends_with("id") || to_lower(f.name).ends_with("ids")));
+    const bool named_id = any_of(words, numberings) || (whole && is_id(f, words)) || (integers && any_of(words, whole_numberings));
     const bool counts = counts_up(f);
     if (counts && is_lattice(d.mesh()) && !named_id) return Telling::numbering;  // the ramp of an image
-    if (counts || (named_id && (one_for_each(f, r) || ids_of_groups(f, words, r)))) return Telling::ids;
+    if (counts || (named_id && (one_for_each(f, r) || ids_of_groups(f, words)))) return Telling::ids;
     if (named_id) return Telling::numbering;
-    if (whole && r.lo == 0 && r.hi == 1 && element_size(f.array.type()) == 1) return Telling::numbering;  // a mask
+    if (integers && r.lo == 0 && r.hi == 1 && element_size(f.array.type()) == 1) return Telling::numbering;  // a mask
     if (whole && any_of(words, divisions)) return Telling::divisions;
     if (f.role == Role::labels) return Telling::divisions;
   }

@@ -14,6 +14,9 @@ enum class Telling {
   nothing,    ///< the same everywhere, or rounding errors beside another field
 };
 
+/// Whether the name of a field says that its values number things, and they are whole, in whatever type they are stored ("material_id").
+bool names_numbers(const Field& f);
+
 /// By name, values and their neighbours: a field of integers called `block` divides, one that counts up in order is an id, one that varies
 /// by less than 1e-12 of its size or reaches less than 1e-12 of another field's says nothing.
 Telling telling(const Dataset& data, const Field& field);

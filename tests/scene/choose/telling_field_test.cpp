@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/choose/telling_field.h"
 
+#include "scene/choose/scale.h"
+
 #include "scene/choose/coloring.h"
 #include "support/test.h"
 
@@ -52,13 +54,36 @@ TEST_CASE("telling fields: quantities, divisions, numberings and nothing") {
   CHECK(telling_of(of<double>("pressure", [](int i) { return double(i % 4); })) == Telling::values);
 }
 
+TEST_CASE("telling fields: numbers of materials are labels in whatever type they are stored, and however large they are") {
+  const auto large = of<double>("material_id", [](int i) { return i < 16 ? 1.0 : 4.5e8; });
+  CHECK(telling_of(large) == Telling::numbering);
+  CHECK(names_numbers(large));
+  CHECK_FALSE(names_numbers(of<double>("material_id", wave)));
+  CHECK_FALSE(names_numbers(of<double>("solid", [](int i) { return double(i % 3); })));
+  CHECK(names_numbers(of<int>("material", parts)));
+  DatasetParts p;
+  UniformGrid g;
+  g.dims = {4, 4, 2};
+  p.mesh = g;
+  p.fields.add(large);
+  CHECK(looks_like_labels(*make_dataset(std::move(p)), large));
+}
+
 TEST_CASE("telling fields: ids of groups give no colour, however they are stored, unless the file names them") {
   CHECK(telling_of(of<float>("GroupIds", [](int i) { return float(i / 8); })) == Telling::ids);
   CHECK(telling_of(of<int>("group_id", parts)) == Telling::ids);
-  // More numbers than a legend can name, with gaps.
-  CHECK(telling_of(of<int>("surfaceId", [](int i) { return 10 * (i / 4); })) == Telling::ids);
-  CHECK(telling_of(of<double>("surfaceId", [](int i) { return 10.0 * (i / 4); })) == Telling::ids);
+  CHECK(telling_of(of<double>("surfaceId", [](int i) { return 1e4 * (i / 4); })) == Telling::numbering);
   CHECK(telling_of(of<int>("surfaceId", parts)) == Telling::numbering);
+  // More numbers than a legend can name.
+  DatasetParts many;
+  UniformGrid g;
+  g.dims = {1000, 1, 1};
+  many.mesh = g;
+  std::vector<int32_t> surfaces;
+  for (int i = 0; i < 1000; ++i) surfaces.push_back(3 * (i / 10));
+  many.fields.add({"surfaceId", Association::point, Array::from_vector(std::move(surfaces)), "", Role::none});
+  const DatasetPtr d = make_dataset(std::move(many));
+  CHECK(telling(*d, d->fields()[0]) == Telling::ids);
   // A value is none, whatever its name ends in.
   CHECK(telling_of(of<double>("GroupIds", wave)) != Telling::ids);
   CHECK(telling_of(of<double>("fluid", [](int i) { return 10.0 * (i / 4); })) == Telling::values);
