@@ -126,7 +126,7 @@ std::string field_line(const Dataset& d, const Field& f, size_t width, bool quic
     if (s.nan) line += fmt::format("; {} NaN", s.nan);
     if (s.infinite) line += fmt::format("; {} infinite", s.infinite);
   }
-  return line + names_text(d, f) + "\n";
+  return line + names_text(d, f, quick) + "\n";
 }
 
 std::string dataset_text(const Dataset& d, const std::string& name, bool quick) {

@@ -19,9 +19,13 @@ std::map<double, std::string> names_of(const Dataset& d, const Field& f) {
 
 }  // namespace
 
-std::string names_text(const Dataset& d, const Field& f) {
+std::string names_text(const Dataset& d, const Field& f, bool quick) {
   constexpr size_t few = 4;
-  const std::map<double, std::string> names = names_of(d, f);
+  std::map<double, std::string> names = names_of(d, f);
+  if (!quick && !names.empty()) {
+    const Range r = d.range(f);
+    std::erase_if(names, [&](const auto& name) { return name.first < r.lo || name.first > r.hi; });
+  }
   if (names.empty()) return "";
   std::string r;
   size_t shown = 0;

@@ -7,8 +7,8 @@
 
 namespace sg {
 
-/// "; names 0 = floor, 1 = left wall, ... (6 in all)"; "" for a field of mere numbers.
-std::string names_text(const Dataset& d, const Field& f);
+/// "; names 0 = floor, 1 = left wall, ... (6 in all)", of numbers within the field's range unless `quick`; "" for a field of mere numbers.
+std::string names_text(const Dataset& d, const Field& f, bool quick);
 /// ",\"names\":{\"0\":\"floor\",...}" with all of them; "" for a field of mere numbers.
 std::string names_json(const Dataset& d, const Field& f);
 

@@ -188,6 +188,22 @@ int render_into(PipelineFile file, const FilmParams& film, const PictureOptions&
   return render_to(file, film.output, options, o, context);
 }
 
+// The words of --legend as parameters of a way to show. A title of several words is written in quotes.
+std::vector<std::string> legend_words(const std::string& text) {
+  const std::vector<std::string> given = quoted_words(text);
+  std::vector<std::string> words;
+  for (size_t i = 0; i < given.size(); ++i) {
+    const std::string& w = given[i];
+    const bool parameter = w.find('=') != w.npos;
+    if (!parameter && i > 0 && given[i - 1].find('=') != std::string::npos && !value_of_word<LegendPlace>(w))
+      fail_usage(fmt::format("'{}' is no word of a legend", w), "--legend",
+                 fmt::format("a value with blanks stands in quotes: {}='{} {}'", given[i - 1].substr(0, given[i - 1].find('=')),
+                             given[i - 1].substr(given[i - 1].find('=') + 1), w));
+    words.push_back((parameter ? "legend_" : value_of_word<LegendPlace>(w) ? "legend_place=" : "legend=") + w);
+  }
+  return words;
+}
+
 }  // namespace
 
 int run_render(const Options& o, Context& context) {
@@ -199,10 +215,8 @@ int run_render(const Options& o, Context& context) {
   if (!o.field.empty()) options.coloring.push_back("field=" + o.field);
   if (!o.map.empty()) options.coloring.push_back("map=" + o.map);
   if (!o.scale.empty()) options.coloring.push_back("scale=" + o.scale);
-  for (const std::string& w : quoted_words(o.legend)) {
-    const char* name = w.find('=') != w.npos ? "legend_" : value_of_word<LegendPlace>(w) ? "legend_place=" : "legend=";
-    options.coloring.push_back(name + w);
-  }
+  if (!o.range.empty()) options.coloring.push_back("range=" + o.range);
+  for (std::string& word : legend_words(o.legend)) options.coloring.push_back(std::move(word));
   FilmParams film;
   take_film_flags(o, film);
   const char* unnamed = film.turntable > 0 ? "{name}.webm" : "{name}.png";

@@ -53,9 +53,20 @@ TEST_CASE("info: labels are told with their names, and threshold takes these") {
   write_file(f + "m.mtl", "newmtl steel\nKd 1 0 0\nnewmtl glass\nKd 0 0 1\n");
   write_file(f + "m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl steel\nf 1 2 3\nusemtl glass\nf 3 2 1\nf 2 3 1\n");
   const auto told = sightglass({"info", "m.obj"}, f);
-  CHECK(told.out.find("steel, 2 glass") != std::string::npos);
+  CHECK(told.out.find("names 1 = steel, 2 = glass") != std::string::npos);
   CHECK(sightglass({"info", "m.obj", "--quick"}, f).out.find("glass") != std::string::npos);
   const auto kept = sightglass({"info", "m.obj", "-f", "threshold field=MaterialIds names=glass"}, f);
   CHECK(kept.out.find("2 cells") != std::string::npos);
-  CHECK(kept.out.find("2 (constant); glass") != std::string::npos);
+  CHECK(kept.out.find("2 (constant); names 2 = glass") != std::string::npos);
+}
+
+TEST_CASE("--range and --legend: a range as its own option, and a title of two words without its quotes") {
+  const std::string f = test::fresh_folder("legend_words");
+  const auto bare = sightglass({"render", "-s", "sphere size=8", "--legend", "title=Gas temperature unit=K", "-o", "a.png"}, f);
+  CHECK(bare.status == 2);
+  CHECK(bare.err.find("title='Gas temperature'") != std::string::npos);
+  const auto drawn =
+      sightglass({"render", "-s", "sphere size=8", "--show", "surface", "--range", "0,0.5", "--size", "60x40", "-o", "b.png"}, f);
+  CHECK(drawn.status == 0);
+  CHECK(MappedFile(f + "b.png").text().find("range: [0, 0.5]") != std::string::npos);  // its recipe
 }

@@ -27,7 +27,7 @@
 namespace sg {
 
 void describe(Schema& s, PictureParams& p) {
-  s("size", p.size, "Width and height in pixels, e.g. 1920x1080.");
+  s("size", p.size, "Width and height in pixels, e.g. 1920x1080; HD is that, 4K 3840x2160, 8K 7680x4320.");
   s("background", p.background, "Background colour, two colours bottom/top for a gradient, or 'transparent'.");
   s("title", p.title,
     "Title above the picture; {t} is the time of the data, in a series {n} the number of the picture and {count} that of all.");
@@ -65,11 +65,13 @@ void describe(Schema& s, PictureParams& p) {
   s("text", p.text, "Scale factor of all text.").range(0.2, 10);
 }
 
-void parse_size(const std::string& text, int& width, int& height) {
+void parse_size(const std::string& words, int& width, int& height) {
+  const std::string name = to_lower(words);
+  const std::string text = name == "4k" || name == "uhd" ? "3840x2160" : name == "8k" ? "7680x4320" : name == "hd" ? "1920x1080" : words;
   const auto parts = split(text, 'x');
   const auto w = parts.size() == 2 ? parse_int(parts[0]) : std::nullopt, h = parts.size() == 2 ? parse_int(parts[1]) : std::nullopt;
   if (!w || !h || *w < 1 || *h < 1 || *w > 32768 || *h > 32768)
-    fail_usage(fmt::format("'{}' is not a size", text), "size", "write width x height from 1 to 32768, e.g. 1280x720");
+    fail_usage(fmt::format("'{}' is not a size", text), "size", "write width x height from 1 to 32768, e.g. 1280x720, or HD, 4K or 8K");
   width = int(*w), height = int(*h);
 }
 
@@ -269,6 +271,7 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   show_what_is_labelled(file, picture.notes);
   settle_choices(file, {}, graph_options, options.results, held, computing);
   Look look = choose_looks(file, options, graph_options, held, picture.notes, computing);
+  show_planes_as_measured(file);
   stated = stated_in(file);  // with what was chosen of it
   const std::vector<StatedShow> shows = stated_shows(file);
 
@@ -310,8 +313,8 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
       look.camera = choose_view(shown[0].box, extension, shown[0].patient);
       std::vector<DatasetPtr> parts;
       for_each_dataset(results[0], [&](const std::string&, const DatasetPtr& d) { parts.push_back(d); });
-      if (const std::string up = stand_upright(parts, extension, look.camera); !up.empty() && !stated.camera.up)
-        picture.notes.push_back(up);
+      const std::string up = is_shape_of_file(file, first) ? stand_upright(parts, extension, look.camera) : "";
+      if (!up.empty() && !stated.camera.up) picture.notes.push_back(up);
     }
     if (pose) picture.notes.push_back(face_unstated(*pose, look.camera));
     face_cut(file, first, look.camera);

@@ -202,7 +202,8 @@ Look choose_for(const PipelineFile::Show& wanted, Data data, bool alone, Pipelin
   if (states_scale(wanted) || !alone)
     if (const size_t at = look.reason.find("shown as a volume;"); at != look.reason.npos) look.reason.resize(look.reason.find(';', at));
   if (const Field* u = displacement_of(*largest)) look.reason += fmt::format("; -f warp shows its shape displaced by '{}'", u->name);
-  if (const std::string up = stand_upright(parts, extension, look.camera); !up.empty()) look.reason += "; " + up;
+  if (is_shape_of_file(file, end))
+    if (const std::string up = stand_upright(parts, extension, look.camera); !up.empty()) look.reason += "; " + up;
   face_detail(look, parts, extension, context);
   cut_open(look, largest, field, context);
   if (parts.size() == 1) show_flow(look, largest, field, context);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "filter/mesh/clip/clip.h"
+#include "filter/mesh/slice/slice.h"
 #include "filter/scalar/contour/contour.h"
 #include "filter/scalar/line_labels.h"
 #include "filter/tensor/glyphs/tensor_glyphs.h"
@@ -41,13 +42,16 @@ bool does(const PipelineFile::Step& step) {
   return op && op->is<P>();
 }
 
+bool is_plane(const ImplicitParams& p) {
+  return p.sphere.empty() && p.cylinder.empty() && p.box.empty() && p.quadric.empty() && p.function.empty();
+}
+
 // Out of what is kept, across the plane that cut it open; nothing for other clips.
 std::optional<Vec3> cut_normal(const PipelineFile::Step& step) {
   if (!does<ClipParams>(step) || step.from.size() > 1) return {};
   const ParamSet set = make_params(*known_operation(step.operation), step.words);
   const ClipParams& p = set.as<ClipParams>();
-  const bool shape = !p.sphere.empty() || !p.cylinder.empty() || !p.box.empty() || !p.quadric.empty() || !p.function.empty();
-  if (shape || !p.field.empty() || p.value || p.keep == ClipSide::both) return {};
+  if (!is_plane(p) || !p.field.empty() || p.value || p.keep == ClipSide::both) return {};
   Vec3 n = p.normal;
   if (p.axis != CutAxis::none) n = Vec3(), n[axis_number(p.axis)] = 1;
   return p.keep == ClipSide::inside ? n : -n;
@@ -110,6 +114,25 @@ void show_what_is_labelled(PipelineFile& file, std::vector<std::string>& notes) 
     s.of = chain[kind.is<LinesShow>() ? 1 : std::min<size_t>(2, chain.size() - 1)]->name;
     notes.push_back(fmt::format("{}: of '{}', as line_labels makes nothing but points (of= names another step)", s.kind, s.of));
   }
+}
+
+void show_planes_as_measured(PipelineFile& file) {
+  for (size_t i = 0; i < file.show.size(); ++i) {
+    PipelineFile::Show& s = file.show[i];
+    if (s.kind == auto_show || !find_show(s.kind).is<SurfaceShow>() || word_value(s.words, "lit")) continue;
+    const auto chain = steps_behind(file, shown_step(file, i));
+    if (chain.empty() || !does<SliceParams>(*chain.front()) || chain.front()->from.size() > 1) continue;
+    const ParamSet set = make_params(*known_operation(chain.front()->operation), chain.front()->words);
+    if (is_plane(set.as<SliceParams>())) s.words.emplace_back("lit=false");
+  }
+}
+
+bool is_shape_of_file(const PipelineFile& file, const std::string& step) {
+  const auto chain = steps_behind(file, step);
+  return !chain.empty() && chain.back()->reads() && std::all_of(chain.begin(), chain.end() - 1, [](const PipelineFile::Step* s) {
+    const Operation* op = known_operation(s->operation);
+    return op && op->keeps.has(DataKind::surface);
+  });
 }
 
 bool has_contour(const PipelineFile& file) {

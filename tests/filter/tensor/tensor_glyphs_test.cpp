@@ -151,7 +151,7 @@ TEST_CASE("tensor_glyphs: strides, counts, cells, masks and what gets none") {
     for (size_t i = 0; i < nv; ++i) b.add(scaled->as<SurfaceMesh>()->points.at(i));
     return b;
   }();
-  CHECK(first.size().x == doctest::Approx(0.5).epsilon(1e-5));
+  CHECK(first.size().x == doctest::Approx(0.5 * p.size).epsilon(1e-5));
   // Unstructured: evenly thinned; cells: at their middles.
   const DatasetPtr tets = solid_mesh("tetra", 6, 1, [](Vec3) { return 0.0; });
   const DatasetPtr with = with_tensors(
@@ -247,12 +247,12 @@ TEST_CASE("tensor_glyphs: a long and narrow box gets fewer and larger glyphs, an
     for (size_t i = 0; i < nv; ++i) b.add(m->as<SurfaceMesh>()->points.at(g * nv + i));
     return b.size().x;
   };
-  CHECK(width(0) == doctest::Approx(1 / 1.6).epsilon(1e-4));
-  CHECK(width(4 + 5 * 4) == doctest::Approx(1).epsilon(1e-4));
+  CHECK(width(0) == doctest::Approx(p.size / 1.6).epsilon(1e-4));
+  CHECK(width(4 + 5 * 4) == doctest::Approx(p.size).epsilon(1e-4));
   CHECK(l.notes.find("1.6 times") != std::string::npos);
   p.scale = TensorScale::eigenvalues;
   const DatasetPtr asked = tensor_glyphs(mixed, p, l.context);
   Box3 b;
   for (size_t i = 0; i < nv; ++i) b.add(asked->as<SurfaceMesh>()->points.at(i));
-  CHECK(b.size().x == doctest::Approx(0.25).epsilon(1e-4));
+  CHECK(b.size().x == doctest::Approx(0.25 * p.size).epsilon(1e-4));
 }

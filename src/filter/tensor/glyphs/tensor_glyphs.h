@@ -24,13 +24,13 @@ struct TensorGlyphsParams {
   TensorSource tensors;
   TensorShape shape = TensorShape::superquadric;
   double gamma = 3;
-  double min_ratio = 0.2;
+  double min_ratio = 0.3;
   int64_t count = 0;
   int64_t stride = 0;
   FieldName mask;
   double min_fa = 0;
   std::optional<TensorScale> scale;
-  double size = 1;
+  double size = 1.15;
   std::optional<double> factor;
   std::optional<std::string> color;  ///< a word of TensorColor, or a field
   int resolution = 10;
