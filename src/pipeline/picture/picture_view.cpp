@@ -9,6 +9,10 @@
 #include "filter/mesh/slice/slice.h"
 #include "filter/scalar/contour/contour.h"
 #include "filter/scalar/line_labels.h"
+#include "filter/surface/cap.h"
+#include "filter/surface/curvature.h"
+#include "filter/surface/normals.h"
+#include "filter/surface/smooth.h"
 #include "filter/tensor/glyphs/tensor_glyphs.h"
 #include "io/stated_format.h"
 #include "pipeline/operation/operation.h"
@@ -131,7 +135,8 @@ bool is_shape_of_file(const PipelineFile& file, const std::string& step) {
   const auto chain = steps_behind(file, step);
   return !chain.empty() && chain.back()->reads() && std::all_of(chain.begin(), chain.end() - 1, [](const PipelineFile::Step* s) {
     const Operation* op = known_operation(s->operation);
-    return op && op->keeps.has(DataKind::surface);
+    const bool of_surfaces = does<SmoothParams>(*s) || does<NormalsParams>(*s) || does<CurvatureParams>(*s) || does<CapParams>(*s);
+    return of_surfaces || (op && op->keeps.has(DataKind::surface));
   });
 }
 
