@@ -170,6 +170,8 @@ void add_picture(CLI::App& a, Options& o, RawText& raw) {
   a.add_option("--map", o.map, doc_of<ColoringParams>("map"));
   a.add_option("--scale", o.scale, doc_of<ColoringParams>("scale"));
   a.add_option("--range", o.range, doc_of<ColoringParams>("range"));
+  a.add_option("--below", o.below, doc_of<ColoringParams>("below"));
+  a.add_option("--above", o.above, doc_of<ColoringParams>("above"));
   a.add_option("--legend", o.legend,
                "'false' draws none, 'bottom' (top, left) puts it there; else words of the legend: \"title='Wall temperature' unit=K "
                "ticks=0,50,100 format=.1f place=bottom bar=0.5\"; count=5 asks for about five round numbers in place of ticks");

@@ -26,7 +26,7 @@ struct Options {
   std::string output;
   bool progressive = false;  ///< render: coarse pictures first
   double within = 0;         ///< render: seconds, 0 = no limit
-  std::string camera, size, title, background, field, map, scale, range, legend, layout, views;
+  std::string camera, size, title, background, field, map, scale, range, below, above, legend, layout, views;
   std::vector<std::string> notes;    ///< each one --note
   std::vector<std::string> picture;  ///< key=value for the picture, from the flags above and --picture
   ReadOptions read;

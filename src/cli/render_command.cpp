@@ -212,10 +212,10 @@ int run_render(const Options& o, Context& context) {
                              o.inputs.size(), series));
   PipelineFile file = pipeline_of(o);
   PictureOptions options;
-  if (!o.field.empty()) options.coloring.push_back("field=" + o.field);
-  if (!o.map.empty()) options.coloring.push_back("map=" + o.map);
-  if (!o.scale.empty()) options.coloring.push_back("scale=" + o.scale);
-  if (!o.range.empty()) options.coloring.push_back("range=" + o.range);
+  const std::pair<const char*, const std::string&> stated[] = {{"field=", o.field}, {"map=", o.map},     {"scale=", o.scale},
+                                                               {"range=", o.range}, {"below=", o.below}, {"above=", o.above}};
+  for (const auto& [key, value] : stated)
+    if (!value.empty()) options.coloring.push_back(key + value);
   for (std::string& word : legend_words(o.legend)) options.coloring.push_back(std::move(word));
   FilmParams film;
   take_film_flags(o, film);

@@ -5,6 +5,7 @@
 
 #include <numeric>
 
+#include "data/fields/axis_notes.h"
 #include "data/lattice.h"
 #include "filter/mesh/surface_builder.h"
 #include "filter/probe/sample.h"
@@ -91,7 +92,7 @@ DatasetPtr probe_at(const DatasetPtr& source, const ProbeAtParams& p, Context& c
   tell_missing(parts.fields, context);
   if (line) {
     double* distance = nullptr;
-    Field f{"distance", Association::point, Array::make<double>(count, 1, &distance), "length", Role::none};
+    Field f{"distance", Association::point, Array::make<double>(count, 1, &distance), length_unit(*source), Role::none};
     for (size_t i = 0; i < count; ++i) distance[i] = length(at(i) - *p.from);
     parts.fields.add(std::move(f));
     SurfaceMesh mesh;

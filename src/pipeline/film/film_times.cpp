@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/text/replace.h"
 #include "base/text/text.h"
+#include "base/text/time_text.h"
 #include "io/file_series.h"
 #include "io/options.h"
 #include "pipeline/graph/series_input.h"
@@ -28,14 +29,14 @@ bool write_time(std::vector<std::string>& words, double time) {
     }
   return written;
 }
-// Titles are for people: a short number, and which picture it is of how many.
-bool write_title(std::vector<std::string>& words, double time, size_t n, size_t count) {
+// Texts are for people: a short number, and which picture it is of how many.
+bool write_texts(std::vector<std::string>& words, double time, size_t n, size_t count) {
+  constexpr std::string_view texts[] = {"title=", "caption=", "note="};
   bool written = false;
   for (std::string& word : words) {
-    if (!word.starts_with("title=")) continue;
-    const std::string before = word;
-    replace_all(word, here, short_number(time));
-    written = written || word != before;
+    if (std::none_of(std::begin(texts), std::end(texts), [&](std::string_view text) { return word.starts_with(text); })) continue;
+    written = written || has_time_mark(word);
+    word = with_time(std::move(word), time);
     replace_all(word, "{n}", std::to_string(n + 1));
     replace_all(word, "{count}", std::to_string(count));
   }
@@ -49,7 +50,7 @@ bool write_time_in_steps(PipelineFile& file, double time) {
 }
 bool asks_for_time(const PipelineFile& file) {
   const auto asks = [](const std::vector<std::string>& words) {
-    return std::any_of(words.begin(), words.end(), [](const std::string& w) { return w.find(here) != w.npos; });
+    return std::any_of(words.begin(), words.end(), [](const std::string& w) { return has_time_mark(w); });
   };
   return asks(file.picture) || std::any_of(file.steps.begin(), file.steps.end(), [&](const auto& s) { return asks(s.words); });
 }
@@ -165,8 +166,8 @@ FilmTimes turn_camera(PipelineFile& file, int count) {
 PipelineFile at_time(PipelineFile file, const FilmTimes& film, size_t n) {
   const double time = film.times[n];
   const bool of_files = !film.steps.empty();
-  const bool in_title = write_title(file.picture, time, n, film.times.size());
-  const bool in_picture = write_time(file.picture, time) || in_title;
+  const bool in_texts = write_texts(file.picture, time, n, film.times.size());
+  const bool in_picture = write_time(file.picture, time) || in_texts;
   if (film.turns) return file;
   if (write_time_in_steps(file, time)) return file;
   bool moment = false;

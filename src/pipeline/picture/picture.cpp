@@ -9,8 +9,8 @@
 #include "base/all_ranks.h"
 #include "base/error.h"
 #include "base/file/file.h"
-#include "base/text/replace.h"
 #include "base/text/text.h"
+#include "base/text/time_text.h"
 #include "color/parse_color.h"
 #include "data/ranks/over_all.h"
 #include "pipeline/file/read_part.h"
@@ -30,7 +30,8 @@ void describe(Schema& s, PictureParams& p) {
   s("size", p.size, "Width and height in pixels, e.g. 1920x1080; HD is that, 4K 3840x2160, 8K 7680x4320.");
   s("background", p.background, "Background colour, two colours bottom/top for a gradient, or 'transparent'.");
   s("title", p.title,
-    "Title above the picture; {t} is the time of the data, in a series {n} the number of the picture and {count} that of all.");
+    "Title above the picture; {t} is the time of the data, {t:.2f} with two decimals, in a series {n} the number of the picture and "
+    "{count} that of all.");
   s("legend", p.legend, "Draw the colour legends.");
   s("axes", p.axes, "Draw the bounding box with numbers.");
   s("stretch", p.stretch,
@@ -138,7 +139,10 @@ std::vector<StatedShow> stated_shows(const PipelineFile& file) {
 
 // {t} in a title is the time of what is shown.
 std::string title_of(std::string title, const std::vector<Data>& results, const Context& context) {
-  if (title.find("{t}") == title.npos) return title;
+  if (const std::string mark = unknown_mark(title); !mark.empty())
+    context.warn(
+        fmt::format("nothing stands for {} in a text of the picture, which shows it as it is; {{t}} is the time, also {{t:.2f}}", mark));
+  if (!has_time_mark(title)) return title;
   std::optional<double> time;
   for (const Data& data : results)
     for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
@@ -148,8 +152,7 @@ std::string title_of(std::string title, const std::vector<Data>& results, const 
     context.warn("a text of the picture asks for the time {t}, but the data has none");
     return title;
   }
-  replace_all(title, "{t}", short_number(*time));
-  return title;
+  return with_time(std::move(title), *time);
 }
 
 bool has_nan(const Scene& scene) {
