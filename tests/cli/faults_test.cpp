@@ -192,6 +192,7 @@ TEST_CASE("signals: work that does not ask is ended after a few seconds, and lea
 }
 
 TEST_CASE("signals: hang-up and the polite end clean up as Ctrl-C does; a second one ends the program at once") {
+  const auto inherited = ::signal(SIGHUP, SIG_DFL);  // whoever runs the tests may have it ignored
   for (const int signal : {SIGINT, SIGTERM, SIGHUP})
     for (const bool twice : {false, true}) {
       if (twice && signal != SIGINT) continue;
@@ -205,6 +206,7 @@ TEST_CASE("signals: hang-up and the polite end clean up as Ctrl-C does; a second
       CHECK(status_of(child, 30) == 128 + signal);
       CHECK(fs::is_empty(folder));
     }
+  ::signal(SIGHUP, inherited);
   // nohup stays nohup
   const std::string folder = fresh_folder("signals");
   const auto before = ::signal(SIGHUP, SIG_IGN);
