@@ -12,8 +12,9 @@ namespace {
 
 // Tuples that are neither hidden nor ghosts.
 std::vector<int64_t> seen_tuples(const Array& ghosts, size_t count, size_t most) {
-  const size_t step = std::max<size_t>(1, (count + most - 1) / std::max<size_t>(1, most));
   std::vector<int64_t> ids;
+  if (most == 0) return ids;
+  const size_t step = std::max<size_t>(1, (count + most - 1) / most);
   for (size_t i = 0; i < count; i += step)
     if (ghosts.count() == 0 || ghosts.get(i) == 0) ids.push_back(int64_t(i));
   return ids;

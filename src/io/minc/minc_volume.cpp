@@ -15,6 +15,18 @@
 
 namespace sg::minc {
 
+std::pair<double, double> type_range(ElementType t) {
+  switch (t) {
+    case ElementType::u8: return {0, 255};
+    case ElementType::i8: return {-128, 127};
+    case ElementType::u16: return {0, 65535};
+    case ElementType::i16: return {-32768, 32767};
+    case ElementType::u32: return {0, 4294967295.0};
+    case ElementType::i32: return {-2147483648.0, 2147483647.0};
+    default: return {0, 1};
+  }
+}
+
 namespace {
 
 [[noreturn]] void refuse(const Volume& v, const std::string& problem, const std::string& object, std::string hint = {}) {
@@ -79,18 +91,6 @@ UniformGrid grid_of(const Volume& v, const Layout& l) {
   g.origin = origin;
   turn(g, nifti_axes);
   return g;
-}
-
-std::pair<double, double> type_range(ElementType t) {
-  switch (t) {
-    case ElementType::u8: return {0, 255};
-    case ElementType::i8: return {-128, 127};
-    case ElementType::u16: return {0, 65535};
-    case ElementType::i16: return {-32768, 32767};
-    case ElementType::u32: return {0, 4294967295.0};
-    case ElementType::i32: return {-2147483648.0, 2147483647.0};
-    default: return {0, 1};
-  }
 }
 
 // real = (stored - valid_min) / (valid_max - valid_min) * (max - min) + min, with min and max of the slice.

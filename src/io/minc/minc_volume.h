@@ -38,6 +38,9 @@ struct Volume {
   std::function<Array(const std::vector<size_t>& start, const std::vector<size_t>& count)> read;
 };
 
+/// What stored numbers of a type reach from and to where a file does not say it; 0 to 1 for those that are not whole.
+std::pair<double, double> type_range(ElementType t);
+
 /// DICOM's word for MINC's ("MRI__" is MR, "PET__" PT); "" for none.
 std::string modality_word(const std::string& minc);
 /// MINC's word for DICOM's; "" where it has none.

@@ -14,6 +14,7 @@
 #include "data/fields/sampled_cloud.h"
 #include "data/memory/memory_budget.h"
 #include "io/film/movie.h"
+#include "pipeline/file/transfer_file.h"
 #include "pipeline/film/film_times.h"
 #include "pipeline/picture/picture_parts.h"
 #include "pipeline/picture/settle_choices.h"
@@ -210,6 +211,7 @@ std::vector<double> make_film(PipelineFile plain, const FilmParams& params, cons
   const size_t one_step = array_memory();
   PipelineFile base = with_looks(plain, at_time(plain, film, 0), each, silent);
   each.coloring.clear();
+  load_transfer_files(base);  // what they state is not chosen
   some = spread(base, film);
   if (some.size() > 1) {  // else the data are the same: so is all that is chosen from them
     fix_ranges(base, some, each, silent);

@@ -109,8 +109,6 @@ const Operation& find_operation(std::string_view name, std::span<const Operation
 
 /// Defaults changed by "key=value" words; all mistakes in one Error(usage).
 ParamSet make_params(const Operation& operation, const std::vector<std::string>& words);
-/// Whether a parameter is left to be chosen: an optional one without a value, an empty list.
-bool is_open(const ParamDecl& d);
 /// Checks the number of inputs and runs.
 Data run_operation(const Operation& operation, const std::vector<Data>& inputs, const std::vector<std::string>& words, Context& context);
 /// Whether the piece that `wanted` is of can be made of pieces of the inputs; else of the whole. `together`: all pieces are asked for at

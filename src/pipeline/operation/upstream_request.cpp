@@ -56,14 +56,14 @@ void ask_for_fields(const FieldNeeds& needs, const ParamSet& params, size_t inpu
   if (!add_fields_named(params, needs, r)) ask_for_all(r);
 }
 
-}  // namespace
-
 bool is_open(const ParamDecl& d) {
   const Value v = d.ref.get();
   if (std::holds_alternative<std::monostate>(v)) return true;
   if (auto* list = std::get_if<std::vector<double>>(&v)) return list->empty();
   return false;
 }
+
+}  // namespace
 
 bool works_by_piece(const Operation& operation, const ParamSet& params, const Request& wanted, bool together) {
   const PieceWork& w = operation.pieces;

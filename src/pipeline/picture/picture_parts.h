@@ -44,7 +44,8 @@ void face_slab(const PipelineFile& file, const std::string& step, Box3 box, Came
 /// `line_labels` makes points of which nothing but `labels` tells: `lines` of it are those that were labelled, `surface` and `volume` what
 /// these were drawn upon.
 void show_what_is_labelled(PipelineFile& file, std::vector<std::string>& notes);
-/// Planes cut through data are drawn unlit, so that colours are those of the legend whichever way they face, unless that is stated.
+/// Planes cut through data are drawn unlit, so that colours are those of the legend whichever way they face, unless light or one colour is
+/// stated.
 void show_planes_as_measured(PipelineFile& file);
 /// Is it what a file holds, or what is made of that without changing a surface into another kind of mesh, or another kind into a surface?
 bool is_shape_of_file(const PipelineFile& file, const std::string& step);

@@ -123,7 +123,7 @@ void show_what_is_labelled(PipelineFile& file, std::vector<std::string>& notes) 
 void show_planes_as_measured(PipelineFile& file) {
   for (size_t i = 0; i < file.show.size(); ++i) {
     PipelineFile::Show& s = file.show[i];
-    if (s.kind == auto_show || !find_show(s.kind).is<SurfaceShow>() || word_value(s.words, "lit")) continue;
+    if (s.kind == auto_show || !find_show(s.kind).is<SurfaceShow>() || word_value(s.words, "lit") || word_value(s.words, "color")) continue;
     const auto chain = steps_behind(file, shown_step(file, i));
     if (chain.empty() || !does<SliceParams>(*chain.front()) || chain.front()->from.size() > 1) continue;
     const ParamSet set = make_params(*known_operation(chain.front()->operation), chain.front()->words);

@@ -66,7 +66,8 @@ std::optional<std::string> common_choice(const std::vector<DatasetPtr>& parts, c
     std::string value;
     try {
       value = op.choose(*part, params, context);
-    } catch (const Error&) {
+    } catch (const Error& e) {
+      if (e.kind() != ErrorKind::usage) throw;
       continue;  // it has nothing to choose from, or running reports what is wrong
     }
     if (value.empty() || (common && *common != value)) return {};

@@ -30,6 +30,7 @@ TEST_CASE("planes: colours of planes that cut data are those of the legend, unli
   CHECK(has(words_of_show("{normal: [1, 1, 0]}"), "lit=false"));
   CHECK_FALSE(has(words_of_show("{sphere: [0, 0, 0, 0.5]}"), "lit=false"));
   CHECK_FALSE(has(words_of_show("{planes: xyz}", "{lit: true}"), "lit=false"));
+  CHECK_FALSE(has(words_of_show("{planes: xyz}", "{color: tomato}"), "lit=false"));
 }
 
 TEST_CASE("planes: sizes that have names") {

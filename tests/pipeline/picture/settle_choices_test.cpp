@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/file/file.h"
 #include "pipeline/film/film.h"
 #include "support/test.h"
 
@@ -112,4 +113,11 @@ TEST_CASE("settle choices: all steps of a series are seen through by one opacity
   const std::vector<PipelineFile> stated = film_of("show:\n  - {volume: {opacity: \"0:0,1:0.5\", map: magma}}\npicture: {size: 40x30}\n");
   CHECK(word_value(stated[2].show[0].words, "opacity") == "0:0,1:0.5");
   CHECK(!word_value(stated[2].show[0].words, "colors"));
+}
+
+TEST_CASE("settle choices: what a transfer file states is not chosen for a film") {
+  const std::string path = test::fresh_folder("film_transfer") + "mine.yaml";
+  write_file(path, "sightglass-transfer: 1\nopacity: '@0:0,@30:0.25'\n");
+  const std::vector<PipelineFile> recipes = film_of("show:\n  - {volume: {transfer: \"" + path + "\"}}\npicture: {size: 40x30}\n");
+  for (const PipelineFile& one : recipes) CHECK(word_value(one.show[0].words, "opacity") == "@0:0,@30:0.25");
 }

@@ -62,15 +62,7 @@ void write_dimensions(h5::Writer& w, const UniformGrid& g, const std::array<int,
 
 // Stored numbers that are their own real values: the range of each is that of the type, or of the numbers.
 std::pair<double, double> range_of(const Array& a) {
-  switch (a.type()) {
-    case ElementType::u8: return {0, 255};
-    case ElementType::i8: return {-128, 127};
-    case ElementType::u16: return {0, 65535};
-    case ElementType::i16: return {-32768, 32767};
-    case ElementType::u32: return {0, 4294967295.0};
-    case ElementType::i32: return {-2147483648.0, 2147483647.0};
-    default: break;
-  }
+  if (!is_float(a.type())) return minc::type_range(a.type());
   Range all;
   for (const Range& r : field_stats(a).range) all.add(r);
   return all.empty() ? std::pair(0.0, 0.0) : std::pair(all.lo, all.hi);
