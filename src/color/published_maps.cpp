@@ -37,14 +37,6 @@ constexpr PublishedMap maps[] = {
      "001261011a6602226b022a7002317502397a03417f03498405518908598f106294196b9a2575a1327ea74188ae5093b5609dbc70a7c3"
      "7fb1ca8fbbd19fc5d7afcedebfd7e4cee0e8dde6e9e8e7e6eee2dbeedacfecd1c2e8c7b4e4bda7dfb399dba98cd7a080d39673cf8d67"
      "cc845cc87c50c47344c06b3abc622fb65723af4c18a5400f9a35088f2b068522067c1b067314066a0d07620607590008"},
-    {"RdBu", MapKind::diverging, "Red over white to blue, for maps and print (ColorBrewer, Brewer 2002).",
-     "67001fb2182bd6604df4a582fddbc7f7f7f7d1e5f092c5de4393c32166ac053061"},
-    {"RdYlBu", MapKind::diverging, "Red over yellow to blue (ColorBrewer, Brewer 2002).",
-     "a50026d73027f46d43fdae61fee090ffffbfe0f3f8abd9e974add14575b4313695"},
-    {"BrBG", MapKind::diverging, "Brown over white to blue-green (ColorBrewer, Brewer 2002).",
-     "5430058c510abf812ddfc27df6e8c3f5f5f5c7eae580cdc135978f01665e003c30"},
-    {"Spectral", MapKind::diverging, "Red over yellow to blue by the hues between (ColorBrewer, Brewer 2002).",
-     "9e0142d53e4ff46d43fdae61fee08bffffbfe6f598abdda466c2a53288bd5e4fa2"},
     {"twilight", MapKind::cyclic, "White over blue, black and red to white, for angles and phases (Bechtold 2017; Matplotlib).",
      "e2d9e2dcd9dfd2d5dbc5cfd5b6c8cfa7c0cb99b8c88cafc580a6c3779cc26f92c06888be647ebc6173ba6067b65f5cb25e50ac5e44a5"
      "5c389c5a2c915621835019734814623f125238114432123b32123739113a43123e4e14445b1749681a4d751e4f8224508d2b50973450"
