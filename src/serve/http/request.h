@@ -32,7 +32,7 @@ struct HttpRequest {
 struct HttpResponse {
   int status = 200;
   std::string type = "text/plain; charset=utf-8";
-  std::vector<std::pair<std::string, std::string>> headers;
+  std::vector<std::pair<std::string, std::string>> headers;  ///< each name once; in place of the server's own
   std::string body;
   /// In place of `body` where it is not null: bytes that several answers share.
   std::shared_ptr<const std::string> shared_body;

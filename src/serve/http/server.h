@@ -10,6 +10,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "base/context.h"
 #include "serve/http/request.h"
@@ -21,11 +23,10 @@ struct ServerLimits {
   size_t sockets = 64;                        ///< WebSockets at a time
   size_t connections = 256;                   ///< of all kinds at a time; the oldest without a WebSocket gives way to a new one
   size_t header_bytes = 16 << 10;             ///< of a request
-  size_t body_bytes = 1 << 10;                ///< of a request; no request of the protocol has one
   size_t message_bytes = 256 << 10;           ///< of a message of a client, its fragments together
   size_t queued_bytes = size_t(64) << 20;     ///< that wait for one client
   double requests_per_second = 100;           ///< of one connection; more are answered 429
-  double messages_per_second = 500;           ///< of one WebSocket, pings included; more wait in the client
+  double messages_per_second = 500;           ///< of one WebSocket; more wait in the client, more pings end it
   std::chrono::milliseconds request{10'000};  ///< from one request's answer (or the connection) to the end of the next one's header
   std::chrono::milliseconds write{20'000};    ///< for the next 64 KiB to leave
   std::chrono::milliseconds idle{60'000};     ///< of a WebSocket: without a sign of life; it is asked for one after half of it
@@ -35,6 +36,7 @@ struct ServerOptions {
   std::string address = "127.0.0.1";  ///< of this machine, as numbers; "::1", "0.0.0.0"
   uint16_t port = 0;                  ///< 0: any that is free
   ServerLimits limits;
+  std::vector<std::pair<std::string, std::string>> headers;  ///< of every answer, also of those that the server gives itself
 };
 
 /// A WebSocket as those see it who send to a client. All functions are safe from any thread, also after the client has gone.
@@ -66,6 +68,8 @@ struct Handlers {
   std::function<std::optional<SocketHandler>(const HttpRequest&, std::shared_ptr<Socket>, HttpResponse& refusal)> open;
 };
 
+struct ServerCore;
+
 class Server {
  public:
   /// Listens from now on. Throws Error(usage) for an address that is none and a port that is taken.
@@ -84,8 +88,7 @@ class Server {
   size_t sockets() const;
 
  private:
-  struct Core;
-  std::shared_ptr<Core> core_;
+  std::shared_ptr<ServerCore> core_;
 };
 
 }  // namespace sg::serve
