@@ -25,7 +25,7 @@ std::string make_served(const std::string& name) {
   const std::string top = test::fresh_folder(name), served = top + "served/";
   for (const std::string& folder : {served, served + "sub", served + ".hidden", served + "run1", top + "secret"})
     ::mkdir(folder.c_str(), 0755);
-  for (const std::string file :
+  for (const std::string& file :
        {served + "a.vtk", served + "sub/b c.vtk", served + ".hidden/c.vtk", served + ".d.vtk", top + "secret/s.vtk",
         served + "named_by_content", served + "run1/t1.vtk", served + "run1/t2.vtk", served + "run1/t10.vtk"})
     write_file(file, small_grid);

@@ -52,7 +52,7 @@ RunningServer::RunningServer(DoorOptions options)
 RunningServer::~RunningServer() { stop(); }
 
 void RunningServer::stop() {
-  context.cancel();
+  door.stop();
   if (thread_.joinable()) thread_.join();
 }
 
