@@ -190,5 +190,7 @@ std::string Door::address_with_token() const {
 }
 void Door::run(const Context& context) { inside_->server.run(context); }
 void Door::stop() { inside_->server.stop(); }
+size_t Door::connections() const { return inside_->server.connections(); }
+size_t Door::sockets() const { return inside_->server.sockets(); }
 
 }  // namespace sg::serve

@@ -38,6 +38,9 @@ class Door {
   /// As Server::run and Server::stop.
   void run(const Context& context);
   void stop();
+  /// As Server::connections and Server::sockets.
+  size_t connections() const;
+  size_t sockets() const;
 
  private:
   struct Inside;

@@ -60,6 +60,12 @@ bool is_folder_of_data(const std::string& path) {
   return false;
 }
 
+bool is_step(std::string_view file, std::string_view front, std::string_view behind) {
+  if (file.size() <= front.size() + behind.size() || !file.starts_with(front) || !file.ends_with(behind)) return false;
+  const std::string_view number = file.substr(front.size(), file.size() - front.size() - behind.size());
+  return number.find_first_not_of("0123456789") == number.npos;
+}
+
 std::string below_of(const std::string& below, const std::string& name) { return below.empty() ? name : below + "/" + name; }
 
 }  // namespace
@@ -99,15 +105,9 @@ std::string ServedFolder::to_open(const std::string& name) const {
   // Readers take the path as a pattern: its folders must be no patterns.
   if (has_series_signs(folder_.path() + "/" + below))
     fail_data("cannot be opened as a series: a folder above it has one of * ? , { } in its name", name);
-  const auto entries = folder_.list(below, most_entries);
-  const bool any = std::any_of(entries.begin(), entries.end(), [&](const auto& entry) {
-    const std::string& file = entry.name;
-    if (entry.kind != Inside::file || file.size() <= front.size() + behind.size() || !file.starts_with(front) || !file.ends_with(behind))
-      return false;
-    const std::string_view number = std::string_view(file).substr(front.size(), file.size() - front.size() - behind.size());
-    return number.find_first_not_of("0123456789") == number.npos;
-  });
-  if (!any) fail_data(fmt::format("no file is called like '{}'", name));
+  // The reader follows links: none may be among them.
+  if (folder_.count_plain(below, [&](std::string_view file) { return is_step(file, front, behind); }) == 0)
+    fail_data(fmt::format("no file is called like '{}'", name));
   return folder_.path() + "/" + name;
 }
 

@@ -95,7 +95,9 @@ ConfinedFolder::Found ConfinedFolder::find(std::string_view name) const {
           S_ISREG(st.st_mode) ? size_t(st.st_size) : 0};
 }
 
-std::vector<ConfinedFolder::Entry> ConfinedFolder::list(std::string_view name, size_t most) const {
+// f(name, what stands there, without following it) until it returns false.
+template <class F>
+void ConfinedFolder::for_each_entry(std::string_view name, F&& f) const {
   const std::vector<std::string> parts = name.empty() ? std::vector<std::string>() : confined_parts(name);
   const int fd = open_folder(parts, parts.size(), name);
   const std::unique_ptr<DIR, CloseFolder> dir(::fdopendir(fd));
@@ -103,18 +105,34 @@ std::vector<ConfinedFolder::Entry> ConfinedFolder::list(std::string_view name, s
     ::close(fd);
     fail_name(name, "cannot be listed");
   }
-  std::vector<Entry> entries;
   while (const dirent* entry = ::readdir(dir.get())) {
-    const std::string_view found = entry->d_name;
     struct stat st {};
-    if (found[0] == '.' || has_unseen(found) || ::fstatat(fd, entry->d_name, &st, AT_SYMLINK_NOFOLLOW) != 0) continue;
-    if (!S_ISREG(st.st_mode) && !S_ISDIR(st.st_mode)) continue;
-    if (entries.size() == most) break;
-    entries.push_back(
-        {std::string(found), S_ISDIR(st.st_mode) ? Inside::folder : Inside::file, S_ISREG(st.st_mode) ? size_t(st.st_size) : 0});
+    if (::fstatat(fd, entry->d_name, &st, AT_SYMLINK_NOFOLLOW) == 0 && !f(std::string_view(entry->d_name), st)) break;
   }
+}
+
+std::vector<ConfinedFolder::Entry> ConfinedFolder::list(std::string_view name, size_t most) const {
+  std::vector<Entry> entries;
+  for_each_entry(name, [&](std::string_view found, const struct stat& st) {
+    const bool plain = S_ISREG(st.st_mode), folder = S_ISDIR(st.st_mode);
+    if (found[0] == '.' || has_unseen(found) || (!plain && !folder)) return true;
+    if (entries.size() == most) return false;
+    entries.push_back({std::string(found), folder ? Inside::folder : Inside::file, plain ? size_t(st.st_size) : 0});
+    return true;
+  });
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return natural_less(a.name, b.name); });
   return entries;
+}
+
+size_t ConfinedFolder::count_plain(std::string_view name, const std::function<bool(std::string_view)>& is_meant) const {
+  size_t count = 0;
+  for_each_entry(name, [&](std::string_view found, const struct stat& st) {
+    if (!is_meant(found)) return true;
+    if (!S_ISREG(st.st_mode)) fail_name(found, S_ISLNK(st.st_mode) ? "is a symbolic link" : "is no plain file");
+    ++count;
+    return true;
+  });
+  return count;
 }
 
 }  // namespace sg::serve

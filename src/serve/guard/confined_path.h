@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names that clients give, kept below one folder.
 #pragma once
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,8 +42,12 @@ class ConfinedFolder {
   /// The plain files and folders in one of its folders, at most `most` of them, in natural order. Hidden ones, links, devices, names that
   /// are no UTF-8 or have control characters are left out.
   std::vector<Entry> list(std::string_view name, size_t most) const;
+  /// How many of the names in one of its folders are meant. Throws Error(data) when one of them is no plain file.
+  size_t count_plain(std::string_view name, const std::function<bool(std::string_view)>& is_meant) const;
 
  private:
+  template <class F>
+  void for_each_entry(std::string_view name, F&& f) const;
   int open_folder(const std::vector<std::string>& parts, size_t count, std::string_view name) const;
   std::string path_;
   int root_ = -1;

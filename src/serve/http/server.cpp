@@ -42,6 +42,7 @@ constexpr size_t piece = 64 << 10;        // what is written at once, so that sl
 constexpr milliseconds farewell{1000};    // for the last words on either side
 constexpr milliseconds look_around{100};  // whether the work is cancelled; after a failed accept
 constexpr size_t longest_reason = 120;    // of a close, in bytes
+constexpr size_t key_letters = 24;        // of 16 bytes in base64 (RFC 6455, section 4.1)
 
 HttpResponse plain_answer(int status, std::string text) {
   return {status, "text/plain; charset=utf-8", {}, std::move(text) + "\n", nullptr};
@@ -103,6 +104,7 @@ class SocketConnection : public std::enable_shared_from_this<SocketConnection> {
         buffer_(core_->options.limits.message_bytes + 2 * piece),
         stuck_(*core_->io),
         rest_(*core_->io),
+        goodbye_(*core_->io),
         rate_(core_->options.limits.messages_per_second) {}
 
   void start(const http::request<http::empty_body>& request) {
@@ -127,6 +129,7 @@ class SocketConnection : public std::enable_shared_from_this<SocketConnection> {
     ws_.async_accept(request, [self = shared_from_this()](error_code error) {
       if (error) return self->finish();
       self->accepted_ = true;
+      self->watch(false);
       self->read();
       self->write();
     });
@@ -162,6 +165,7 @@ class SocketConnection : public std::enable_shared_from_this<SocketConnection> {
     const auto self = shared_from_this();
     stuck_.cancel();
     rest_.cancel();
+    goodbye_.cancel();
     client_->end();
     hang_up(beast::get_lowest_layer(ws_).socket());
     core_->remove(core_->sockets, self);
@@ -194,10 +198,27 @@ class SocketConnection : public std::enable_shared_from_this<SocketConnection> {
       return read();
     }
     // A message, or a fragment without content, of which any number makes no message.
+    rest();
+  }
+
+  // Whose goodbye has begun has a moment for it: Beast waits for the other side to hang up, without telling, after whatever broke the
+  // rules.
+  void watch(bool was_ending) {
+    if (finished_) return;
+    const bool ending = !ws_.is_open();
+    if (ending && was_ending) return finish();
+    goodbye_.expires_after(farewell);
+    goodbye_.async_wait([self = shared_from_this(), ending](error_code error) {
+      if (!error) self->watch(ending);
+    });
+  }
+
+  void rest() {
+    if (finished_) return;
     if (rate_.take()) return read();
     rest_.expires_after(rate_.wait());
-    rest_.async_wait([self = shared_from_this()](error_code waited) {
-      if (!waited) self->read();
+    rest_.async_wait([self = shared_from_this()](error_code error) {
+      if (!error) self->rest();
     });
   }
 
@@ -234,7 +255,7 @@ class SocketConnection : public std::enable_shared_from_this<SocketConnection> {
   const std::shared_ptr<SendQueue> client_;
   SocketHandler handler_;
   beast::flat_buffer buffer_;
-  asio::steady_timer stuck_, rest_;
+  asio::steady_timer stuck_, rest_, goodbye_;
   Rate rate_;
   std::optional<SendQueue::Message> message_;  // that is on its way
   size_t written_ = 0;
@@ -323,6 +344,8 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   void open(HttpRequest asked) {
     keep_ = false;
     if (buffer_.size() > 0) return write(plain_answer(400, "Messages came before the WebSocket was there."));
+    if (parser_->get()[http::field::sec_websocket_key].size() != key_letters)
+      return write(plain_answer(400, "The key of the WebSocket is none."));
     if (core_->sockets.size() + core_->opening >= core_->options.limits.sockets)
       return write(plain_answer(503, "There are too many windows at this server; close one of them."));
     ++core_->opening;
