@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/file/file.h"
 #include "base/text/text.h"
+#include "color/legend_content.h"
 #include "io/file_series.h"
 #include "io/options.h"
 #include "pipeline/file/pipeline_file.h"
