@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/file/file.h"
 #include "image/codec.h"
+#include "image/enlarge.h"
 #include "render/render.h"
 #include "serve/renderer/quality.h"
 #include "serve/renderer/questions.h"

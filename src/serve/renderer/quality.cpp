@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "base/parallel.h"
 #include "data/lattice.h"
 
 namespace sg::serve {
@@ -44,42 +43,6 @@ double coarseness(double pixels, double seconds_per_sample, double seconds) {
   for (const double c : steps)
     if (pixels / (c * c) * seconds_per_sample <= seconds) return c;
   return steps.back();
-}
-
-void paste_enlarged(const Image& part, int x, int y, int width, int height, Image& whole) {
-  const size_t channels = size_t(part.channels);
-  // Which pixels of `part` a pixel lies between, and the share of the second one.
-  struct Between {
-    int first, second;
-    int share;  // of 256
-  };
-  const auto between = [](int count, int of) {
-    std::vector<Between> all;
-    for (int i = 0; i < count; ++i) {
-      const double at = std::clamp((i + 0.5) * of / count - 0.5, 0.0, double(of - 1));
-      const int first = int(at);
-      all.push_back({first, std::min(first + 1, of - 1), int((at - first) * 256)});
-    }
-    return all;
-  };
-  const std::vector<Between> columns = between(width, part.width), rows = between(height, part.height);
-  parallel_for(size_t(height), 16, [&](size_t begin, size_t end) {
-    for (size_t j = begin; j < end; ++j) {
-      const Between& r = rows[j];
-      const uint8_t* above = part.at(0, r.first);
-      const uint8_t* below = part.at(0, r.second);
-      uint8_t* to = whole.at(x, y + int(j));
-      for (size_t i = 0; i < size_t(width); ++i) {
-        const Between& c = columns[i];
-        const size_t left = channels * size_t(c.first), right = channels * size_t(c.second);
-        for (size_t k = 0; k < channels; ++k) {
-          const int up = above[left + k] * (256 - c.share) + above[right + k] * c.share;
-          const int down = below[left + k] * (256 - c.share) + below[right + k] * c.share;
-          *to++ = uint8_t((up * (256 - r.share) + down * r.share + (1 << 15)) >> 16);
-        }
-      }
-    }
-  });
 }
 
 }  // namespace sg::serve

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a picture leaves out so that it comes at once.
 #pragma once
-#include "image/image.h"
 #include "scene/scene.h"
 #include "serve/renderer/renderer.h"
 
@@ -14,9 +13,5 @@ Scene rough(Scene scene, Quality quality);
 /// How many pixels of a view one sample stands for, along each side, so that `pixels` of the view are drawn within `seconds`: 1, 1.5, 2, 3,
 /// 4, 6 or 8. `seconds_per_sample`: of earlier pictures of the same kind; 0: there are none.
 double coarseness(double pixels, double seconds_per_sample, double seconds);
-
-/// Puts `part` over the pixels [x, x + width) x [y, y + height) of `whole`, enlarged between the middles of its pixels. Both have the same
-/// channels.
-void paste_enlarged(const Image& part, int x, int y, int width, int height, Image& whole);
 
 }  // namespace sg::serve
