@@ -103,6 +103,7 @@ export interface FrameHeader {
   coarse: number;
   final: boolean;
   camera: Camera;
+  area?: [number, number, number, number]; // where in `of` the camera looks: x, y, width, height; the rest is room of legends
   milliseconds: number;
 }
 

@@ -8,7 +8,7 @@ import { choice, choices, toggle } from "./choice";
 import { color } from "./color";
 import { field, fields } from "./field";
 import { kindOf } from "./kind";
-import { list, vector } from "./list";
+import { ends, list, vector } from "./list";
 import { number } from "./number";
 import { mapChoice, text } from "./text";
 
@@ -79,6 +79,8 @@ function body(c: Context, id: string): TemplateResult {
       return mapChoice(c, id);
     case "vector":
       return vector(c, id);
+    case "ends":
+      return ends(c, id);
     case "numbers":
       return list(c, id);
     default:

@@ -29,15 +29,17 @@ export interface Context {
 
 const opened = new Set<string>();
 
-/** How many words stand open at first. */
-const first = 8;
+/** How many words stand open at first, and which of the scale's are never among them: few pictures need those. */
+const first = 9;
+const rare = new Set(["component", "linear_threshold", "below", "above", "nan", "clamp", "legend", "transfer", "save", "feature_angle", "flat"]);
 
 export function form(app: App, o: FormOptions): TemplateResult {
   const all = Object.entries(o.entry.params.properties).filter(
     ([name]) => (!o.only || o.only.includes(name)) && !o.without?.includes(name),
   );
   const isSet = (name: string): boolean => app.session.word(o.at, name) !== undefined || app.session.edits.problem(o.at, name) !== undefined;
-  const main = o.only ? all : all.filter(([name], i) => i < first || isSet(name));
+  const common = all.filter(([name]) => !rare.has(name)).slice(0, first);
+  const main = o.only ? all : all.filter((x) => common.includes(x) || isSet(x[0]));
   const rest = all.filter((x) => !main.includes(x));
   const key = `${o.at} ${o.entry.name}`;
   const show = ([name, schema]: [string, Schema]): TemplateResult => control(contextOf(app, o, name, schema));

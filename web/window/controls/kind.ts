@@ -13,6 +13,7 @@ export type Kind =
   | "map" // a colour map
   | "opacity" // an opacity curve
   | "vector" // a fixed count of numbers
+  | "ends" // the two ends of a range of values
   | "numbers" // any count of numbers
   | "texts" // any count of words
   | "file" // a path, as the server sees it
@@ -36,6 +37,7 @@ export function kindOf(name: string, s: Schema): Kind {
   if (types.includes("array")) {
     const items = s.items ? typesOf(s.items) : ["string"];
     if (items.includes("string")) return s.items?.enum ? "choices" : fieldLists.has(name) ? "fields" : "texts";
+    if (name === "range" && s.unit === "@field") return "ends";
     return s.minItems !== undefined && s.minItems === s.maxItems ? "vector" : "numbers";
   }
   if (s.unit === "file" || s.unit === "new file") return "file";

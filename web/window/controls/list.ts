@@ -42,7 +42,7 @@ export function list(c: Context, id: string): TemplateResult {
   // A single value of a field can be dragged; of several each has its own slider.
   const sliders = range && /^(values|levels)$/.test(c.name) ? (values.length > 0 ? values : [(range[0] + range[1]) / 2]) : [];
   const at = (i: number, x: number): string => sliders.map((v, k) => short(k === i ? x : v)).join(",");
-  const marked = f ? c.app.probe.valueOf(f.name) : null;
+  const marked = f && c.name !== "range" ? c.app.probe.valueOf(f.name) : null;
   return html`${sliders.slice(0, 6).map(
       (v, i) => html`<input type="range" min=${range![0]} max=${range![1]} step=${(range![1] - range![0]) / 500} .value=${String(v)}
         class=${c.value === undefined ? "unset" : ""} aria-label="${c.name} ${i + 1}"
@@ -54,4 +54,19 @@ export function list(c: Context, id: string): TemplateResult {
     ${marked !== null
       ? html`<button class="small" title="Add the value that was clicked in the picture" @click=${() => c.set([...values, marked].map(short).join(","))}>◎ + ${plain(marked)}</button>`
       : nothing}`;
+}
+
+/** The two ends of a range of values, those of the data where none are given. */
+export function ends(c: Context, id: string): TemplateResult {
+  const now = c.value === undefined ? [] : c.value.split(",");
+  const index = c.at.startsWith("show/") ? Number(c.at.slice(5)) : -1;
+  const chosen = c.app.session.shown(index)?.transfer?.range ?? fieldOf(c)?.range ?? null;
+  const set = (i: 0 | 1, text: string): void => {
+    const next = [0, 1].map((k) => (k === i ? text.trim() : (now[k] ?? (chosen ? short(chosen[k]) : ""))));
+    c.set(next[i] === "" ? null : next.join(","));
+  };
+  const box = (i: 0 | 1): TemplateResult => html`<input id=${i === 0 ? id : nothing} type="text" inputmode="decimal" class="number" autocomplete="off" ${held(now[i] ?? "")}
+    aria-label="${c.name} ${i === 0 ? "from" : "to"}" placeholder=${chosen ? plain(chosen[i]) : i === 0 ? "from" : "to"} aria-invalid=${invalid(c)} aria-describedby=${describedBy(c, id)}
+    @input=${typing} @change=${(e: Event) => set(i, typed(e))} />`;
+  return html`<div class="vector n6" role="group" aria-label=${c.name}>${box(0)}${box(1)}</div>`;
 }

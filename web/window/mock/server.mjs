@@ -131,7 +131,7 @@ async function draw(socket, client, m) {
       if (v.job !== job) return;
     }
     v.waits = true;
-    const header = { is: "frame", n: m.n, view: m.view, revision, type: "image/png", size, of: m.size, coarse, final: coarse === 1, camera: m.camera ?? pipeline.info.camera, milliseconds: Date.now() - began };
+    const header = { is: "frame", n: m.n, view: m.view, revision, type: "image/png", size, of: m.size, coarse, final: coarse === 1, area: [0, 0, Math.round(m.size[0] * 0.8), m.size[1]], camera: m.camera ?? pipeline.info.camera, milliseconds: Date.now() - began };
     const head = Buffer.from(JSON.stringify(header));
     const length = Buffer.alloc(4);
     length.writeUInt32LE(head.length);

@@ -41,9 +41,9 @@ function arrow(app: App, view: View, step: Step, plane: Plane): SVGTemplateResul
   const bounds = app.state!.bounds!;
   const normal = plane.normals[0];
   const reach = Math.hypot(bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4]) * 0.12;
-  const p = toPixel(camera, view.size, plane.origin);
-  const q = toPixel(camera, view.size, add(plane.origin, scale(normal, reach)));
-  const frame = path(outline(plane.origin, normal, bounds).map((c) => toPixel(camera, view.size, c)));
+  const p = toPixel(camera, view.area, plane.origin);
+  const q = toPixel(camera, view.area, add(plane.origin, scale(normal, reach)));
+  const frame = path(outline(plane.origin, normal, bounds).map((c) => toPixel(camera, view.area, c)));
   if (!p || !q) return svg``;
   const along = plane.normals[0][0] * plane.origin[0] + normal[1] * plane.origin[1] + normal[2] * plane.origin[2];
   const move = (by: number, live: boolean): void =>
@@ -53,7 +53,7 @@ function arrow(app: App, view: View, step: Step, plane: Plane): SVGTemplateResul
       aria-valuetext=${plain(along)}
       @pointerdown=${(e: PointerEvent) =>
         beginDrag(e, () => ({
-          move: (dx, dy, done) => move(draggedAlong(camera, view.size, plane.origin, normal, dx, dy), !done),
+          move: (dx, dy, done) => move(draggedAlong(camera, view.area, plane.origin, normal, dx, dy), !done),
         }))}
       @keydown=${(e: KeyboardEvent) => keyed(e, (by) => move(by * reach * 0.1, false))}>
       <line x1=${p[0]} y1=${p[1]} x2=${q[0]} y2=${q[1]} class="handle-stem" />
@@ -65,25 +65,25 @@ function arrow(app: App, view: View, step: Step, plane: Plane): SVGTemplateResul
 function crosshair(app: App, view: View, step: Step, plane: Plane): SVGTemplateResult {
   const camera = view.camera!;
   const bounds = app.state!.bounds!;
-  const p = toPixel(camera, view.size, plane.origin);
+  const p = toPixel(camera, view.area, plane.origin);
   if (!p) return svg``;
   const lines = plane.normals.map((_, i) => {
     const axis = plane.normals[i];
     const k = axis.indexOf(1);
     const end = (side: number): Vec3 => plane.origin.map((x, j) => (j === k ? bounds[2 * k + side] : x)) as Vec3;
-    return svg`<path class="crosshair axis-${k}" d=${path([toPixel(camera, view.size, end(0)), toPixel(camera, view.size, end(1))])} />`;
+    return svg`<path class="crosshair axis-${k}" d=${path([toPixel(camera, view.area, end(0)), toPixel(camera, view.area, end(1))])} />`;
   });
   const move = (by: Vec3, live: boolean): void => app.session.set(`steps/${step.name}`, movedTo(plane, add(plane.origin, by), bounds), live);
   return svg`${lines}<g class="handle" data-handle tabindex="0" role="slider" aria-label="Crosshair of ${step.name}"
       aria-valuetext=${plane.origin.map((x) => plain(x)).join(", ")} aria-valuenow="0"
       @pointerdown=${(e: PointerEvent) =>
-        beginDrag(e, () => ({ move: (dx, dy, done) => move(dragged(camera, view.size, plane.origin, dx, dy), !done) }))}
+        beginDrag(e, () => ({ move: (dx, dy, done) => move(dragged(camera, view.area, plane.origin, dx, dy), !done) }))}
       @keydown=${(e: KeyboardEvent) => {
         const step: Record<string, Point> = { ArrowLeft: [-4, 0], ArrowRight: [4, 0], ArrowUp: [0, -4], ArrowDown: [0, 4] };
         const by = step[e.key];
         if (!by) return;
         e.preventDefault();
-        move(dragged(camera, view.size, plane.origin, ...by), false);
+        move(dragged(camera, view.area, plane.origin, ...by), false);
       }}>
       <circle cx=${p[0]} cy=${p[1]} r="16" class="handle-hit" /><circle cx=${p[0]} cy=${p[1]} r="7" class="handle-ring" />
     </g>`;

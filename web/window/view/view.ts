@@ -9,6 +9,11 @@ import type { Connection } from "../session/socket";
 import { Canvas } from "./canvas";
 import { Drawing } from "./drawing";
 
+export interface Area extends Size {
+  x: number;
+  y: number;
+}
+
 /** What a view needs of the window around it. */
 export interface Host {
   connection: Connection;
@@ -76,8 +81,18 @@ export class View {
     return [(at[0] / this.size.width) * of[0], (at[1] / this.size.height) * of[1]];
   }
 
+  /** The part of the view in which the camera looks, in CSS pixels: beside it there may be legends. */
+  get area(): Area {
+    const { area, of } = this.frame ?? {};
+    if (!area || !of) return { x: 0, y: 0, ...this.size };
+    const kx = this.size.width / of[0];
+    const ky = this.size.height / of[1];
+    return { x: area[0] * kx, y: area[1] * ky, width: area[2] * kx, height: area[3] * ky };
+  }
+
   get aspect(): number {
-    return this.size.height > 0 ? this.size.width / this.size.height : 1.6;
+    const a = this.area;
+    return a.height > 0 ? a.width / a.height : 1.4;
   }
 
   private received(frame: FrameHeader, drawn: boolean): void {
@@ -125,8 +140,9 @@ export class View {
 
   private pointerHandlers(): PointerHandlers {
     const unit = (p: [number, number]): [number, number] => {
-      const h = this.size.height / 2;
-      return [(p[0] - this.size.width / 2) / h, (h - p[1]) / h];
+      const a = this.area;
+      const h = a.height / 2;
+      return [(p[0] - a.x - a.width / 2) / h, (a.y + h - p[1]) / h];
     };
     return {
       begin: (d) => {
@@ -141,7 +157,7 @@ export class View {
         if (this.dragHow === "tool") return void this.host.toolDrag(this, d, "drag");
         const c = this.camera;
         if (!c) return;
-        const h = this.size.height;
+        const h = this.area.height;
         if (this.dragHow === "pan") this.look(pan(c, d.moved[0] / h, -d.moved[1] / h), true);
         else if (this.dragHow === "zoom") this.look(zoom(c, Math.exp((-d.moved[1] / h) * 3)), true);
         else this.look(turnBall(c, unit([d.at[0] - d.moved[0], d.at[1] - d.moved[1]]), unit(d.at)), true);
@@ -153,7 +169,7 @@ export class View {
       click: (at, button) => this.host.click(this, at, button),
       pinch: ({ at, moved, factor, angle }) => {
         if (!this.camera) return;
-        const h = this.size.height;
+        const h = this.area.height;
         const [x, y] = unit(at);
         const panned = pan(this.camera, moved[0] / h, -moved[1] / h);
         this.look(roll(zoom(panned, factor, x / 2, y / 2), -angle), true);
