@@ -20,8 +20,10 @@ export type Kind =
   | "text"; // free text: a name, an expression, a title
 
 const colors = new Set(["color", "below", "above", "nan", "background", "halo_color"]);
-const fieldLists = new Set(["fields", "turn", "keep"]);
-const fieldWords = new Set(["size_by", "second"]); // a choice or a field: free text with the fields suggested
+/** A list of words whose sentence begins with fields is one of fields: "Point fields to advect", "Names of the fields to leave out". */
+const listsFields = (s: Schema): boolean => /^(\w+ ){0,3}fields\b/i.test(s.description ?? "");
+// A choice or a field, an expression of fields, or a column of a table: free text with the fields suggested.
+const fieldWords = new Set(["size_by", "second", "expr", "function", "x", "y", "z"]);
 
 export const typesOf = (s: Schema): string[] => (Array.isArray(s.type) ? s.type : [s.type ?? "string"]).map((t) => t ?? "null");
 
@@ -36,7 +38,7 @@ export function kindOf(name: string, s: Schema): Kind {
   if (types.includes("number") || types.includes("integer")) return "number";
   if (types.includes("array")) {
     const items = s.items ? typesOf(s.items) : ["string"];
-    if (items.includes("string")) return s.items?.enum ? "choices" : fieldLists.has(name) ? "fields" : "texts";
+    if (items.includes("string")) return s.items?.enum ? "choices" : name === "fields" || listsFields(s) ? "fields" : "texts";
     if (name === "range" && s.unit === "@field") return "ends";
     return s.minItems !== undefined && s.minItems === s.maxItems ? "vector" : "numbers";
   }

@@ -9,7 +9,7 @@ import { defaultText, suggestsFields, typesOf } from "./kind";
 
 export function text(c: Context, id: string): TemplateResult {
   const isList = typesOf(c.schema).includes("array");
-  const suggestions = c.name === "expr" || suggestsFields(c.name) ? c.fields.map((f) => f.name) : [];
+  const suggestions = suggestsFields(c.name) ? c.fields.map((f) => f.name) : [];
   return html`<input
       id=${id} type="text" autocomplete="off" spellcheck="false" ${held(c.value ?? "")} placeholder=${defaultText(c.schema) || (isList ? "none" : "auto")}
       list=${suggestions.length > 0 ? `${id}-list` : nothing} aria-invalid=${invalid(c)} aria-describedby=${describedBy(c, id)}
