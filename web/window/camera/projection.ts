@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the world to CSS pixels of a view and back, as the renderer does it.
+import type { Camera, Vec3 } from "../protocol";
+import { frameOf, heightAtTarget } from "./camera";
+import { add, dot, scale, sub } from "./vector";
+
+export interface Size {
+  width: number;
+  height: number;
+}
+
+/** Place of a point in the view, null behind the viewer. */
+export function toPixel(camera: Camera, size: Size, point: Vec3): [number, number] | null {
+  const f = frameOf(camera);
+  const d = sub(point, camera.position);
+  const depth = -dot(d, f.back);
+  const perPixel = pixelSize(camera, size, depth);
+  if (!(perPixel > 0)) return null;
+  return [size.width / 2 + dot(d, f.right) / perPixel, size.height / 2 - dot(d, f.up) / perPixel];
+}
+
+/** World length of a CSS pixel at a depth. */
+export function pixelSize(camera: Camera, size: Size, depth: number): number {
+  if (camera.parallel) return camera.height / size.height;
+  return (2 * depth * Math.tan((camera.view_angle * Math.PI) / 360)) / size.height;
+}
+
+/** How far a point at `origin` goes in the world when it is dragged by pixels, within the plane of the picture. */
+export function dragged(camera: Camera, size: Size, origin: Vec3, dx: number, dy: number): Vec3 {
+  const f = frameOf(camera);
+  const depth = -dot(sub(origin, camera.position), f.back);
+  const perPixel = camera.parallel || depth > 0 ? pixelSize(camera, size, depth) : heightAtTarget(camera) / size.height;
+  return add(scale(f.right, dx * perPixel), scale(f.up, -dy * perPixel));
+}
+
+/** How far along a direction a drag of pixels leads; the direction seen head on counts upward pixels instead. */
+export function draggedAlong(camera: Camera, size: Size, origin: Vec3, direction: Vec3, dx: number, dy: number): number {
+  const f = frameOf(camera);
+  const depth = -dot(sub(origin, camera.position), f.back);
+  const perPixel = Math.abs(pixelSize(camera, size, depth)) || heightAtTarget(camera) / size.height;
+  const x = dot(direction, f.right);
+  const y = dot(direction, f.up);
+  const seen = Math.hypot(x, y);
+  if (seen < 0.2) return -dy * perPixel * Math.sign(dot(direction, f.back) || 1);
+  return ((dx * x - dy * y) / (seen * seen)) * perPixel;
+}

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// A number: a box, and a slider where its range has two ends that are near enough.
+import { html, nothing, type TemplateResult } from "lit";
+import { live } from "lit/directives/live.js";
+import { plain, short } from "../words";
+import { describedBy, fieldOf, invalid } from "./control";
+import type { Context } from "./form";
+import { held, typed, typing } from "./held";
+import { defaultText, sliderRange, typesOf } from "./kind";
+
+export function number(c: Context, id: string): TemplateResult {
+  const range = sliderRange(c.schema, fieldOf(c)?.range);
+  const fallback = defaultText(c.schema);
+  const value = c.value ?? "";
+  const position = Number(value || fallback || (range ? (range.min + range.max) / 2 : 0));
+  const marked = c.schema.unit === "@field" ? c.app.probe.valueOf(fieldOf(c)?.name) : null;
+  const set = (text: string, moving = false): void => c.set(text.trim() === "" ? null : text.trim(), moving);
+  return html`${range
+      ? html`<input
+          type="range" min=${range.min} max=${range.max} step=${range.step} .value=${live(String(position))}
+          aria-label=${c.name} class=${c.value === undefined ? "unset" : ""}
+          @input=${(e: Event) => set(short(Number((e.target as HTMLInputElement).value)), true)}
+          @change=${(e: Event) => set(short(Number((e.target as HTMLInputElement).value)))} />`
+      : nothing}
+    <input
+      id=${id} class="number" type="text" inputmode="decimal" autocomplete="off" spellcheck="false" ${held(value)}
+      placeholder=${fallback === "" ? "auto" : plain(Number(fallback), 6)}
+      aria-invalid=${invalid(c)} aria-describedby=${describedBy(c, id)}
+      @input=${typing} @change=${(e: Event) => set(typed(e))}
+      @keydown=${(e: KeyboardEvent) => {
+        // Arrow keys step by the last digit that is written, as in tables.
+        const by = { ArrowUp: 1, ArrowDown: -1 }[e.key];
+        if (by === undefined) return;
+        e.preventDefault();
+        const whole = typesOf(c.schema).includes("integer");
+        const x = Number((e.target as HTMLInputElement).value || fallback || 0);
+        const unit = whole ? 1 : range ? (range.max - range.min) / 100 : Math.pow(10, Math.floor(Math.log10(Math.abs(x) || 1)) - 1);
+        set(short(x + by * unit * (e.shiftKey ? 10 : 1)));
+      }} />
+    ${marked !== null ? html`<button class="small" title="The value that was clicked in the picture" @click=${() => set(short(marked))}>◎ ${plain(marked)}</button>` : nothing}`;
+}

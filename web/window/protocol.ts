@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// The messages between window and server, as docs/protocol.md describes them.
+
+export type Vec3 = [number, number, number];
+
+export interface Camera {
+  position: Vec3;
+  target: Vec3;
+  up: Vec3;
+  parallel: boolean;
+  view_angle: number; // degrees, vertical
+  height: number; // world length between the lower and the upper edge of a parallel picture
+}
+
+export type Words = Record<string, string>;
+
+export interface FieldInfo {
+  name: string;
+  on: string;
+  components: number;
+  unit?: string;
+  range?: [number, number] | null;
+}
+
+export interface Step {
+  name: string;
+  operation: string;
+  words: Words;
+  from: string[];
+  kind?: string;
+  size?: string;
+  fields?: FieldInfo[];
+  bytes?: number | null;
+  seconds?: number | null;
+}
+
+export interface Histogram {
+  range: [number, number];
+  counts: number[];
+}
+
+export interface Transfer {
+  field: string;
+  unit?: string;
+  range: [number, number];
+  scale: string;
+  map?: string;
+  colors: string[];
+  lightness?: number[];
+  opacity?: [number, number][];
+  opacity_unit?: number;
+  histogram?: Histogram;
+}
+
+export interface Shown {
+  kind: string;
+  of: string;
+  words: Words;
+  transfer?: Transfer | null;
+}
+
+export interface State {
+  is: "state";
+  revision: number;
+  by?: number;
+  can_undo: boolean;
+  can_redo: boolean;
+  title: string;
+  may_edit: boolean;
+  pipeline: string;
+  command: string;
+  steps: Step[];
+  show: Shown[];
+  picture: Words;
+  times: number[];
+  time: number | null;
+  bounds: [number, number, number, number, number, number] | null;
+  length_unit?: string;
+  camera: Camera | null;
+  notes: string[];
+}
+
+export type Edit =
+  | { at: string; set: Record<string, string | null> }
+  | { add: "step"; operation: string; from: string[]; set: Words; show?: boolean }
+  | { add: "show"; kind: string; of: string; set: Words }
+  | { remove: string };
+
+export interface Problem {
+  at: string;
+  word: string;
+  text: string;
+}
+
+export interface FrameHeader {
+  is: "frame";
+  n: number;
+  view: number;
+  revision: number;
+  type: string;
+  size: [number, number];
+  of: [number, number];
+  coarse: number;
+  final: boolean;
+  camera: Camera;
+  area?: [number, number, number, number]; // where in `of` the camera looks: x, y, width, height; the rest is room of legends
+  milliseconds: number;
+}
+
+export interface ProbeAnswer {
+  is: "probe";
+  n: number;
+  position: Vec3 | null;
+  show?: number;
+  values?: { name: string; value: string; unit?: string }[];
+  cell?: number | null;
+}
+
+export interface RowsAnswer {
+  is: "rows";
+  n: number;
+  total: number;
+  columns: string[];
+  rows: string[][];
+}
+
+export interface LineAnswer {
+  is: "line";
+  n: number;
+  unit?: string;
+  distance: number[];
+  values: (number | null)[];
+}
+
+export interface Proposal {
+  words: Words;
+  reason: string;
+}
+
+export interface Cursor {
+  id: number;
+  view: number;
+  at: [number, number];
+  camera?: Camera;
+}
+
+/** Counts over the plane of value and gradient magnitude, row by row from the smallest gradient. */
+export interface PlaneAnswer {
+  is: "plane";
+  n: number;
+  value: [number, number];
+  second: [number, number];
+  size: [number, number];
+  counts: number[];
+}
+
+export interface HistogramAnswer extends Histogram {
+  is: "histogram";
+  n: number;
+}
+
+export type ServerMessage =
+  | State
+  | { is: "refused"; n: number; errors: Problem[] }
+  | ProbeAnswer
+  | RowsAnswer
+  | LineAnswer
+  | PlaneAnswer
+  | HistogramAnswer
+  | { is: "saved"; n: number; url: string; name: string }
+  | { is: "proposals"; n: number; list: Proposal[] }
+  | { is: "progress"; share: number; doing: string }
+  | { is: "busy"; revision: number }
+  | { is: "note"; text: string }
+  | { is: "people"; count: number; cursors: Cursor[] };
+
+/** Splits a binary message into its header and its picture. */
+export function splitFrame(message: ArrayBuffer): { header: FrameHeader; picture: Uint8Array } {
+  if (message.byteLength < 4) throw new Error("A frame is shorter than the length of its header");
+  const length = new DataView(message).getUint32(0, true);
+  if (4 + length > message.byteLength) throw new Error("A frame ends within its header");
+  const header = JSON.parse(new TextDecoder().decode(new Uint8Array(message, 4, length))) as FrameHeader;
+  return { header, picture: new Uint8Array(message, 4 + length) };
+}

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the window knows of the session, and what it can ask for. Everything that changes ends in `changed`, which draws the panels anew.
+import type { Catalog } from "../catalog";
+import type { Edit, FrameHeader, Problem, ServerMessage, Shown, State, Step } from "../protocol";
+import { Edits } from "./edits";
+import { Connection, Refused, type Connected } from "./socket";
+
+export interface People {
+  count: number;
+  cursors: { id: number; view: number; at: [number, number] }[];
+}
+
+export class Session {
+  state: State | null = null;
+  connected: Connected = "connecting";
+  people: People = { count: 1, cursors: [] };
+  progress: { share: number; doing: string } | null = null;
+  notes: string[] = [];
+  readonly edits = new Edits();
+  readonly connection: Connection;
+
+  constructor(
+    url: string,
+    readonly catalog: Catalog,
+    private readonly changed: () => void,
+    private readonly on: {
+      frame: (header: FrameHeader, picture: Uint8Array) => void;
+      state: (state: State, before: State | null) => void;
+      restart: () => void;
+      say: (text: string) => void;
+    },
+  ) {
+    this.connection = new Connection(url, {
+      message: (m) => this.received(m),
+      frame: (h, p) => this.on.frame(h, p),
+      connected: (how) => this.connectedAs(how),
+    });
+    this.connection.open();
+  }
+
+  /** Applies edits, all or none; `live` while something is dragged. */
+  edit(edits: Edit[], live = false): void {
+    if (!this.state?.may_edit) return;
+    this.edits.put(edits, live);
+    this.pump();
+    this.changed();
+  }
+
+  /** Sets words of a step, of a way to show, or of the picture. */
+  set(at: string, words: Record<string, string | null>, live = false): void {
+    this.edit([{ at, set: words }], live);
+  }
+
+  /** A word as it will be once the server has answered; undefined: its default. */
+  word(at: string, name: string): string | undefined {
+    const draft = this.edits.draft(at, name);
+    if (draft !== undefined) return draft ?? undefined;
+    return this.wordsAt(at)[name];
+  }
+
+  wordsAt(at: string): Record<string, string> {
+    const s = this.state;
+    if (!s) return {};
+    if (at === "picture") return s.picture ?? {};
+    if (at.startsWith("show/")) return s.show[Number(at.slice(5))]?.words ?? {};
+    return this.step(at.slice(6))?.words ?? {};
+  }
+
+  step(name: string): Step | undefined {
+    return this.state?.steps.find((s) => s.name === name);
+  }
+
+  shown(index: number): Shown | undefined {
+    return this.state?.show[index];
+  }
+
+  undo(): void {
+    if (this.state?.can_undo) this.connection.send({ do: "undo" });
+  }
+
+  redo(): void {
+    if (this.state?.can_redo) this.connection.send({ do: "redo" });
+  }
+
+  setTime(time: number): void {
+    this.connection.send({ do: "time", time });
+  }
+
+  /** Replaces the whole pipeline by the text of a file. */
+  async load(text: string): Promise<void> {
+    await this.connection.ask({ do: "pipeline", text });
+  }
+
+  ask<T extends ServerMessage>(request: { do: string } & Record<string, unknown>): Promise<T> {
+    return this.connection.ask<T>(request);
+  }
+
+  /** Asks, and tells the person where the answer is no. */
+  async askOrSay<T extends ServerMessage>(request: { do: string } & Record<string, unknown>): Promise<T | null> {
+    try {
+      return await this.ask<T>(request);
+    } catch (error) {
+      this.on.say((error as Error).message);
+      return null;
+    }
+  }
+
+  private received(m: ServerMessage): void {
+    switch (m.is) {
+      case "state": {
+        const before = this.state;
+        this.state = m;
+        this.progress = null;
+        this.edits.stateCame(m.by ?? 0);
+        this.on.state(m, before);
+        break;
+      }
+      case "refused":
+        this.edits.refused(m.n, m.errors);
+        this.sayOthers(m.errors);
+        break;
+      case "progress":
+        this.progress = m.share >= 1 ? null : { share: m.share, doing: m.doing };
+        break;
+      case "busy":
+        this.progress = { share: 0, doing: "" };
+        break;
+      case "note":
+        this.notes = [...this.notes.slice(-49), m.text];
+        this.on.say(m.text);
+        break;
+      case "people":
+        this.people = { count: m.count, cursors: m.cursors ?? [] };
+        break;
+      default:
+        break; // an answer that nobody waits for any more
+    }
+    this.pump();
+    this.changed();
+  }
+
+  /** Errors that stand at a control are read there; the others are said aloud. */
+  private sayOthers(errors: Problem[]): void {
+    const others = errors.filter((e) => e.word === "");
+    if (others.length > 0) this.on.say(others.map((e) => e.text).join("; "));
+  }
+
+  private pump(): void {
+    for (let batch = this.edits.next(); batch; batch = this.edits.next()) {
+      const n = this.connection.send({ do: "edit", live: batch.live, edits: batch.edits });
+      this.edits.sent(n, batch);
+      if (n === 0) {
+        this.edits.lost();
+        this.on.say("Not connected: the change was not made");
+        return;
+      }
+    }
+  }
+
+  private connectedAs(how: Connected): void {
+    const before = this.connected;
+    this.connected = how;
+    if (how === "lost") {
+      this.edits.lost();
+      this.progress = null;
+      this.people = { count: 1, cursors: [] };
+    }
+    if (how === "open" && before !== "open") this.on.restart();
+    this.changed();
+  }
+}
+
+export { Refused };

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// Handles of cutting planes over the picture: a plane is dragged along its normal, the crosshair of several planes across the view.
+import { nothing, svg, type SVGTemplateResult } from "lit";
+import type { App } from "../app";
+import { dragged, draggedAlong, toPixel } from "../camera/projection";
+import { add, scale } from "../camera/vector";
+import { beginDrag } from "../input/handle";
+import type { Step, Vec3 } from "../protocol";
+import type { View } from "../view/view";
+import { plain } from "../words";
+import { movedTo, outline, planeOf, type Plane } from "./plane";
+
+type Point = [number, number];
+
+export function planeHandles(app: App, view: View): SVGTemplateResult | typeof nothing {
+  const { state } = app;
+  const camera = view.camera;
+  if (!state?.bounds || !camera) return nothing;
+  const drawn: SVGTemplateResult[] = [];
+  for (const step of state.steps) {
+    const at = `steps/${step.name}`;
+    const words = Object.fromEntries(
+      ["origin", "normal", "axis", "position", "planes", "sphere", "cylinder", "box", "quadric", "function", "field", "value", "positions"].flatMap((w) => {
+        const value = app.session.word(at, w);
+        return value === undefined ? [] : [[w, value]];
+      }),
+    );
+    const plane = planeOf(step.operation, words, state.bounds);
+    if (!plane) continue;
+    if (plane.normals.length > 1) drawn.push(crosshair(app, view, step, plane));
+    else if (app.selected === at) drawn.push(arrow(app, view, step, plane));
+  }
+  return drawn.length > 0 ? svg`${drawn}` : nothing;
+}
+
+const path = (points: (Point | null)[]): string =>
+  points.some((p) => p === null) ? "" : `M${points.map((p) => `${p![0].toFixed(1)} ${p![1].toFixed(1)}`).join("L")}`;
+
+function arrow(app: App, view: View, step: Step, plane: Plane): SVGTemplateResult {
+  const camera = view.camera!;
+  const bounds = app.state!.bounds!;
+  const normal = plane.normals[0];
+  const reach = Math.hypot(bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4]) * 0.12;
+  const p = toPixel(camera, view.area, plane.origin);
+  const q = toPixel(camera, view.area, add(plane.origin, scale(normal, reach)));
+  const frame = path(outline(plane.origin, normal, bounds).map((c) => toPixel(camera, view.area, c)));
+  if (!p || !q) return svg``;
+  const along = plane.normals[0][0] * plane.origin[0] + normal[1] * plane.origin[1] + normal[2] * plane.origin[2];
+  const move = (by: number, live: boolean): void =>
+    app.session.set(`steps/${step.name}`, movedTo(plane, add(plane.origin, scale(normal, by)), bounds), live);
+  return svg`<path class="plane-outline" d="${frame}Z" />
+    <g class="handle" data-handle tabindex="0" role="slider" aria-label="Plane of ${step.name}" aria-valuenow=${Number(along.toPrecision(5))}
+      aria-valuetext=${plain(along)}
+      @pointerdown=${(e: PointerEvent) =>
+        beginDrag(e, () => ({
+          move: (dx, dy, done) => move(draggedAlong(camera, view.area, plane.origin, normal, dx, dy), !done),
+        }))}
+      @keydown=${(e: KeyboardEvent) => keyed(e, (by) => move(by * reach * 0.1, false))}>
+      <line x1=${p[0]} y1=${p[1]} x2=${q[0]} y2=${q[1]} class="handle-stem" />
+      <circle cx=${p[0]} cy=${p[1]} r="12" class="handle-hit" /><circle cx=${p[0]} cy=${p[1]} r="5" class="handle-dot" />
+      <circle cx=${q[0]} cy=${q[1]} r="14" class="handle-hit" /><circle cx=${q[0]} cy=${q[1]} r="6" class="handle-dot" />
+    </g>`;
+}
+
+function crosshair(app: App, view: View, step: Step, plane: Plane): SVGTemplateResult {
+  const camera = view.camera!;
+  const bounds = app.state!.bounds!;
+  const p = toPixel(camera, view.area, plane.origin);
+  if (!p) return svg``;
+  const lines = plane.normals.map((_, i) => {
+    const axis = plane.normals[i];
+    const k = axis.indexOf(1);
+    const end = (side: number): Vec3 => plane.origin.map((x, j) => (j === k ? bounds[2 * k + side] : x)) as Vec3;
+    return svg`<path class="crosshair axis-${k}" d=${path([toPixel(camera, view.area, end(0)), toPixel(camera, view.area, end(1))])} />`;
+  });
+  const move = (by: Vec3, live: boolean): void => app.session.set(`steps/${step.name}`, movedTo(plane, add(plane.origin, by), bounds), live);
+  return svg`${lines}<g class="handle" data-handle tabindex="0" role="slider" aria-label="Crosshair of ${step.name}"
+      aria-valuetext=${plane.origin.map((x) => plain(x)).join(", ")} aria-valuenow="0"
+      @pointerdown=${(e: PointerEvent) =>
+        beginDrag(e, () => ({ move: (dx, dy, done) => move(dragged(camera, view.area, plane.origin, dx, dy), !done) }))}
+      @keydown=${(e: KeyboardEvent) => {
+        const step: Record<string, Point> = { ArrowLeft: [-4, 0], ArrowRight: [4, 0], ArrowUp: [0, -4], ArrowDown: [0, 4] };
+        const by = step[e.key];
+        if (!by) return;
+        e.preventDefault();
+        move(dragged(camera, view.area, plane.origin, ...by), false);
+      }}>
+      <circle cx=${p[0]} cy=${p[1]} r="16" class="handle-hit" /><circle cx=${p[0]} cy=${p[1]} r="7" class="handle-ring" />
+    </g>`;
+}
+
+function keyed(e: KeyboardEvent, move: (by: number) => void): void {
+  const by = { ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1, PageUp: 5, PageDown: -5 }[e.key];
+  if (by === undefined) return;
+  e.preventDefault();
+  move(by);
+}
