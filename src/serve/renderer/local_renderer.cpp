@@ -44,6 +44,10 @@ std::vector<std::string> with_view(const std::vector<std::string>& words, const 
   return r;
 }
 
+void set_area(const Rect& area, DrawnView& drawn) {
+  drawn.area[0] = int(area.x), drawn.area[1] = int(area.y), drawn.area[2] = int(area.width), drawn.area[3] = int(area.height);
+}
+
 StatedPicture stated_for(const DrawRequest& request, const PreparedPicture& prepared) {
   StatedPicture s = prepared.stated;
   s.width = request.width, s.height = request.height;
@@ -109,6 +113,7 @@ DrawnView LocalRenderer::draw_moving(const PreparedPicture& prepared, const Stat
   learn(seconds_since(begin) / (double(options.width) * options.height), view.seconds_per_sample);
   paste_enlarged(to_image(frame, panel.scene.transparent), int(area.x), int(area.y), int(area.width), int(area.height), view.around);
   drawn.type = "image/jpeg", drawn.bytes = jpeg_of(view.around), drawn.camera = view_camera(panel.camera);
+  set_area(area, drawn);
   return drawn;
 }
 
@@ -122,6 +127,7 @@ DrawnView LocalRenderer::draw(const DrawRequest& request, Context& context) {
     Picture picture = draw_prepared(now->prepared, stated, {}, context);
     drawn.type = "image/png", drawn.bytes = png_of(picture.image);
     if (request.camera) drawn.camera = *request.camera;
+    set_area({0, 0, double(stated.width), double(stated.height)}, drawn);
   } else if (request.quality == Quality::moving) {
     drawn = draw_moving(now->prepared, stated, view, context);
   } else {
@@ -136,6 +142,7 @@ DrawnView LocalRenderer::draw(const DrawRequest& request, Context& context) {
     planes->seen = std::move(picture.seen), planes->width = stated.width;
     planes->area = picture_beside_legends(panel.annotation, stated);
     planes->projection = make_projection(panel.camera, int(planes->area.width), int(planes->area.height));
+    set_area(planes->area, drawn);
     view.around = std::move(picture.image);
     const std::lock_guard lock(mutex_);
     planes_[request.view] = planes;

@@ -11,7 +11,8 @@
 #include "base/text/utf8.h"
 #include "data/cells/point_positions.h"
 #include "filter/probe/probe.h"
-#include "scene/show/volume_presets.h"
+#include "scene/choose/histogram.h"
+#include "serve/renderer/transfer_questions.h"
 
 namespace sg::serve {
 
@@ -137,45 +138,24 @@ Json::Members answer_line(const Json& q, const Data& data, Context& context) {
   return {{"unit", text(field->unit)}, {"distance", Json(std::move(distances))}, {"values", Json(std::move(values))}};
 }
 
-// Looks of a volume that suit the data, each with its reason: the presets, and what the histogram and the boundaries tell.
-Json::Members answer_proposals(const Json& q, const PreparedPicture& prepared, Context& context) {
-  const auto show = uint32_t(q["show"].number()) + 1;
-  std::vector<Json> proposals;
-  const Scene& scene = prepared.shown[0].scene;
-  for (size_t i = 0; i < scene.shows.size(); ++i) {
-    const auto* volume = std::get_if<VolumeItem>(&scene.items[i]);
-    if (!volume || scene.shows[i] != show) continue;
-    const Field* field = volume->data->fields().find(volume->field, volume->association);
-    if (!field) continue;
-    const auto propose = [&](std::string name, std::vector<std::string> words, std::string reason) {
-      proposals.emplace_back(
-          Json::Members{{"name", text(std::move(name))}, {"words", words_json(words)}, {"reason", text(std::move(reason))}});
-    };
-    for (const TransferChoice choice : {TransferChoice::histogram, TransferChoice::boundaries}) {
-      Scene alone;
-      VolumeShow p;
-      p.coloring.field.name = volume->field, p.transfer = std::string(word_of(choice));
-      std::string reason;
-      Context told(context, 0, 1);
-      told.on_log = [&](LogLevel, std::string_view line) { reason += (reason.empty() ? "" : "; ") + std::string(line); };
-      add(alone, volume->data, p, told);
-      propose(p.transfer, transfer_words(std::get<VolumeItem>(alone.items.at(0))), reason);
+Json::Members answer_histogram(const Json& q, const Data& data, Context& context) {
+  constexpr size_t bins = 64;
+  const std::string name = bytes_of_text(q["field"].text());
+  std::vector<size_t> sum(bins);
+  Range range;
+  std::vector<std::pair<DatasetPtr, const Field*>> fields;
+  for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
+    if (const Field* f = d->fields().find(name)) fields.emplace_back(d, f), range.add(d->range(*f));
+  });
+  if (fields.empty()) fail_usage(fmt::format("there is no field '{}'", printable(name)), "histogram");
+  if (!range.empty() && range.lo < range.hi)
+    for (const auto& [d, f] : fields) {
+      const std::vector<size_t> counts = histogram(*f, -1, range.lo, range.hi, bins, context);
+      for (size_t i = 0; i < bins; ++i) sum[i] += counts[i];
     }
-    for (const VolumePreset& preset : volume_presets()) {
-      Scene alone;
-      VolumeShow p;
-      p.coloring.field.name = volume->field, p.preset = std::string(preset.name);
-      try {
-        add(alone, volume->data, p, context);
-      } catch (const Error& e) {
-        if (e.kind() == ErrorKind::cancelled) throw;
-        continue;  // not for such data
-      }
-      propose(p.preset, transfer_words(std::get<VolumeItem>(alone.items.at(0))), std::string(preset.about));
-    }
-    break;
-  }
-  return {{"list", Json(std::move(proposals))}};
+  std::vector<Json> counts;
+  for (const size_t n : sum) counts.emplace_back(uint64_t(n));
+  return {{"range", range.empty() ? Json() : numbers({range.lo, range.hi})}, {"counts", Json(std::move(counts))}};
 }
 
 }  // namespace
@@ -214,9 +194,11 @@ Json::Members answer_about_steps(const Json& question, const PipelineFile& file,
                                  const std::shared_ptr<Cache>& cache, Context& context) {
   const std::string& what = question["do"].text();
   if (what == "proposals") return answer_proposals(question, prepared, context);
+  if (what == "plane") return answer_plane(question, prepared, context);
   const Data data = result_of(file, bytes_of_text(question["step"].text()), cache, context);
   if (what == "rows") return answer_rows(question, data);
   if (what == "line") return answer_line(question, data, context);
+  if (what == "histogram") return answer_histogram(question, data, context);
   fail_usage(fmt::format("'{}' is no question", what), "question", "docs/protocol.md has them");
 }
 

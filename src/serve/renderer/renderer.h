@@ -30,9 +30,10 @@ struct DrawnView {
   int width = 0, height = 0;  ///< of the encoded picture
   std::string type;           ///< "image/jpeg", "image/png"
   std::shared_ptr<const std::string> bytes;
-  ViewCamera camera;   ///< that it was drawn from
-  double coarse = 1;   ///< pixels of the view that one of the picture stands for, along each side
-  double seconds = 0;  ///< that it took
+  ViewCamera camera;           ///< that it was drawn from
+  int area[4] = {0, 0, 0, 0};  ///< x, y, width, height of the part in which the camera looks; legends stand beside it
+  double coarse = 1;           ///< pixels of the view that one of the picture stands for, along each side
+  double seconds = 0;          ///< that it took
 };
 
 /// A pipeline, and what becomes of it. load(), tell() and draw() are called by one thread, answer() and save() by another one meanwhile, of

@@ -23,17 +23,19 @@ constexpr double most_pixels = 4096.0 * 4096.0;
 constexpr auto progress_pause = std::chrono::milliseconds(200);
 
 std::string frame_message(const DrawnView& drawn, const WantedView& view, int number, uint64_t revision, bool final) {
-  const Json header(Json::Members{{"is", text("frame")},
-                                  {"n", Json(view.n)},
-                                  {"view", Json(int64_t(number))},
-                                  {"revision", Json(revision)},
-                                  {"type", text(drawn.type)},
-                                  {"size", numbers({double(drawn.width), double(drawn.height)})},
-                                  {"of", numbers({double(view.request.width), double(view.request.height)})},
-                                  {"coarse", Json(drawn.coarse)},
-                                  {"final", Json(final)},
-                                  {"camera", camera_json(drawn.camera)},
-                                  {"milliseconds", Json(1000 * drawn.seconds)}});
+  const Json header(
+      Json::Members{{"is", text("frame")},
+                    {"n", Json(view.n)},
+                    {"view", Json(int64_t(number))},
+                    {"revision", Json(revision)},
+                    {"type", text(drawn.type)},
+                    {"size", numbers({double(drawn.width), double(drawn.height)})},
+                    {"of", numbers({double(view.request.width), double(view.request.height)})},
+                    {"coarse", Json(drawn.coarse)},
+                    {"final", Json(final)},
+                    {"camera", camera_json(drawn.camera)},
+                    {"area", numbers({double(drawn.area[0]), double(drawn.area[1]), double(drawn.area[2]), double(drawn.area[3])})},
+                    {"milliseconds", Json(1000 * drawn.seconds)}});
   const std::string head = header.dump();
   std::string message;
   message.reserve(4 + head.size() + drawn.bytes->size());
@@ -152,7 +154,8 @@ void Session::take_message(int id, std::string_view words) {
       if (changes_.size() >= most_changes) fail_usage("there are more edits than can be made");
       changes_.push_back({id, message});
       if (running_) running_->cancel();
-    } else if (what == "probe" || what == "rows" || what == "line" || what == "save" || what == "proposals") {
+    } else if (what == "probe" || what == "rows" || what == "line" || what == "histogram" || what == "plane" || what == "save" ||
+               what == "proposals") {
       // Of what is asked while the mouse moves only the last counts.
       if (what == "probe")
         std::erase_if(questions_, [&](const Question& q) { return q.client == id && q.message["do"].text() == "probe"; });
