@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/file/file.h"
+#include "base/file/file_fence.h"
 #include "data/memory/memory_budget.h"
 #include "pipeline/picture/picture.h"
 #include "serve/door/door.h"
@@ -49,6 +50,18 @@ bool open_browser(const std::string& address) {
   return started && ::waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
+// From here on nothing is read but what lies below folders of the files that are served, and nothing is written: whatever a window asks
+// for.
+void fence_in(const std::vector<std::string>& files, std::string who) {
+  FileFence fence;
+  for (const std::string& f : files) {
+    const std::string folder = folder_of(f);
+    fence.read_below.push_back(folder.empty() ? "." : folder);
+  }
+  fence.who = std::move(who);
+  set_file_fence(std::move(fence));
+}
+
 }  // namespace
 
 void describe(Schema& s, ServeParams& p) {
@@ -64,6 +77,7 @@ void describe(Schema& s, ServeParams& p) {
 void view(PipelineFile file, const std::vector<std::string>& coloring, const std::string& title, const ServeParams& p, Context& context) {
   Sessions sessions(
       [&](const std::string&) { return Session::open(std::make_unique<LocalRenderer>(cache_bytes(), coloring), file, title); });
+  fence_in(files_read(file), "a window");
   Door door(door_options(p), sessions);
   say_address(fmt::format("{}: {}\n", title, door.address_with_token()));
   if (p.browser && !open_browser(door.address_with_token())) context.info("no browser could be started: open the address in one");
@@ -80,6 +94,7 @@ void serve(const std::string& folder, const ServeParams& p, Context& context) {
     file.show.push_back({std::string(auto_show), {}, "input", 0});
     return Session::open(std::make_unique<LocalRenderer>(cache_bytes(), std::vector<std::string>{}), std::move(file), file_name_of(path));
   });
+  fence_in({folder + "/"}, "a window");
   Door door(options, sessions);
   say_address(fmt::format("{}: {}\n", folder, door.address_with_token()));
   door.run(context);
