@@ -2,7 +2,7 @@
 # One static library per folder of src/, one test program per folder of tests/.
 
 # Layers without loops worth the time of the optimiser: theirs are over steps, options and items. Plug-ins are like them.
-set(SG_QUICK_LAYERS scene pipeline api cli)
+set(SG_QUICK_LAYERS scene pipeline api serve cli)
 
 # base and image know no data; all others start from the headers of data, which nearly every file includes. GCC takes the level of
 # optimisation from the precompiled header, so each level has one of its own.

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/file/file.h"
 #include "base/text/text.h"
+#include "color/legend_content.h"
 #include "io/file_series.h"
 #include "io/options.h"
 #include "pipeline/file/pipeline_file.h"
@@ -155,6 +156,22 @@ class Chains {
   std::vector<PipelineFile::Step> further_;
 };
 
+// The words of --legend as parameters of a way to show. A title of several words is written in quotes.
+std::vector<std::string> legend_words(const std::string& text) {
+  const std::vector<std::string> given = quoted_words(text);
+  std::vector<std::string> words;
+  for (size_t i = 0; i < given.size(); ++i) {
+    const std::string& w = given[i];
+    const bool parameter = w.find('=') != w.npos;
+    if (!parameter && i > 0 && given[i - 1].find('=') != std::string::npos && !value_of_word<LegendPlace>(w))
+      fail_usage(fmt::format("'{}' is no word of a legend", w), "--legend",
+                 fmt::format("a value with blanks stands in quotes: {}='{} {}'", given[i - 1].substr(0, given[i - 1].find('=')),
+                             given[i - 1].substr(given[i - 1].find('=') + 1), w));
+    words.push_back((parameter ? "legend_" : value_of_word<LegendPlace>(w) ? "legend_place=" : "legend=") + w);
+  }
+  return words;
+}
+
 }  // namespace
 
 PipelineFile pipeline_of(const Options& o) {
@@ -170,6 +187,16 @@ PipelineFile pipeline_of(const Options& o) {
   }
   add_picture_words(o, chains.file);
   return chains.file;
+}
+
+std::vector<std::string> coloring_words(const Options& o) {
+  const std::pair<const char*, const std::string&> stated[] = {{"field=", o.field}, {"map=", o.map},     {"scale=", o.scale},
+                                                               {"range=", o.range}, {"below=", o.below}, {"above=", o.above}};
+  std::vector<std::string> coloring;
+  for (const auto& [key, value] : stated)
+    if (!value.empty()) coloring.push_back(key + value);
+  for (std::string& word : legend_words(o.legend)) coloring.push_back(std::move(word));
+  return coloring;
 }
 
 }  // namespace sg

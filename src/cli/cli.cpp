@@ -77,7 +77,8 @@ void catch_signals() {
 constexpr size_t most_piped = size_t(1) << 30;
 
 Options with_streams(Options o, const Context& context) {
-  if (o.command == Command::ops || o.command == Command::demo || o.command == Command::complete || o.command == Command::completions)
+  if (o.command == Command::ops || o.command == Command::demo || o.command == Command::complete || o.command == Command::serve ||
+      o.command == Command::completions)
     return o;
   for (std::string& path : o.inputs) path = spooled(path, o.memory ? o.memory : most_piped, context);
   return o;
@@ -108,6 +109,8 @@ int dispatch_command(const Options& o, Context& context) {
   switch (o.command) {
     case Command::none: return 0;
     case Command::render: return run_render(o, context);
+    case Command::view: return run_view(o, context);
+    case Command::serve: return run_serve(o, context);
     case Command::info: return run_info(o, context);
     case Command::convert: return run_convert(o, context);
     case Command::run: return run_pipeline_file(o, context);

@@ -12,6 +12,8 @@ int cli_main(int argc, char** argv);
 int run_info(const Options& o, Context& context);
 int run_info_of_pipeline(const Options& o, Context& context);
 int run_render(const Options& o, Context& context);
+int run_view(const Options& o, Context& context);
+int run_serve(const Options& o, Context& context);
 int run_convert(const Options& o, Context& context);
 int run_pipeline_file(const Options& o, Context& context);
 int run_open(const Options& o, Context& context);

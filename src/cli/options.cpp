@@ -18,6 +18,7 @@
 #include "pipeline/picture/picture.h"
 #include "scene/choose/coloring.h"
 #include "scene/show/other_names.h"
+#include "serve/serve.h"
 
 namespace sg {
 
@@ -152,6 +153,22 @@ void add_film(CLI::App& a, Options& o) {
   }
 }
 
+// Those of its names: a token for a user alone has no use where there is one session.
+void add_serving(CLI::App& a, Options& o, std::initializer_list<std::string_view> names) {
+  serve::ServeParams params;
+  const Schema schema = schema_of(params);
+  for (const std::string_view name : names) {
+    const ParamDecl& d = *schema.find(name);
+    add_flag(a, d, d.name, d.doc, [&o, key = d.name](const std::string& text) {
+      serve::ServeParams checked;
+      Schema words = schema_of(checked);
+      words.find(key)->name = "--" + key;
+      set_param(words, "--" + key, text, "");
+      o.serve.push_back(key + "=" + text);
+    });
+  }
+}
+
 void add_size(CLI::App& a, Options& o) { a.add_option("--size", o.size, doc_of<PictureParams>("size")); }
 
 void add_output(CLI::App& a, Options& o) {
@@ -160,7 +177,7 @@ void add_output(CLI::App& a, Options& o) {
                    " Still pictures: .png, .jpg, .webp; '-': a PNG to standard output. {name} is the name of the first input.");
 }
 
-void add_picture(CLI::App& a, Options& o, RawText& raw) {
+void add_look(CLI::App& a, Options& o) {
   a.add_option(
        "--show", o.shows,
        "How to show the data: 'surface|volume|lines|points|labels|glyphs|outline key=value ...'; may be repeated. of=STEP shows that step "
@@ -187,7 +204,10 @@ void add_picture(CLI::App& a, Options& o, RawText& raw) {
   a.add_option("--views", o.views, doc_of<PictureParams>("views"));
   a.add_option("--background", o.background, doc_of<PictureParams>("background"));
   a.add_option("--picture", o.picture, "Further picture parameters as key=value (see: sightglass ops picture)")->allow_extra_args(false);
-  add_film(a, o);
+}
+
+void add_picture(CLI::App& a, Options& o, RawText& raw) {
+  add_look(a, o), add_film(a, o);
   a.add_flag("--progressive", o.progressive,
              "Volumes larger than memory: write a coarse picture at once, then replace it by finer ones up to the final one");
   a.add_option(
@@ -260,6 +280,8 @@ const char* const general_help =
     "  sightglass render IN... [-f 'OP key=value ...']... [--show 'surface|volume|lines|points|labels|glyphs|outline key=value ...']...\n"
     "             [--camera ...] [--size 1920x1080] [-o OUT.png]      render a picture; anything left open is chosen from the data\n"
     "  sightglass IN                                                 the same\n"
+    "  sightglass view IN... [-f ...]... [--show ...]                open it in a window of the browser\n"
+    "  sightglass serve FOLDER                                       the same for a team, with all files of a folder\n"
     "  sightglass info IN [--json] [--quick] [--all-times]           describe what is in a file\n"
     "  sightglass convert IN [-f ...]... -o OUT.vtu                  filter data and write it to another file\n"
     "  sightglass run PIPELINE.yaml                                  run a pipeline file\n"
@@ -274,6 +296,22 @@ const char* const general_help =
 void declare_render(CLI::App& a, Options& o, RawText& raw) {
   a.add_option("input", o.inputs, "Files to read");
   add_reading(a, o, raw), add_pipeline(a, o), add_picture(a, o, raw);
+}
+
+void declare_view(CLI::App& a, Options& o, RawText& raw) {
+  a.add_option("input", o.inputs, "Files to read, or one pipeline file (YAML)");
+  add_serving(a, o, {"address", "port", "origin"});
+  a.add_flag("--no-browser", o.no_browser, "Print the address, and leave the browser to you");
+  add_reading(a, o, raw), add_pipeline(a, o), add_look(a, o);
+  a.footer(
+      "The address that is printed has a token which counts once. Ctrl-C ends the server, and with it the session: save pictures and the "
+      "pipeline from the window.");
+}
+
+void declare_serve(CLI::App& a, Options& o, RawText&) {
+  a.add_option("folder", o.inputs, "Folder of the data; nothing above it can be reached")->required()->expected(1);
+  add_serving(a, o, {"address", "port", "users", "origin"});
+  a.add_option("--add-user", o.add_user, "Print a token for a new user, and the line for the file of users: 'NAME view' or 'NAME edit'");
 }
 
 void declare_info(CLI::App& a, Options& o, RawText& raw) {
@@ -350,6 +388,8 @@ struct Declaration {
 };
 constexpr Declaration declarations[] = {
     {Command::render, "Render a picture of the data. Whatever is not given is chosen from the data.", declare_render},
+    {Command::view, "Open data in a window of the browser: turn it, change its looks, ask for values.", declare_view},
+    {Command::serve, "Serve a folder of data to browsers, each file in a session of its own.", declare_serve},
     {Command::info, "Describe what is in a file: mesh, sizes, cell types, bounds, fields and their ranges.", declare_info},
     {Command::convert, "Read, filter and write data; the extension of the output determines its format.", declare_convert},
     {Command::run, "Run a pipeline file.", declare_run},
@@ -431,7 +471,7 @@ Options parse_options(int argc, char** argv) {
   finish_raw(raw, o);
   for (std::string& input : o.inputs)
     if (input == "-") input = "/dev/stdin";
-  if (*command == Command::render || *command == Command::convert || *command == Command::info)
+  if (*command == Command::render || *command == Command::view || *command == Command::convert || *command == Command::info)
     refuse_loose_words({argv + words_from, argv + argc}, o.inputs, std::string(word_of(*command)));
   if (o.series && o.inputs.empty()) fail_usage("names no files", "--series", "write e.g. --series flow_*.vtk");
   if (o.series) o.inputs = {series_path(std::move(o.inputs), true)};

@@ -8,13 +8,22 @@
 
 namespace sg {
 
-enum class Command { none, render, info, convert, run, open, ops, colormap, demo, completions, complete, man };
+enum class Command { none, render, view, serve, info, convert, run, open, ops, colormap, demo, completions, complete, man };
 constexpr auto enum_words(Command) {
   using enum Command;
-  return std::array{Word{"render", render},     Word{"info", info}, Word{"convert", convert},
-                    Word{"run", run},           Word{"open", open}, Word{"ops", ops},
-                    Word{"colormap", colormap}, Word{"demo", demo}, Word{"completions", completions},
-                    Word{"complete", complete}, Word{"man", man}};
+  return std::array{Word{"render", render},
+                    Word{"view", view},
+                    Word{"serve", serve},
+                    Word{"info", info},
+                    Word{"convert", convert},
+                    Word{"run", run},
+                    Word{"open", open},
+                    Word{"ops", ops},
+                    Word{"colormap", colormap},
+                    Word{"demo", demo},
+                    Word{"completions", completions},
+                    Word{"complete", complete},
+                    Word{"man", man}};
 }
 
 struct Options {
@@ -32,12 +41,14 @@ struct Options {
   ReadOptions read;
   std::vector<std::string> written;  ///< convert: key=value for the writer
   std::vector<std::string> film;     ///< key=value of FilmParams, checked
+  std::vector<std::string> serve;    ///< view, serve: key=value of ServeParams, checked
+  std::string add_user;              ///< serve: "NAME RIGHTS"
   std::string sheet;                 ///< demo: contact sheet
   int threads = 0;
   size_t memory = 0;
   bool read_anywhere = false;  ///< files and recipes may name any file
-  bool json = false, cpp = false, other_names = false, quick = false, all_times = false, quiet = false, verbose = false, explain = false,
-       recipe = false,
+  bool json = false, cpp = false, other_names = false, no_browser = false, quick = false, all_times = false, quiet = false, verbose = false,
+       explain = false, recipe = false,
        series = false;  ///< series: all inputs are one
 };
 

@@ -188,22 +188,6 @@ int render_into(PipelineFile file, const FilmParams& film, const PictureOptions&
   return render_to(file, film.output, options, o, context);
 }
 
-// The words of --legend as parameters of a way to show. A title of several words is written in quotes.
-std::vector<std::string> legend_words(const std::string& text) {
-  const std::vector<std::string> given = quoted_words(text);
-  std::vector<std::string> words;
-  for (size_t i = 0; i < given.size(); ++i) {
-    const std::string& w = given[i];
-    const bool parameter = w.find('=') != w.npos;
-    if (!parameter && i > 0 && given[i - 1].find('=') != std::string::npos && !value_of_word<LegendPlace>(w))
-      fail_usage(fmt::format("'{}' is no word of a legend", w), "--legend",
-                 fmt::format("a value with blanks stands in quotes: {}='{} {}'", given[i - 1].substr(0, given[i - 1].find('=')),
-                             given[i - 1].substr(given[i - 1].find('=') + 1), w));
-    words.push_back((parameter ? "legend_" : value_of_word<LegendPlace>(w) ? "legend_place=" : "legend=") + w);
-  }
-  return words;
-}
-
 }  // namespace
 
 int run_render(const Options& o, Context& context) {
@@ -212,11 +196,7 @@ int run_render(const Options& o, Context& context) {
                              o.inputs.size(), series));
   PipelineFile file = pipeline_of(o);
   PictureOptions options;
-  const std::pair<const char*, const std::string&> stated[] = {{"field=", o.field}, {"map=", o.map},     {"scale=", o.scale},
-                                                               {"range=", o.range}, {"below=", o.below}, {"above=", o.above}};
-  for (const auto& [key, value] : stated)
-    if (!value.empty()) options.coloring.push_back(key + value);
-  for (std::string& word : legend_words(o.legend)) options.coloring.push_back(std::move(word));
+  options.coloring = coloring_words(o);
   FilmParams film;
   take_film_flags(o, film);
   const char* unnamed = film.turntable > 0 ? "{name}.webm" : "{name}.png";

@@ -40,20 +40,6 @@ Image on_white(const Image& image) {
   return out;
 }
 
-std::string jpeg_bytes(const Image& image, const std::string& path) {
-  const Image rgb = on_white(image);
-  tjhandle tj = tjInitCompress();
-  unsigned char* data = nullptr;
-  unsigned long size = 0;
-  const bool good = tj && tjCompress2(tj, rgb.pixels.data(), rgb.width, 0, rgb.height, TJPF_RGB, &data, &size, TJSAMP_444, 92, 0) == 0;
-  const std::string problem = good ? "" : tjGetErrorStr2(tj);
-  std::string bytes(reinterpret_cast<const char*>(data), good ? size : 0);
-  tjFree(data);
-  if (tj) tjDestroy(tj);
-  if (!good) fail_data("cannot encode JPEG: " + problem, path);
-  return bytes;
-}
-
 std::string webp_bytes(const Image& image, const std::string& path) {
   if (image.width > WEBP_MAX_DIMENSION || image.height > WEBP_MAX_DIMENSION)
     fail_usage(fmt::format("{} x {} pixels are too many for WebP", image.width, image.height), path,
@@ -86,7 +72,7 @@ void write_png(const std::string& path, const Image& image) {
   const std::vector<uint8_t> bytes = encode_png(image);
   write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
-void write_jpeg(const std::string& path, const Image& image) { write_file(path, jpeg_bytes(image, path)); }
+void write_jpeg(const std::string& path, const Image& image) { write_file(path, encode_jpeg(image, 92)); }
 void write_webp(const std::string& path, const Image& image) { write_file(path, webp_bytes(image, path)); }
 
 struct ImageFormat {
@@ -96,6 +82,20 @@ struct ImageFormat {
 constexpr ImageFormat image_formats[] = {{"png", write_png}, {"jpg", write_jpeg}, {"jpeg", write_jpeg}, {"webp", write_webp}};
 
 }  // namespace
+
+std::string encode_jpeg(const Image& image, int quality) {
+  const Image rgb = on_white(image);
+  tjhandle tj = tjInitCompress();
+  unsigned char* data = nullptr;
+  unsigned long size = 0;
+  const bool good = tj && tjCompress2(tj, rgb.pixels.data(), rgb.width, 0, rgb.height, TJPF_RGB, &data, &size, TJSAMP_444, quality, 0) == 0;
+  const std::string problem = good ? "" : tjGetErrorStr2(tj);
+  std::string bytes(reinterpret_cast<const char*>(data), good ? size : 0);
+  tjFree(data);
+  if (tj) tjDestroy(tj);
+  if (!good) fail_data("cannot encode JPEG: " + problem);
+  return bytes;
+}
 
 const std::vector<std::string>& image_extensions() {
   static const std::vector<std::string> extensions = [] {

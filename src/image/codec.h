@@ -18,6 +18,8 @@ const std::vector<std::string>& image_extensions();
 /// PNG, deterministic bytes: filter rows in parallel, deflate in independent stripes (fixed size, so the same bytes for any
 /// number of threads). `text` goes to tEXt (Latin-1) or iTXt (UTF-8) chunks, zTXt/compressed iTXt above 1 KiB.
 std::vector<uint8_t> encode_png(const Image& image);
+/// JPEG without loss of colour resolution; transparent pixels lie on white. `quality`: 1 to 100.
+std::string encode_jpeg(const Image& image, int quality);
 /// Throws Error(data) for anything that is not a PNG of 8 bits or can be turned into one, and for one whose pixels fill more than 256 MiB
 /// and 100 times its size. Text chunks are returned in `text`: 64 MiB of them together, longer ones are left out.
 Image decode_png(std::span<const std::byte> bytes, const std::string& name);

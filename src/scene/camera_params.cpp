@@ -47,6 +47,7 @@ void describe(Schema& s, CameraParams& p) {
   s("zoom", p.zoom, "Magnification; above 1 is closer.").positive();
   s("view_angle", p.view_angle, "Vertical angle of view.").unit("deg").range(1, 170);
   s("projection", p.projection, "Perspective or parallel projection; default: parallel for flat data.");
+  s("height", p.height, "Of a parallel projection: what is seen from the lower to the upper edge; default: all of the data.").positive();
 }
 
 std::vector<std::string> camera_words(const std::vector<std::string>& words) {
@@ -91,6 +92,7 @@ Camera make_camera(const CameraParams& p, const Box3& box, double aspect, const 
     c.target = target;
     c.position = target + normalize(direction) * distance;
   }
+  if (p.height) c.parallel_height = *p.height;
   if (p.zoom != 1) {
     if (parallel) c.parallel_height /= p.zoom;
     else if (p.position) c.view_angle = std::atan(std::tan(c.view_angle * std::numbers::pi / 360) / p.zoom) * 360 / std::numbers::pi;

@@ -39,6 +39,7 @@ struct CameraParams {
   std::optional<Vec3> position, target, direction, up;
   double azimuth = 0, elevation = 0, roll = 0, zoom = 1, view_angle = 30;
   std::optional<ProjectionKind> projection;
+  std::optional<double> height;
 };
 void describe(Schema& s, CameraParams& p);
 

@@ -175,3 +175,16 @@ TEST_CASE("make_camera: named views of z up, of graphics and of a patient") {
     CHECK(length(up - w.up) < 1e-12);
   }
 }
+
+TEST_CASE("camera: a stated height of a parallel projection stays while the view turns") {
+  const Box3 box = box_of({0, 0, 0}, {1, 2, 5});
+  CameraParams p;
+  p.projection = ProjectionKind::parallel, p.height = 3;
+  for (const Vec3 direction : {Vec3{0, -1, 0}, Vec3{1, 1, 1}, Vec3{1, 0, 0}}) {
+    p.direction = direction;
+    const Camera c = make_camera(p, box, 1.5, {}, 0.1);
+    CHECK(c.parallel_height == 3);
+    const Projection q = make_projection(c, 600, 400);  // two points apart by a third of the height, a third of the picture apart
+    CHECK(length(q.to_pixel(c.target + q.up) - q.to_pixel(c.target) + Vec3{0, 400.0 / 3, 0}) < 1e-9);
+  }
+}

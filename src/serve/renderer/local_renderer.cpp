@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "serve/renderer/local_renderer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/file/file.h"
+#include "image/codec.h"
+#include "image/enlarge.h"
+#include "render/render.h"
+#include "serve/renderer/quality.h"
+#include "serve/renderer/questions.h"
+#include "serve/renderer/tell.h"
+
+namespace sg::serve {
+
+namespace {
+
+constexpr double drag_seconds = 0.024;  // for drawing, of the 50 ms from a drag to its picture
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+// The mean of what was measured, the latest counting most.
+void learn(double measured, double& mean) { mean = mean > 0 ? 0.5 * (mean + measured) : measured; }
+
+std::shared_ptr<const std::string> jpeg_of(const Image& image) { return std::make_shared<const std::string>(encode_jpeg(image, 85)); }
+std::shared_ptr<const std::string> png_of(const Image& image) {
+  const std::vector<uint8_t> bytes = encode_png(image);
+  return std::make_shared<const std::string>(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+}
+
+// The words of a picture with a camera and a size in place of theirs.
+std::vector<std::string> with_view(const std::vector<std::string>& words, const DrawRequest& request) {
+  std::vector<std::string> r;
+  for (const std::string& w : words)
+    if (!w.starts_with("size=") && !(request.camera && (w.starts_with("camera.") || w.starts_with("camera=")))) r.push_back(w);
+  r.push_back("size=" + std::to_string(request.width) + "x" + std::to_string(request.height));
+  if (request.camera)
+    for (const std::string& w : camera_texts(*request.camera)) r.push_back("camera." + w);
+  return r;
+}
+
+void set_area(const Rect& area, DrawnView& drawn) {
+  drawn.area[0] = int(area.x), drawn.area[1] = int(area.y), drawn.area[2] = int(area.width), drawn.area[3] = int(area.height);
+}
+
+StatedPicture stated_for(const DrawRequest& request, const PreparedPicture& prepared) {
+  StatedPicture s = prepared.stated;
+  s.width = request.width, s.height = request.height;
+  if (request.camera) s.camera = camera_params(*request.camera);
+  return s;
+}
+
+}  // namespace
+
+LocalRenderer::LocalRenderer(uint64_t cache_bytes, std::vector<std::string> coloring)
+    : cache_(std::make_shared<Cache>(cache_bytes)), coloring_(std::move(coloring)) {}
+
+std::shared_ptr<const LocalRenderer::Loaded> LocalRenderer::loaded() const {
+  const std::lock_guard lock(mutex_);
+  if (!loaded_) fail_usage("nothing is loaded");
+  return loaded_;
+}
+
+PipelineFile LocalRenderer::load(const PipelineFile& pipeline, Context& context) {
+  auto next = std::make_shared<Loaded>();
+  next->file = pipeline;
+  PictureOptions options;
+  options.cache = cache_, options.coloring = coloring_;
+  next->prepared = prepare_picture(next->file, options, context);
+  coloring_.clear();
+  for (auto& [id, view] : views_) view.around = {};
+  const std::lock_guard lock(mutex_);
+  planes_.clear(), loaded_ = next;
+  return next->file;
+}
+
+Json::Members LocalRenderer::tell(Context& context) {
+  const auto now = loaded();
+  return tell_state(now->file, now->prepared, cache_, context);
+}
+
+void LocalRenderer::forget(int view) {
+  views_.erase(view);
+  const std::lock_guard lock(mutex_);
+  planes_.erase(view);
+}
+
+// The picture beside the legends in fewer pixels, enlarged; legends and title stay as they are.
+DrawnView LocalRenderer::draw_moving(const PreparedPicture& prepared, const StatedPicture& stated, View& view, Context& context) {
+  const Panel panel = panel_of(prepared, stated);
+  const Rect area = picture_beside_legends(panel.annotation, stated);
+  if (view.around.width != stated.width || view.around.height != stated.height) {
+    Scene empty;
+    empty.background = panel.scene.background, empty.background_top = panel.scene.background_top;
+    empty.transparent = panel.scene.transparent;
+    Annotation texts = panel.annotation;
+    texts.box.reset(), texts.axes = texts.triad = texts.scale_bar = false;
+    view.around = draw_picture(empty, panel.camera, stated, texts, 1, context).image;
+  }
+  DrawnView drawn;
+  drawn.coarse = coarseness(area.width * area.height, view.seconds_per_sample, drag_seconds);
+  RenderOptions options;
+  options.width = std::max(1, int(std::ceil(area.width / drawn.coarse)));
+  options.height = std::max(1, int(std::ceil(area.height / drawn.coarse)));
+  options.samples = 1;
+  const auto begin = std::chrono::steady_clock::now();
+  const Frame frame = render(rough(panel.scene, Quality::moving), panel.camera, options, context);
+  learn(seconds_since(begin) / (double(options.width) * options.height), view.seconds_per_sample);
+  paste_enlarged(to_image(frame, panel.scene.transparent), int(area.x), int(area.y), int(area.width), int(area.height), view.around);
+  drawn.type = "image/jpeg", drawn.bytes = jpeg_of(view.around), drawn.camera = view_camera(panel.camera);
+  set_area(area, drawn);
+  return drawn;
+}
+
+DrawnView LocalRenderer::draw(const DrawRequest& request, Context& context) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto now = loaded();
+  const StatedPicture stated = stated_for(request, now->prepared);
+  View& view = views_[request.view];
+  DrawnView drawn;
+  if (in_panels(stated.picture)) {
+    Picture picture = draw_prepared(now->prepared, stated, {}, context);
+    drawn.type = "image/png", drawn.bytes = png_of(picture.image);
+    if (request.camera) drawn.camera = *request.camera;
+    set_area({0, 0, double(stated.width), double(stated.height)}, drawn);
+  } else if (request.quality == Quality::moving) {
+    drawn = draw_moving(now->prepared, stated, view, context);
+  } else {
+    const Panel panel = panel_of(now->prepared, stated);
+    StatedPicture how = stated;
+    const bool exact = request.quality == Quality::exact;
+    if (!exact) how.picture.samples = 1;
+    DrawnPicture picture = draw_picture(rough(panel.scene, request.quality), panel.camera, how, panel.annotation, 1, context);
+    drawn.camera = view_camera(panel.camera);
+    drawn.type = exact ? "image/png" : "image/jpeg", drawn.bytes = exact ? png_of(picture.image) : jpeg_of(picture.image);
+    auto planes = std::make_shared<Planes>();
+    planes->seen = std::move(picture.seen), planes->width = stated.width;
+    planes->area = picture_beside_legends(panel.annotation, stated);
+    planes->projection = make_projection(panel.camera, int(planes->area.width), int(planes->area.height));
+    set_area(planes->area, drawn);
+    view.around = std::move(picture.image);
+    const std::lock_guard lock(mutex_);
+    planes_[request.view] = planes;
+  }
+  drawn.width = stated.width, drawn.height = stated.height, drawn.seconds = seconds_since(begin);
+  return drawn;
+}
+
+std::string LocalRenderer::save(const DrawRequest& request, const std::string& name, Context& context) {
+  PipelineFile file = loaded()->file;
+  file.picture = with_view(file.picture, request);
+  PictureOptions options;
+  options.cache = cache_;
+  Picture picture = make_picture(file, options, context);
+  attach_recipe(picture.image, file, name);
+  const std::vector<uint8_t> bytes = encode_png(picture.image);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+Json::Members LocalRenderer::answer(const Json& question, Context& context) {
+  const auto now = loaded();
+  if (question["do"].text() != "probe") return answer_about_steps(question, now->file, now->prepared, cache_, context);
+  std::shared_ptr<const Planes> planes;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = planes_.find(int(question["view"].number()));
+    if (found == planes_.end()) return nothing_there();
+    planes = found->second;
+  }
+  return probe_picture({planes->seen, planes->projection, planes->area, planes->width}, question["at"][0].number(),
+                       question["at"][1].number(), now->file, now->prepared, cache_, context);
+}
+
+}  // namespace sg::serve

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws in this process.
+#pragma once
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "pipeline/picture/prepare.h"
+#include "serve/renderer/renderer.h"
+
+namespace sg::serve {
+
+class LocalRenderer : public Renderer {
+ public:
+  /// `cache_bytes`: of results that are kept for later edits. `coloring`: of the first pipeline, as PictureOptions::coloring.
+  LocalRenderer(uint64_t cache_bytes, std::vector<std::string> coloring);
+  PipelineFile load(const PipelineFile& pipeline, Context& context) override;
+  Json::Members tell(Context& context) override;
+  DrawnView draw(const DrawRequest& request, Context& context) override;
+  void forget(int view) override;
+  Json::Members answer(const Json& question, Context& context) override;
+  std::string save(const DrawRequest& request, const std::string& name, Context& context) override;
+
+ private:
+  struct Loaded {
+    PipelineFile file;
+    PreparedPicture prepared;
+  };
+  // Of the last whole picture of a view: what places are looked up in.
+  struct Planes {
+    Seen seen;
+    Projection projection;
+    Rect area;
+    int width;
+  };
+  // What stays of a view between its pictures.
+  struct View {
+    Image around;                   ///< the last whole picture, or title and legends alone: they stay while the view moves
+    double seconds_per_sample = 0;  ///< while it moves
+  };
+  std::shared_ptr<const Loaded> loaded() const;
+  DrawnView draw_moving(const PreparedPicture& prepared, const StatedPicture& stated, View& view, Context& context);
+
+  std::shared_ptr<Cache> cache_;
+  std::vector<std::string> coloring_;  ///< until a pipeline has it
+  std::map<int, View> views_;          ///< for the thread that draws
+  mutable std::mutex mutex_;           ///< for what follows
+  std::shared_ptr<const Loaded> loaded_;
+  std::map<int, std::shared_ptr<const Planes>> planes_;
+};
+
+}  // namespace sg::serve

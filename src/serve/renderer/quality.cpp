@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "serve/renderer/quality.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "data/lattice.h"
+
+namespace sg::serve {
+
+namespace {
+
+// The length of the shortest edge of a voxel; 0 where cells have no common size.
+double voxel_edge(const Dataset& data) {
+  const auto* grid = data.as<UniformGrid>();
+  if (!grid) return 0;
+  double shortest = HUGE_VAL;
+  for (int a = 0; a < 3; ++a)
+    if (grid->dims[size_t(a)] > 1) shortest = std::min(shortest, std::abs(grid->spacing[a]));
+  return std::isfinite(shortest) ? shortest : 0;
+}
+
+}  // namespace
+
+Scene rough(Scene scene, Quality quality) {
+  if (quality == Quality::exact) return scene;
+  const bool moving = quality == Quality::moving;
+  for (Item& item : scene.items) {
+    auto* volume = std::get_if<VolumeItem>(&item);
+    if (!volume || volume->method != VolumeMethod::ray) continue;
+    if (const double edge = voxel_edge(*volume->data); edge > 0) volume->sampling.step = moving ? edge : edge / 2;
+    else volume->sampling.tolerance = std::max(volume->sampling.tolerance, moving ? 0.125 : 0.02);
+    volume->sampling.jitter = false, volume->sampling.antialias = VolumeAntialias::none;
+    if (moving) volume->sampling.kernel = Kernel::linear, volume->sampling.classify = VolumeClassify::post;
+  }
+  return scene;
+}
+
+double coarseness(double pixels, double seconds_per_sample, double seconds) {
+  constexpr std::array steps{1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0};
+  if (!(seconds_per_sample > 0)) return 4;
+  for (const double c : steps)
+    if (pixels / (c * c) * seconds_per_sample <= seconds) return c;
+  return steps.back();
+}
+
+}  // namespace sg::serve

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a picture leaves out so that it comes at once.
+#pragma once
+#include "scene/scene.h"
+#include "serve/renderer/renderer.h"
+
+namespace sg::serve {
+
+/// The scene as it is drawn where less than the exact picture will do: volumes by fixed steps of a voxel (moving) or half of one (draft),
+/// where they have voxels, else within a wider tolerance.
+Scene rough(Scene scene, Quality quality);
+
+/// How many pixels of a view one sample stands for, along each side, so that `pixels` of the view are drawn within `seconds`: 1, 1.5, 2, 3,
+/// 4, 6 or 8. `seconds_per_sample`: of earlier pictures of the same kind; 0: there are none.
+double coarseness(double pixels, double seconds_per_sample, double seconds);
+
+}  // namespace sg::serve

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "serve/renderer/questions.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/text/text.h"
+#include "base/text/utf8.h"
+#include "data/cells/point_positions.h"
+#include "filter/probe/probe.h"
+#include "scene/choose/histogram.h"
+#include "serve/renderer/transfer_questions.h"
+
+namespace sg::serve {
+
+namespace {
+
+constexpr int64_t most_rows = 500, most_line_points = 4096;
+
+Json vector_json(Vec3 v) { return numbers({v.x, v.y, v.z}); }
+
+Vec3 vector_of(const Json& list, std::string_view word) {
+  Vec3 v;
+  for (int a = 0; a < 3; ++a) {
+    v[a] = list[size_t(a)].number();
+    if (!list[size_t(a)].is_number()) fail_usage(fmt::format("'{}' is not a place", word), "question", "it has three numbers");
+  }
+  return v;
+}
+
+// "1150", "(0.1, 0, 2)".
+std::string value_text(const Array& a, size_t i) {
+  if (a.components() == 1) return short_number(a.get(i));
+  std::string s = "(";
+  for (int c = 0; c < std::min(a.components(), 9); ++c) s += (c ? ", " : "") + short_number(a.get(i, c));
+  return s + ")";
+}
+
+// The point of the mesh that lies nearest.
+size_t nearest_point(const Dataset& d, Vec3 at) {
+  const Array points = point_positions(d.mesh());
+  size_t best = 0;
+  double least = HUGE_VAL;
+  for (size_t i = 0; i < points.count(); ++i)
+    if (const double l = length(Vec3{points.get(i, 0), points.get(i, 1), points.get(i, 2)} - at); l < least) least = l, best = i;
+  return best;
+}
+
+// The fields at a place, by the shape functions of the cell there; on surfaces, which have none about a place, those of the nearest point.
+std::vector<Json> values_at(const DatasetPtr& d, Vec3 at, Context& context) {
+  ProbeAtParams p;
+  p.points = {at.x, at.y, at.z};
+  std::vector<Json> values;
+  const auto add = [&](const Field& f, size_t i) {
+    values.emplace_back(Json::Members{{"name", text(f.name)}, {"value", text(value_text(f.array, i))}, {"unit", text(f.unit)}});
+  };
+  const DatasetPtr there = probe_at(d, p, context);
+  const Field* valid = there->fields().find("valid", Association::point);
+  if (valid && valid->array.get(0) != 0) {
+    for (const Field& f : there->fields())
+      if (f.name != "valid" && f.association == Association::point) add(f, 0);
+  } else if (d->point_count() > 0) {
+    const size_t i = nearest_point(*d, at);
+    for (const Field& f : d->fields())
+      if (f.association == Association::point) add(f, i);
+  }
+  return values;
+}
+
+Json::Members answer_rows(const Json& q, const Data& data) {
+  const bool cells = q["on"].text() == "cell";
+  const size_t from = q["from"].whole(), wanted = std::min<size_t>(q["count"].whole(), most_rows);
+  std::vector<const Field*> fields;
+  std::vector<std::string> columns;
+  size_t total = 0;
+  DatasetPtr d;
+  const Table* table = nullptr;
+  if (const auto* t = std::get_if<TablePtr>(&data)) {
+    table = t->get();
+    for (const Field& f : table->columns) fields.push_back(&f), total = f.array.count();
+  } else {
+    for_each_dataset(data, [&](const std::string&, const DatasetPtr& part) {
+      if (!d) d = part;
+    });
+    if (!d) return {{"total", Json(uint64_t(0))}, {"columns", list({})}, {"rows", Json(std::vector<Json>{})}};
+    total = cells ? d->cell_count() : d->point_count();
+    for (const Field& f : d->fields())
+      if (f.association == (cells ? Association::cell : Association::point)) fields.push_back(&f);
+    if (!cells) columns = {"x", "y", "z"};
+  }
+  for (const Field* f : fields) columns.push_back(f->name);
+  std::vector<Json> rows;
+  const bool places = d && !cells;
+  const Array points = places ? point_positions(d->mesh()) : Array();
+  for (size_t i = from; i < std::min(total, from + wanted); ++i) {
+    std::vector<std::string> row;
+    for (int a = 0; places && a < 3; ++a) row.push_back(short_number(points.get(i, a)));
+    for (size_t c = 0; c < fields.size(); ++c) {
+      const auto* words = table ? table->words(c) : nullptr;
+      const double index = words ? fields[c]->array.get(i) : -1;
+      if (words) row.push_back(index >= 0 ? (*words)[size_t(index)] : "");
+      else row.push_back(value_text(fields[c]->array, i));
+    }
+    rows.push_back(list(row));
+  }
+  return {{"total", Json(uint64_t(total))}, {"columns", list(columns)}, {"rows", Json(std::move(rows))}};
+}
+
+Json::Members answer_line(const Json& q, const Data& data, Context& context) {
+  DatasetPtr d;
+  for_each_dataset(data, [&](const std::string&, const DatasetPtr& part) {
+    if (!d) d = part;
+  });
+  if (!d) fail_usage("there are no values along a line of a table", "line");
+  ProbeAtParams p;
+  p.from = vector_of(q["from"], "from"), p.to = vector_of(q["to"], "to");
+  p.count = std::clamp<int64_t>(int64_t(q["count"].number()), 2, most_line_points);
+  const DatasetPtr line = probe_at(d, p, context);
+  const std::string name = bytes_of_text(q["field"].text());
+  const Field* field = line->fields().find(name, Association::point);
+  const Field* distance = line->fields().find("distance", Association::point);
+  const Field* valid = line->fields().find("valid", Association::point);
+  if (!field || !distance || !valid) fail_usage(fmt::format("there is no field '{}'", name), "line");
+  std::vector<Json> distances, values;
+  for (size_t i = 0; i < field->array.count(); ++i) {
+    distances.push_back(number(distance->array.get(i)));
+    double v = field->array.get(i);
+    if (field->components() > 1) {
+      v = 0;
+      for (int c = 0; c < field->components(); ++c) v += field->array.get(i, c) * field->array.get(i, c);
+      v = std::sqrt(v);
+    }
+    values.push_back(valid->array.get(i) != 0 ? number(v) : Json());
+  }
+  return {{"unit", text(field->unit)}, {"distance", Json(std::move(distances))}, {"values", Json(std::move(values))}};
+}
+
+Json::Members answer_histogram(const Json& q, const Data& data, Context& context) {
+  constexpr size_t bins = 64;
+  const std::string name = bytes_of_text(q["field"].text());
+  std::vector<size_t> sum(bins);
+  Range range;
+  std::vector<std::pair<DatasetPtr, const Field*>> fields;
+  for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
+    if (const Field* f = d->fields().find(name)) fields.emplace_back(d, f), range.add(d->range(*f));
+  });
+  if (fields.empty()) fail_usage(fmt::format("there is no field '{}'", printable(name)), "histogram");
+  if (!range.empty() && range.lo < range.hi)
+    for (const auto& [d, f] : fields) {
+      const std::vector<size_t> counts = histogram(*f, -1, range.lo, range.hi, bins, context);
+      for (size_t i = 0; i < bins; ++i) sum[i] += counts[i];
+    }
+  std::vector<Json> counts;
+  for (const size_t n : sum) counts.emplace_back(uint64_t(n));
+  return {{"range", range.empty() ? Json() : numbers({range.lo, range.hi})}, {"counts", Json(std::move(counts))}};
+}
+
+}  // namespace
+
+Json::Members nothing_there() { return {{"position", Json()}, {"show", Json()}, {"values", Json(std::vector<Json>{})}, {"cell", Json()}}; }
+
+Json::Members probe_picture(const DrawnPlanes& drawn, double x, double y, const PipelineFile& file, const PreparedPicture& prepared,
+                            const std::shared_ptr<Cache>& cache, Context& context) {
+  const size_t i = size_t(std::max(y, 0.0)) * size_t(drawn.width) + size_t(std::max(x, 0.0));
+  if (!(x >= 0 && y >= 0 && x < drawn.width) || i >= drawn.seen.depth.size() || !std::isfinite(drawn.seen.depth[i])) return nothing_there();
+  const double depth = double(drawn.seen.depth[i]);
+  const Projection::Ray ray = drawn.projection.ray(std::floor(x) + 0.5 - drawn.area.x, std::floor(y) + 0.5 - drawn.area.y);
+  Vec3 at = ray.origin + ray.direction * (depth * ray.per_depth);
+  const Vec3& stretch = prepared.shown[0].stretch;
+  for (int a = 0; a < 3; ++a) at[a] /= stretch[a];
+  const uint32_t show = i < drawn.seen.show.size() ? drawn.seen.show[i] : 0;
+  Json::Members answer{{"position", vector_json(at)}, {"show", show > 0 ? Json(uint64_t(show - 1)) : Json()}};
+  std::vector<Json> values;
+  if (show > 0 && show <= file.show.size()) {
+    DatasetPtr nearest;
+    for_each_dataset(result_of(file, shown_step(file, show - 1), cache, context), [&](const std::string&, const DatasetPtr& d) {
+      Box3 b = d->bounds();
+      const double hair = 1e-3 * b.diagonal();
+      bool inside = !b.empty();
+      for (int a = 0; a < 3; ++a) inside = inside && at[a] >= b.lo[a] - hair && at[a] <= b.hi[a] + hair;
+      if (inside && !nearest) nearest = d;
+    });
+    if (nearest) values = values_at(nearest, at, context);
+  }
+  answer.emplace_back("values", Json(std::move(values)));
+  answer.emplace_back("cell", Json());
+  return answer;
+}
+
+Json::Members answer_about_steps(const Json& question, const PipelineFile& file, const PreparedPicture& prepared,
+                                 const std::shared_ptr<Cache>& cache, Context& context) {
+  const std::string& what = question["do"].text();
+  if (what == "proposals") return answer_proposals(question, prepared, context);
+  if (what == "plane") return answer_plane(question, prepared, context);
+  const Data data = result_of(file, bytes_of_text(question["step"].text()), cache, context);
+  if (what == "rows") return answer_rows(question, data);
+  if (what == "line") return answer_line(question, data, context);
+  if (what == "histogram") return answer_histogram(question, data, context);
+  fail_usage(fmt::format("'{}' is no question", what), "question", "docs/protocol.md has them");
+}
+
+}  // namespace sg::serve

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a session asks for pictures: something in this process or in another one. All that passes is a value that could be sent.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "base/context.h"
+#include "base/text/json.h"
+#include "pipeline/file/pipeline_file.h"
+#include "serve/renderer/view_camera.h"
+
+namespace sg::serve {
+
+/// How good a picture is to be.
+enum class Quality {
+  moving,  ///< within the time that a drag leaves: fewer pixels, coarse samples, without numbers at the axes
+  draft,   ///< all pixels, one coarse sample each
+  exact,   ///< the picture that a file would hold
+};
+
+struct DrawRequest {
+  int view = 0;
+  int width = 1280, height = 720;    ///< pixels
+  std::optional<ViewCamera> camera;  ///< none: chosen from the data
+  Quality quality = Quality::exact;
+};
+
+struct DrawnView {
+  int width = 0, height = 0;  ///< of the encoded picture
+  std::string type;           ///< "image/jpeg", "image/png"
+  std::shared_ptr<const std::string> bytes;
+  ViewCamera camera;           ///< that it was drawn from
+  int area[4] = {0, 0, 0, 0};  ///< x, y, width, height of the part in which the camera looks; legends stand beside it
+  double coarse = 1;           ///< pixels of the view that one of the picture stands for, along each side
+  double seconds = 0;          ///< that it took
+};
+
+/// A pipeline, and what becomes of it. load(), tell() and draw() are called by one thread, answer() and save() by another one meanwhile, of
+/// what was last loaded. All stop with Error(cancelled) when the context is cancelled, and stay usable then and after any other error.
+class Renderer {
+ public:
+  virtual ~Renderer() = default;
+  /// Runs the pipeline and returns it with what was chosen from the data. What was loaded before stays where this throws.
+  virtual PipelineFile load(const PipelineFile& pipeline, Context& context) = 0;
+  /// Of what is loaded: members of the message "state" (docs/protocol.md).
+  virtual Json::Members tell(Context& context) = 0;
+  virtual DrawnView draw(const DrawRequest& request, Context& context) = 0;
+  /// A view that will not be drawn again.
+  virtual void forget(int view) = 0;
+  /// Questions of docs/protocol.md: the members of the answer.
+  virtual Json::Members answer(const Json& question, Context& context) = 0;
+  /// The picture as a file with its recipe. `name`: of the file, for relative paths in it and for its kind.
+  virtual std::string save(const DrawRequest& request, const std::string& name, Context& context) = 0;
+};
+
+}  // namespace sg::serve

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a window is told of a pipeline: members of the message "state" (docs/protocol.md).
+#pragma once
+#include <memory>
+
+#include "base/text/json.h"
+#include "pipeline/graph/cache.h"
+#include "pipeline/picture/prepare.h"
+
+namespace sg::serve {
+
+/// "steps", "show", "picture", "times", "time", "bounds", "length_unit", "camera", "notes". Steps run if nothing that is shown has needed
+/// them.
+Json::Members tell_state(const PipelineFile& file, const PreparedPicture& prepared, const std::shared_ptr<Cache>& cache, Context& context);
+
+Json text(std::string s);
+Json list(const std::vector<std::string>& texts);
+/// Null for what is not finite, which JSON cannot hold.
+Json number(double v);
+Json numbers(std::initializer_list<double> values);
+/// A word without a value is a switch that is on.
+Json words_json(const std::vector<std::string>& words);
+
+/// The result of a step, from the cache where it is there. Throws as running it does; Error(usage) for an unknown name.
+Data result_of(const PipelineFile& file, const std::string& step, const std::shared_ptr<Cache>& cache, Context& context);
+
+}  // namespace sg::serve

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "serve/renderer/transfer_questions.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "scene/choose/volume/derivatives.h"
+#include "scene/show/volume_presets.h"
+#include "serve/renderer/tell.h"
+
+namespace sg::serve {
+
+namespace {
+
+// The volume that a question names by its show; null where there is none.
+const VolumeItem* volume_of(const Json& question, const PreparedPicture& prepared) {
+  const auto show = uint32_t(question["show"].whole()) + 1;
+  const Scene& scene = prepared.shown[0].scene;
+  for (size_t i = 0; i < scene.shows.size(); ++i)
+    if (const auto* volume = std::get_if<VolumeItem>(&scene.items[i]); volume && scene.shows[i] == show) return volume;
+  return nullptr;
+}
+
+double second_of(const DerivativeSample& s, SecondAxis axis) {
+  switch (axis) {
+    case SecondAxis::second_derivative: return s.second_derivative;
+    case SecondAxis::curvature: return s.curvature;
+    default: return s.gradient;
+  }
+}
+
+}  // namespace
+
+// Looks of a volume that suit the data, each with its reason: the presets, and what the histogram and the boundaries tell.
+Json::Members answer_proposals(const Json& q, const PreparedPicture& prepared, Context& context) {
+  std::vector<Json> proposals;
+  if (const VolumeItem* volume = volume_of(q, prepared)) {
+    const auto propose = [&](std::string name, std::vector<std::string> words, std::string reason) {
+      proposals.emplace_back(
+          Json::Members{{"name", text(std::move(name))}, {"words", words_json(words)}, {"reason", text(std::move(reason))}});
+    };
+    for (const TransferChoice choice : {TransferChoice::histogram, TransferChoice::boundaries}) {
+      Scene alone;
+      VolumeShow p;
+      p.coloring.field.name = volume->field, p.transfer = std::string(word_of(choice));
+      std::string reason;
+      Context told(context, 0, 1);
+      told.on_log = [&](LogLevel, std::string_view line) { reason += (reason.empty() ? "" : "; ") + std::string(line); };
+      add(alone, volume->data, p, told);
+      propose(p.transfer, transfer_words(std::get<VolumeItem>(alone.items.at(0))), reason);
+    }
+    for (const VolumePreset& preset : volume_presets()) {
+      Scene alone;
+      VolumeShow p;
+      p.coloring.field.name = volume->field, p.preset = std::string(preset.name);
+      try {
+        add(alone, volume->data, p, context);
+      } catch (const Error& e) {
+        if (e.kind() == ErrorKind::cancelled) throw;
+        continue;  // not for such data
+      }
+      propose(p.preset, transfer_words(std::get<VolumeItem>(alone.items.at(0))), std::string(preset.about));
+    }
+  }
+  return {{"list", Json(std::move(proposals))}};
+}
+
+Json::Members answer_plane(const Json& q, const PreparedPicture& prepared, Context& context) {
+  constexpr size_t columns = 64, rows = 48, most_samples = 400'000;
+  const VolumeItem* volume = volume_of(q, prepared);
+  const Field* field = volume ? volume->data->fields().find(volume->field, volume->association) : nullptr;
+  if (!field) fail_usage("there is no volume to ask about", "plane");
+  SecondAxis axis = volume->detail.second;
+  if (axis == SecondAxis::none || axis == SecondAxis::field) axis = SecondAxis::gradient;
+  const Range value = volume->data->range(*field, volume->component);
+  const Range second = second_axis_range(volume->data, *field, volume->component, axis, nullptr, context);
+  std::vector<uint64_t> counts(columns * rows);
+  const auto bin = [](double v, Range r, size_t n) {
+    const double t = r.hi > r.lo ? (v - r.lo) / (r.hi - r.lo) : 0;
+    return t >= 0 && t <= 1 ? std::min(size_t(t * double(n)), n - 1) : n;
+  };
+  for (const DerivativeSample& s :
+       sample_derivatives(volume->data, *field, volume->component, axis != SecondAxis::gradient, most_samples, context)) {
+    const size_t i = bin(double(s.value), value, columns), j = bin(second_of(s, axis), second, rows);
+    if (i < columns && j < rows) ++counts[i + columns * j];
+  }
+  std::vector<Json> list;
+  for (const uint64_t n : counts) list.emplace_back(n);
+  return {{"value", numbers({value.lo, value.hi})},
+          {"second", numbers({second.lo, second.hi})},
+          {"size", numbers({double(columns), double(rows)})},
+          {"counts", Json(std::move(list))}};
+}
+
+}  // namespace sg::serve

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// One pipeline, the windows that look at it, and the pictures that they get (docs/protocol.md).
+#pragma once
+#include <condition_variable>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+
+#include "base/context.h"
+#include "pipeline/film/film_times.h"
+#include "serve/door/session_host.h"
+#include "serve/renderer/renderer.h"
+#include "serve/session/client.h"
+#include "serve/session/edits.h"
+#include "serve/session/history.h"
+
+namespace sg::serve {
+
+/// One thread draws, another answers questions; messages are taken in by whichever thread has them. Ends with its last owner.
+class Session : public std::enable_shared_from_this<Session> {
+ public:
+  /// `title`: of the window. `log`: gets the notes of work that are not for one window; may be null.
+  static std::shared_ptr<Session> open(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  SocketHandler join(Rights rights, const std::string& user, std::shared_ptr<Socket> socket);
+  size_t clients() const;
+  std::optional<Saved> saved(const std::string& id) const;
+
+ private:
+  // Something that changes the pipeline, as it came.
+  struct Change {
+    int client;
+    Json message;
+  };
+  struct Question {
+    int client;
+    Json message;
+  };
+
+  Session(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title);
+  void take_message(int client, std::string_view text);
+  void leave(int client);
+  void draw_thread();
+  void ask_thread();
+
+  // With the mutex held; those that take the lock let go of it while they work.
+  void take_draw(Client& client, const Json& message);
+  void take_cursor(Client& client, const Json& message);
+  void make_change(const Change& change);
+  void load(std::unique_lock<std::mutex>& lock);
+  void tell(std::unique_lock<std::mutex>& lock);
+  std::pair<Client*, WantedView*> next_view(bool coarse_only);
+  void draw(std::unique_lock<std::mutex>& lock, Client& client, WantedView& view);
+  void answer(std::unique_lock<std::mutex>& lock, const Question& question);
+  void restart_views();
+  void interrupt(int view);
+  void send(int client, const Json::Members& message);
+  void send_all(const Json::Members& message);
+  void refuse(int client, uint64_t n, const std::vector<EditMistake>& mistakes);
+  void tell_people();
+  Context& begin_work(int view);
+
+  std::unique_ptr<Renderer> renderer_;
+  const std::string title_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable work_, questions_wait_;
+  bool stopping_ = false;
+  int next_client_ = 1;
+  std::map<int, std::unique_ptr<Client>> clients_;
+  std::deque<Change> changes_;
+  std::deque<Question> questions_;
+
+  History history_;
+  PipelineFile good_;  ///< the last one that could be loaded
+  Change last_change_{0, Json()};
+  bool loaded_ = false, needs_load_ = true, needs_tell_ = false;
+  uint64_t revision_ = 0;
+  std::optional<FilmTimes> film_;
+  std::optional<size_t> time_;  ///< index of the step that is shown; none: what the reader gives
+  std::string state_;           ///< the last message "state", without what depends on the window
+  std::unique_ptr<Context> running_, asking_;
+  int running_view_ = -1;  ///< of the renderer; -1: something else runs
+  std::deque<std::pair<std::string, Saved>> saved_;
+
+  std::thread draws_, asks_;
+};
+
+}  // namespace sg::serve
