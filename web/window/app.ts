@@ -8,6 +8,7 @@ import type { Camera, State } from "./protocol";
 import { Lines } from "./questions/lines";
 import { Probe } from "./questions/probe";
 import { Histograms } from "./questions/histograms";
+import { Company } from "./session/company";
 import { Player } from "./session/player";
 import { Session } from "./session/session";
 import { levelDrag } from "./view/window_level";
@@ -26,6 +27,7 @@ export class App {
   readonly histograms: Histograms;
   readonly player: Player;
   readonly commands: Commands;
+  readonly company: Company;
   layout: 1 | 2 | 4 = 1;
   link: Link = "place";
   active = 0;
@@ -48,7 +50,9 @@ export class App {
       state: (state, before) => this.stateCame(state, before),
       restart: () => this.views.forEach((v) => v.restart()),
       say: (text) => this.say(text),
+      people: () => this.company.peopleCame(),
     });
+    this.company = new Company(this);
     this.probe = new Probe(this);
     this.lines = new Lines(this);
     this.histograms = new Histograms(this);
@@ -156,7 +160,7 @@ export class App {
       },
       hover: (view, at) => {
         this.probe.hover(view, at);
-        this.cursor(view, at);
+        if (at) this.company.pointed(view, at);
       },
       toolDrag: (view, drag, phase) => this.toolDrag(view, drag, phase),
     });
@@ -164,6 +168,7 @@ export class App {
 
   private moved(view: View, before: Camera, after: Camera): void {
     this.active = view.index;
+    this.company.moved(view);
     if (this.layout > 1 && this.link !== "none")
       for (const other of this.visibleViews)
         if (other !== view && other.camera) other.look(follow(other.camera, before, after, this.link), true, false);
@@ -175,14 +180,6 @@ export class App {
     if (this.tool === "window") return levelDrag(this, view, drag, phase);
     if (this.tool === "line") return this.lines.drag(view, drag, phase);
     return false;
-  }
-
-  private cursorAt = 0;
-  private cursor(view: View, at: [number, number] | null): void {
-    const now = performance.now();
-    if (this.session.people.count < 2 || !at || now - this.cursorAt < 60) return;
-    this.cursorAt = now;
-    this.session.connection.tell({ do: "cursor", view: view.index, at: [at[0] / view.size.width, at[1] / view.size.height] });
   }
 
   private stateCame(state: State, before: State | null): void {

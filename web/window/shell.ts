@@ -102,9 +102,20 @@ function status(app: App): TemplateResult {
   return html`<footer class="status">
     <span class="grow probe">${here ? probeText(here, app.state?.length_unit) : html`<span class="quiet">${toolHint(app.tool)}</span>`}</span>
     ${p ? html`<span class="progress"><progress max="1" .value=${p.share} aria-label="Progress"></progress> ${p.doing}</span>` : nothing}
-    ${session.people.count > 1 ? html`<span title="People at this session">${session.people.count} people</span>` : nothing}
+    ${session.people.count > 1 ? people(app) : nothing}
     ${f ? html`<span class="quiet facts-line">${f.of[0]}×${f.of[1]} · ${Math.round(f.milliseconds)} ms${app.view.camera?.parallel ? " · parallel" : ""}${f.final ? "" : ` · ${plain(f.coarse)}×coarser`}</span>` : nothing}
   </footer>`;
+}
+
+function people(app: App): TemplateResult {
+  const { people } = app.session;
+  const others = people.cursors.filter((c) => c.camera);
+  return html`<span class="people">${people.count} people
+    ${others.length > 0
+      ? html`<select class="small" aria-label="Look along with" @change=${(e: Event) => app.company.follow(Number((e.target as HTMLSelectElement).value) || null)}>
+          <option value="" ?selected=${app.company.following === null}>own view</option>
+          ${others.map((c) => html`<option value=${c.id} ?selected=${c.id === app.company.following}>with ${c.id}</option>`)}</select>`
+      : nothing}</span>`;
 }
 
 const toolHint = (tool: Tool): string =>

@@ -98,7 +98,7 @@ async function receive(socket, client, m) {
       return;
     }
     case "cursor":
-      client.cursor = { view: m.view, at: m.at };
+      client.cursor = { view: m.view, at: m.at, camera: m.camera };
       return tellPeople();
     case "save": {
       const picture = await render(m.camera, m.size, { process: null });

@@ -2,17 +2,11 @@
 // The tab of the plot over a line: its ends, its curve, and its export as numbers and as a figure.
 import { html, nothing, type TemplateResult } from "lit";
 import { ref } from "lit/directives/ref.js";
-import uPlot from "uplot";
-import "uplot/dist/uPlot.min.css";
 import type { App } from "../app";
 import type { LineAnswer, Vec3 } from "../protocol";
 import { figure } from "../questions/figure";
 import { csv, download } from "../questions/files";
 import { numbers, short } from "../words";
-
-let plot: uPlot | null = null;
-let drawn: LineAnswer | null = null;
-let dark = false;
 
 export function plotPanel(app: App): TemplateResult {
   const s = app.state;
@@ -44,7 +38,7 @@ export function plotPanel(app: App): TemplateResult {
     }} /></label>
     ${lines.problem ? html`<p class="problem" role="alert">${lines.problem}</p>` : nothing}
     ${lines.answer
-      ? html`<div class="uplot-holder" role="img" aria-label="${label} along the line, ${summary(lines.answer)}" ${ref((e) => draw(e as HTMLElement | undefined, lines.answer!, label, distance))}></div>
+      ? html`<div class="uplot-holder" role="img" aria-label="${label} along the line, ${summary(lines.answer)}" ${ref((e) => draw(e as HTMLElement | undefined, app, lines.answer!, label, distance))}></div>
         <div class="row">
           <button class="small" @click=${() => download(`${lines.field}_line.csv`, "text/csv", csv([distance, label], lines.answer!.distance.map((d, i) => [d, lines.answer!.values[i]])))}>CSV</button>
           <button class="small" @click=${() => download(`${lines.field}_line.svg`, "image/svg+xml", figure(lines.answer!, distance, label))}>Figure (SVG)</button>
@@ -58,31 +52,7 @@ function summary(a: LineAnswer): string {
   return v.length > 0 ? `from ${short(Math.min(...v))} to ${short(Math.max(...v))}` : "outside of the data";
 }
 
-function draw(holder: HTMLElement | undefined, answer: LineAnswer, label: string, distance: string): void {
-  if (!holder) {
-    plot?.destroy();
-    plot = null;
-    drawn = null;
-    return;
-  }
-  const css = getComputedStyle(document.documentElement);
-  const isDark = document.documentElement.dataset.theme === "dark";
-  if (plot && drawn === answer && dark === isDark && plot.root.parentElement === holder) return;
-  plot?.destroy();
-  drawn = answer;
-  dark = isDark;
-  const color = (name: string): string => css.getPropertyValue(name).trim();
-  const axis = { stroke: color("--quiet"), grid: { stroke: color("--line"), width: 1 }, ticks: { stroke: color("--line"), width: 1 }, font: "12px system-ui", labelFont: "12px system-ui", labelSize: 22 };
-  plot = new uPlot(
-    {
-      width: Math.max(240, holder.clientWidth || 340),
-      height: 230,
-      scales: { x: { time: false } },
-      legend: { live: true },
-      series: [{ label: "distance" }, { label, stroke: color("--accent"), width: 1.5, spanGaps: false }],
-      axes: [{ ...axis, label: distance }, { ...axis, label, size: 56 }],
-    },
-    [answer.distance, answer.values],
-    holder,
-  );
+/** The plotting library comes with the first plot, not with the page. */
+function draw(holder: HTMLElement | undefined, app: App, answer: LineAnswer, label: string, distance: string): void {
+  import("./curve_plot").then((m) => m.drawCurve(holder, answer, label, distance)).catch(() => app.say("The plot could not be loaded"));
 }

@@ -52,7 +52,7 @@ export class Probe {
   valueOf(field: string | undefined): number | null {
     const values = this.pinned?.answer.values ?? [];
     const v = values.find((x) => x.name === field) ?? (field === undefined ? values[0] : undefined);
-    const x = v ? Number(v.value) : NaN;
+    const x = v ? magnitude(v.value) : NaN;
     return Number.isFinite(x) ? x : null;
   }
 
@@ -67,6 +67,12 @@ export class Probe {
     this.app.changed();
     if (this.next) void this.askNext();
   }
+}
+
+/** A value of a probe as colours see it: of several components, "(1, 2, 2)", the magnitude. */
+export function magnitude(text: string): number {
+  const parts = text.replace(/^\(|\)$/g, "").split(",").map(Number);
+  return parts.length === 1 ? parts[0] : Math.hypot(...parts);
 }
 
 /** A probe's answer as one line. */

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the window knows of the session, and what it can ask for. Everything that changes ends in `changed`, which draws the panels anew.
 import type { Catalog } from "../catalog";
-import type { Edit, FrameHeader, Problem, ServerMessage, Shown, State, Step } from "../protocol";
+import type { Cursor, Edit, FrameHeader, Problem, ServerMessage, Shown, State, Step } from "../protocol";
 import { Edits } from "./edits";
 import { Connection, Refused, type Connected } from "./socket";
 
 export interface People {
   count: number;
-  cursors: { id: number; view: number; at: [number, number] }[];
+  cursors: Cursor[];
 }
 
 export class Session {
@@ -28,6 +28,7 @@ export class Session {
       state: (state: State, before: State | null) => void;
       restart: () => void;
       say: (text: string) => void;
+      people: (people: People) => void;
     },
   ) {
     this.connection = new Connection(url, {
@@ -131,6 +132,7 @@ export class Session {
         break;
       case "people":
         this.people = { count: m.count, cursors: m.cursors ?? [] };
+        this.on.people(this.people);
         break;
       default:
         break; // an answer that nobody waits for any more

@@ -6,6 +6,7 @@ import { html, nothing, svg, type SVGTemplateResult, type TemplateResult } from 
 import type { App } from "../app";
 import { beginDrag } from "../input/handle";
 import type { Shown, Transfer } from "../protocol";
+import { magnitude } from "../questions/probe";
 import { plain, short } from "../words";
 import { addPoint, movePoint, opacityText, parseOpacity, removePoint, roundValues, snap, type Point } from "./opacity";
 import { axisOf, hull, share, valueAt, type Axis } from "./scale";
@@ -46,7 +47,7 @@ const y = (o: number): number => pad.top + (1 - o) * inner.h;
 
 export function curve(c: Curve): TemplateResult {
   const marked = c.app.probe.valueOf(c.transfer.field);
-  const hovered = Number(c.app.probe.current?.answer.values?.find((v) => v.name === c.transfer.field)?.value ?? NaN);
+  const hovered = magnitude(c.app.probe.current?.answer.values?.find((v) => v.name === c.transfer.field)?.value ?? "none");
   const ticks = c.axis.log ? [c.axis.range[0], valueAt(c.axis, 0.5), c.axis.range[1]] : roundValues(c.axis.range, 5);
   return html`<div class="curve">
     <svg viewBox="0 0 ${width} ${height}" role="group" aria-label="Histogram and opacity of ${c.transfer.field}"

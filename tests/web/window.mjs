@@ -1,0 +1,367 @@
+// SPDX-License-Identifier: Apache-2.0
+// node tests/web/window.mjs [--mock]: see README.md
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { gzipSync } from "node:zlib";
+import { accessibility, phone } from "./access.mjs";
+import { andSettle, cleanUp, dataFile, dragOn, launch, middleOf, openPage, options, seen, serve, seriesFile, settled, shot } from "./browser.mjs";
+
+const o = options();
+const browser = await launch();
+let failures = 0;
+let passed = 0;
+
+async function test(name, run) {
+  if (o.only && !name.includes(o.only)) return;
+  const began = Date.now();
+  try {
+    await run();
+    passed++;
+    console.log(`ok   ${name} (${Date.now() - began} ms)`);
+  } catch (error) {
+    failures++;
+    console.log(`FAIL ${name}: ${error.stack?.split("\n").slice(0, 6).join("\n     ")}`);
+    await shot(o, page, `failed_${name.slice(0, 20).replaceAll(" ", "_")}`).catch(() => undefined);
+  }
+}
+
+const server = await serve(o, dataFile(o));
+let bytes = 0;
+const first = await browser.newContext();
+await first.close();
+let page = await openPage(browser, server.url);
+const address = page.url(); // without the token, which counts once
+const picture = page.locator(".view-surface").first();
+const middle = await middleOf(picture);
+const tab = (name) => page.click(`#tab-${name}`);
+
+await test("the first picture comes by itself, final and not empty", async () => {
+  assert.ok((await seen(page)).colors > 10);
+  assert.match(await page.title(), /Sightglass/);
+  await shot(o, page, "first");
+});
+
+await test("the page weighs less than 250 kB, and all of it is the server's", async () => {
+  const other = await page.context().newPage();
+  other.on("response", async (r) => {
+    if (/^(blob|data):/.test(r.url())) return;
+    assert.ok(r.url().startsWith(new URL(address).origin), r.url());
+    if (/catalog/.test(r.url())) return;
+    bytes += gzipSync(await r.body().catch(() => Buffer.alloc(0))).length;
+  });
+  await other.goto(address);
+  await settled(other);
+  await other.close();
+  assert.ok(bytes > 10000 && bytes < 250000, `${bytes} bytes`);
+});
+
+await test("dragging turns, and leaves the final picture of where it ended", async () => {
+  const before = await seen(page);
+  await andSettle(page, () => dragOn(page, middle, [140, 60]));
+  const after = await seen(page);
+  assert.notEqual(after.sum, before.sum);
+  await page.waitForTimeout(400);
+  assert.equal((await seen(page)).sum, after.sum, "the picture at rest does not change");
+});
+
+await test("keys turn, move, zoom and look along axes; the same view is the same picture", async () => {
+  await picture.focus();
+  const pictures = [];
+  for (const key of ["1", "ArrowLeft", "Shift+ArrowUp", "+", "]", "p", "1"]) {
+    await andSettle(page, () => page.keyboard.press(key));
+    pictures.push((await seen(page)).sum);
+  }
+  assert.equal(new Set(pictures.slice(0, 6)).size, 6, "each key changes the picture");
+  await andSettle(page, () => page.keyboard.press("p"));
+  await andSettle(page, () => page.keyboard.press("1"));
+  assert.equal((await seen(page)).sum, pictures[0], "back to the first");
+  await andSettle(page, () => page.keyboard.press("r"));
+});
+
+await test("wheel and pinch zoom", async () => {
+  const before = await seen(page);
+  await andSettle(page, async () => {
+    await page.mouse.move(...middle);
+    await page.mouse.wheel(0, -300);
+  });
+  assert.notEqual((await seen(page)).sum, before.sum);
+  await andSettle(page, () => page.keyboard.press("r"));
+  assert.equal((await seen(page)).sum, before.sum);
+});
+
+await test("resting on the picture tells the value, a click keeps it and marks it in the curve", async () => {
+  await page.mouse.move(middle[0] - 60, middle[1] - 10);
+  await page.mouse.move(middle[0] - 61, middle[1] - 10);
+  await page.waitForFunction(() => /·/.test(document.querySelector(".probe").textContent), null, { timeout: 10000 });
+  await page.mouse.click(middle[0] - 61, middle[1] - 10);
+  await page.waitForSelector(".pin", { state: "attached" });
+  await tab("color");
+  await page.waitForSelector(".marked", { state: "attached" });
+  await shot(o, page, "curve");
+});
+
+await test("a point of the opacity curve is dragged, and the words of the command line follow", async () => {
+  await tab("color");
+  const text = () => page.locator("[aria-label=\"The command line's words\"]").textContent();
+  const before = [await text(), (await seen(page)).sum];
+  const point = page.locator(".point").nth(1);
+  await andSettle(page, async () => dragOn(page, await middleOf(point), [30, -30]));
+  assert.notEqual(await text(), before[0]);
+  assert.match(await text(), /opacity=@/);
+  assert.notEqual((await seen(page)).sum, before[1]);
+  await andSettle(page, () => page.click("button[aria-label=Undo]"));
+  assert.equal((await seen(page)).sum, before[1], "one step back undoes the whole drag");
+  await andSettle(page, () => page.click("button[aria-label=Redo]"));
+  assert.notEqual((await seen(page)).sum, before[1]);
+});
+
+await test("points are added, typed and taken away", async () => {
+  const count = () => page.locator(".point").count();
+  const before = await count();
+  await andSettle(page, () => page.click("text=/\\+ point/"));
+  assert.equal(await count(), before + 1);
+  await page.locator(".point").nth(1).focus();
+  await andSettle(page, () => page.keyboard.press("Delete"));
+  assert.equal(await count(), before);
+  await page.click("text=points as numbers");
+  const box = page.getByLabel("Opacity of point 2", { exact: true });
+  await andSettle(page, async () => {
+    await box.fill("0.37");
+    await box.press("Enter");
+  });
+  assert.match(await page.locator("[aria-label=\"The command line's words\"]").textContent(), /:0\.37/);
+});
+
+await test("another colour map and a proposal change the picture, with their reason", async () => {
+  const before = (await seen(page)).sum;
+  await page.click("text=Choose …");
+  await andSettle(page, () => page.click("button.map:has-text('ember')"));
+  const ember = (await seen(page)).sum;
+  assert.notEqual(ember, before);
+  await page.click("text=Choose …");
+  await page.click("text=Propose");
+  await page.waitForSelector(".proposal");
+  assert.ok((await page.locator(".proposal").first().textContent()).length > 10);
+  await andSettle(page, () => page.locator(".proposal").last().click());
+});
+
+await test("widgets over value and gradient are drawn, moved and undone", async () => {
+  await page.locator("section:has(h2:text('Value and gradient')) button").first().click();
+  await andSettle(page, () => page.click("text=+ rectangle"));
+  const text = () => page.locator("[aria-label=\"The command line's words\"]").textContent();
+  assert.match(await text(), /widgets=.*rectangle/);
+  const before = await text();
+  await andSettle(page, async () => dragOn(page, await middleOf(page.locator(".widget path").first()), [25, -20]));
+  assert.notEqual(await text(), before);
+  await shot(o, page, "widgets");
+  await andSettle(page, () => page.click("text=Remove all"));
+});
+
+await test("a contour is added by search, its value dragged, and a mistake stands at its control", async () => {
+  await picture.focus();
+  await page.keyboard.press("a");
+  await page.keyboard.type("isosurf");
+  await page.waitForSelector(".add-list li");
+  await shot(o, page, "add");
+  await andSettle(page, () => page.keyboard.press("Enter"));
+  await page.waitForSelector("[data-word=values]");
+  assert.equal(await page.locator("[data-word=values]").count(), 1);
+  const before = (await seen(page)).sum;
+  const slider = page.locator("[data-word=values] input[type=range]").first();
+  if (await slider.count()) {
+    await andSettle(page, async () => {
+      await slider.focus();
+      for (let i = 0; i < 60; i++) await page.keyboard.press("ArrowLeft");
+    });
+    assert.notEqual((await seen(page)).sum, before);
+  }
+  const box = page.locator("[data-word=values] input[type=text]");
+  await box.fill("abc");
+  await box.press("Enter");
+  await page.waitForSelector("[data-word=values] .problem");
+  assert.equal(await box.inputValue(), "abc", "what was typed stays");
+  assert.equal(await box.getAttribute("aria-invalid"), "true");
+  await shot(o, page, "mistake");
+  await box.fill("");
+  await box.press("Enter");
+  await page.waitForSelector("[data-word=values] .problem", { state: "detached" });
+  await settled(page);
+});
+
+await test("the pipeline forks in the graph, steps tell times and bytes, and one in use is not removed", async () => {
+  await tab("steps");
+  await page.locator(".item-name").first().click();
+  await page.keyboard.press("a");
+  await page.keyboard.type("slice");
+  await andSettle(page, () => page.keyboard.press("Enter"));
+  await page.click("text=graph");
+  assert.equal(await page.locator(".node").count(), 3);
+  assert.equal(await page.locator(".edge").count(), 2);
+  await shot(o, page, "graph");
+  await page.locator(".segmented >> text=list").click();
+  assert.match(await page.locator(".numbers").first().textContent(), /s.*B/);
+});
+
+await test("a plane is dragged in the picture", async () => {
+  const handle = page.locator("[data-handle][aria-label^='Plane of']").first();
+  await handle.waitFor();
+  const value = await handle.getAttribute("aria-valuenow");
+  await handle.focus();
+  await andSettle(page, async () => {
+    for (let i = 0; i < 3; i++) await page.keyboard.press("ArrowUp");
+  });
+  assert.notEqual(await page.locator("[data-handle][aria-label^='Plane of']").first().getAttribute("aria-valuenow"), value);
+});
+
+await test("the table pages through the numbers of a step", async () => {
+  await tab("table");
+  await page.waitForSelector(".numbers-table td");
+  const rows = await page.locator(".numbers-table tbody tr").count();
+  assert.ok(rows > 5);
+  await page.click("button[aria-label=On]");
+  await page.waitForFunction(() => document.querySelector(".numbers-table tbody th")?.textContent === "50");
+  await shot(o, page, "table");
+});
+
+await test("values along a line are plotted, and saved as numbers and as a figure", async () => {
+  await tab("plot");
+  await page.locator(".panel button.primary:has-text('Plot')").click();
+  await page.waitForSelector(".uplot canvas");
+  await shot(o, page, "plot");
+  for (const [button, begins] of [["CSV", "distance"], ["Figure (SVG)", "<svg"]]) {
+    const [download] = await Promise.all([page.waitForEvent("download"), page.click(`.panel button:has-text('${button}')`)]);
+    assert.ok(readFileSync(await download.path(), "utf8").startsWith(begins));
+  }
+});
+
+await test("the session is a file: saved, changed as text, compared, loaded", async () => {
+  await tab("file");
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click("text=Save …")]);
+  const file = await download.path();
+  assert.match(readFileSync(file, "utf8"), /^sightglass: /);
+  assert.ok((await page.locator(".diff .plus").count()) > 0, "what changed in this session is listed");
+  await andSettle(page, () => page.click("button[aria-label=Undo]"));
+  const undone = await page.locator("pre.code").first().textContent();
+  await page.setInputFiles("label:has-text('Load …') input", { name: "saved.yaml", mimeType: "application/yaml", buffer: readFileSync(file) });
+  await page.waitForFunction((t) => document.querySelector("pre.code")?.textContent !== t, undone);
+  await settled(page);
+  await shot(o, page, "session");
+});
+
+await test("a saved picture carries its recipe", async () => {
+  await picture.focus();
+  await page.keyboard.press("s");
+  const [download] = await Promise.all([page.waitForEvent("download", { timeout: 60000 }), page.click("dialog button.primary")]);
+  const png = readFileSync(await download.path());
+  assert.equal(png.toString("latin1", 1, 4), "PNG");
+  assert.match(png.toString("latin1"), /sightglass/);
+});
+
+await test("four views side by side, with linked cameras and a crosshair", async () => {
+  await andSettle(page, () => page.click("button[aria-label='Three planes']"));
+  await page.waitForFunction(() => document.querySelectorAll(".view").length === 4);
+  await settled(page);
+  await shot(o, page, "three_planes");
+  const before = (await seen(page, 1)).sum;
+  const cross = page.locator("[data-handle][aria-label^='Crosshair']").nth(1);
+  await andSettle(page, async () => dragOn(page, await middleOf(cross), [30, -25]));
+  assert.notEqual((await seen(page, 2)).sum, before, "another view follows");
+  await andSettle(page, () => page.click("button[aria-label='One view']"));
+});
+
+await test("window and level change the range", async () => {
+  await page.click("button[aria-label='Tool: Window and level']");
+  const before = (await seen(page)).sum;
+  await andSettle(page, () => dragOn(page, middle, [-90, 0]));
+  assert.notEqual((await seen(page)).sum, before);
+  await page.click("button[aria-label='Tool: Turn']");
+});
+
+await test("the legend moves to another side by keys and by dragging", async () => {
+  const legend = page.locator(".legend-handle").first();
+  await legend.focus();
+  await andSettle(page, () => page.keyboard.press("ArrowDown"));
+  assert.match(await legend.getAttribute("class"), /bottom/);
+  const box = await picture.boundingBox();
+  const [x, y] = await middleOf(legend);
+  await andSettle(page, () => dragOn(page, [x, y], [box.x + box.width - 12 - x, box.y + box.height / 2 - y]));
+  assert.match(await legend.getAttribute("class"), /right/);
+});
+
+await test("a second window sees the same session and the cursor of the first", async () => {
+  const other = await page.context().newPage();
+  await other.goto(address);
+  await settled(other);
+  await page.waitForSelector(".people");
+  for (let i = 0; i < 4; i++) {
+    await page.mouse.move(middle[0] + i * 5, middle[1]);
+    await page.waitForTimeout(100);
+  }
+  await other.waitForSelector(".cursor", { state: "attached" });
+  const revision = (p) => p.evaluate(() => document.querySelectorAll(".item").length);
+  await tab("look");
+  await other.click("#tab-look");
+  const before = await revision(other);
+  await page.locator("select[aria-label^='Add a way']").selectOption("outline");
+  await other.waitForFunction((n) => document.querySelectorAll(".item").length === n + 1, before);
+  await shot(o, other, "second_window");
+  await other.close();
+});
+
+await test("after a reload the session is there again", async () => {
+  const steps = await page.locator(".item").count();
+  await page.reload();
+  await settled(page);
+  await page.click("#tab-look");
+  assert.equal(await page.locator(".item").count(), steps);
+});
+
+await test("a lost connection is said, and comes back by itself", async () => {
+  const other = await page.context().newPage();
+  const sockets = [];
+  await other.routeWebSocket(/socket/, (ws) => {
+    sockets.push(ws);
+    ws.connectToServer();
+  });
+  await other.goto(address);
+  await settled(other);
+  await sockets[0].close();
+  await other.waitForSelector(".banner", { timeout: 5000 });
+  await other.waitForSelector(".banner", { state: "detached", timeout: 10000 });
+  const before = (await seen(other)).sum;
+  await other.locator(".view-surface").focus();
+  await andSettle(other, () => other.keyboard.press("ArrowLeft"));
+  assert.notEqual((await seen(other)).sum, before);
+  await other.close();
+});
+
+await test("no script failed, and the content security policy refused nothing", () => assert.deepEqual(page.faults, []));
+
+await accessibility(test, o, browser, page, address);
+await phone(test, o, page, address);
+
+if (!o.url) {
+  const series = await serve(o, seriesFile(o), { MOCK_TIMES: "1" });
+  const played = await openPage(browser, series.url);
+  await test("times are stepped, dragged and played", async () => {
+    const text = () => played.locator(".time-text").textContent();
+    const before = await text();
+    await andSettle(played, () => played.click("button[aria-label='One time on']"));
+    assert.notEqual(await text(), before);
+    await played.click("button[aria-label=Play]");
+    const seenTimes = new Set();
+    for (let i = 0; i < 40 && seenTimes.size < 3; i++) {
+      seenTimes.add(await text());
+      await played.waitForTimeout(150);
+    }
+    assert.ok(seenTimes.size >= 3, [...seenTimes].join(" | "));
+    await played.click("button[aria-label=Pause]");
+    await shot(o, played, "times");
+    assert.deepEqual(played.faults, []);
+  });
+}
+
+await browser.close();
+cleanUp();
+console.log(`${passed} passed, ${failures} failed; the page weighs ${bytes} bytes compressed`);
+process.exit(failures > 0 ? 1 : 0);
