@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "serve/session/session.h"
 
+#include <sys/stat.h>
+
 #include <chrono>
 #include <cmath>
 #include <span>
@@ -302,11 +304,12 @@ TEST_CASE("session: a pipeline that cannot be run is told of, and can be mended"
 
 TEST_CASE("session: steps in time") {
   const std::string folder = sg::test::temp_folder() + "/serve_steps";
-  make_folder(folder);
+  ::mkdir(folder.c_str(), 0700);
   for (int k = 0; k < 4; ++k)
     write_file(folder + "/t_" + std::to_string(k) + ".vtk",
                "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 2\nORIGIN 0 0 0\nSPACING 1 1 1\n"
-               "POINT_DATA 8\nSCALARS heat float 1\nLOOKUP_TABLE default\n0 1 2 3 4 5 6 " + std::to_string(10 * (k + 1)) + "\n");
+               "POINT_DATA 8\nSCALARS heat float 1\nLOOKUP_TABLE default\n0 1 2 3 4 5 6 " +
+                   std::to_string(10 * (k + 1)) + "\n");
   const auto session = session_of(pipeline("  room: {read: \"" + folder + "/t_{n}.vtk\"}\n"));
   Window window(*session);
   Json state = window.next("state");
