@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -26,6 +27,8 @@
 #include "cli/spool.h"
 #include "data/memory/memory_budget.h"
 #include "io/plugin.h"
+#include "serve/renderer/worker/worker_process.h"
+#include "serve/serve.h"
 
 namespace sg {
 
@@ -130,6 +133,10 @@ int dispatch_command(const Options& o, Context& context) {
 int cli_main(int argc, char** argv) {
   try {
     cap_vector_width();
+    if (argc == 3 && std::string_view(argv[1]) == serve::worker_command) {
+      serve::run_worker(std::atoi(argv[2]));
+      return 0;
+    }
     const Options o = parse_options(argc, argv);
     if (o.threads > 0) set_thread_count(o.threads);
     Context context;

@@ -300,7 +300,7 @@ void declare_render(CLI::App& a, Options& o, RawText& raw) {
 
 void declare_view(CLI::App& a, Options& o, RawText& raw) {
   a.add_option("input", o.inputs, "Files to read, or one pipeline file (YAML)");
-  add_serving(a, o, {"address", "port", "origin"});
+  add_serving(a, o, {"address", "port", "workers", "origin"});
   a.add_flag("--no-browser", o.no_browser, "Print the address, and leave the browser to you");
   add_reading(a, o, raw), add_pipeline(a, o), add_look(a, o);
   a.footer(
@@ -310,7 +310,7 @@ void declare_view(CLI::App& a, Options& o, RawText& raw) {
 
 void declare_serve(CLI::App& a, Options& o, RawText&) {
   a.add_option("folder", o.inputs, "Folder of the data; nothing above it can be reached")->required()->expected(1);
-  add_serving(a, o, {"address", "port", "users", "origin"});
+  add_serving(a, o, {"address", "port", "users", "workers", "origin"});
   a.add_option("--add-user", o.add_user, "Print a token for a new user, and the line for the file of users: 'NAME view' or 'NAME edit'");
 }
 

@@ -11,19 +11,18 @@
 
 #include "base/error.h"
 #include "base/file/file.h"
+#include "base/file/file_fence.h"
 #include "data/memory/memory_budget.h"
 #include "pipeline/picture/picture.h"
 #include "serve/door/door.h"
 #include "serve/guard/users.h"
 #include "serve/renderer/local_renderer.h"
+#include "serve/renderer/worker/worker_renderer.h"
 #include "serve/session/sessions.h"
 
 namespace sg::serve {
 
 namespace {
-
-// Results kept for later edits: half of what may be in memory.
-uint64_t cache_bytes() { return allowed_memory() / 2; }
 
 DoorOptions door_options(const ServeParams& p) {
   DoorOptions options;
@@ -49,6 +48,15 @@ bool open_browser(const std::string& address) {
   return started && ::waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
+// From here on nothing is read but what lies below folders of the files that are served, and nothing is written: whatever a window asks
+// for.
+void fence_in(std::vector<std::string> folders, std::string who) {
+  FileFence fence;
+  fence.read_below = std::move(folders);
+  fence.who = std::move(who);
+  set_file_fence(std::move(fence));
+}
+
 }  // namespace
 
 void describe(Schema& s, ServeParams& p) {
@@ -58,12 +66,36 @@ void describe(Schema& s, ServeParams& p) {
   s("users", p.users,
     "Who may come in: one a line, NAME RIGHTS HASH (see docs/security.md). Default: whoever has the token that is printed.")
       .unit("file");
+  s("workers", p.workers,
+    "Draw in processes of their own, one a session and at most so many: what exhausts memory or crashes ends a session's picture, not the "
+    "server. 0: all in this process.")
+      .range(0, 256);
   s("origin", p.origin, "Address by which browsers reach this server through a proxy, e.g. https://view.example.org.");
 }
 
+namespace {
+
+std::vector<std::string> folders_of(const std::vector<std::string>& files) {
+  std::vector<std::string> folders;
+  for (const std::string& f : files) folders.push_back(folder_of(f).empty() ? "." : folder_of(f));
+  return folders;
+}
+
+std::unique_ptr<Renderer> new_renderer(const ServeParams& p, const std::vector<std::string>& coloring,
+                                       const std::vector<std::string>& folders) {
+  if (p.workers == 0) return std::make_unique<LocalRenderer>(allowed_memory() / 2, coloring);
+  WorkerOptions options;
+  options.command = {"/proc/self/exe", worker_command};
+  options.coloring = coloring, options.folders = folders, options.memory = memory_limit();
+  return std::make_unique<WorkerRenderer>(std::move(options));
+}
+
+}  // namespace
+
 void view(PipelineFile file, const std::vector<std::string>& coloring, const std::string& title, const ServeParams& p, Context& context) {
-  Sessions sessions(
-      [&](const std::string&) { return Session::open(std::make_unique<LocalRenderer>(cache_bytes(), coloring), file, title); });
+  const std::vector<std::string> folders = folders_of(files_read(file));
+  Sessions sessions([&](const std::string&) { return Session::open(new_renderer(p, coloring, folders), file, title); });
+  fence_in(folders, "a window");
   Door door(door_options(p), sessions);
   say_address(fmt::format("{}: {}\n", title, door.address_with_token()));
   if (p.browser && !open_browser(door.address_with_token())) context.info("no browser could be started: open the address in one");
@@ -74,12 +106,15 @@ void serve(const std::string& folder, const ServeParams& p, Context& context) {
   DoorOptions options = door_options(p);
   options.folder = folder;
   if (!p.users.empty()) options.users = read_users(p.users);
-  Sessions sessions([](const std::string& path) {
-    PipelineFile file;
-    file.steps.push_back({"input", "read", {"path=" + path}, {}, 0});
-    file.show.push_back({std::string(auto_show), {}, "input", 0});
-    return Session::open(std::make_unique<LocalRenderer>(cache_bytes(), std::vector<std::string>{}), std::move(file), file_name_of(path));
-  });
+  Sessions sessions(
+      [&](const std::string& path) {
+        PipelineFile file;
+        file.steps.push_back({"input", "read", {"path=" + path}, {}, 0});
+        file.show.push_back({std::string(auto_show), {}, "input", 0});
+        return Session::open(new_renderer(p, {}, {folder}), std::move(file), file_name_of(path));
+      },
+      p.workers > 0 ? size_t(p.workers) : 16);
+  fence_in({folder}, "a window");
   Door door(options, sessions);
   say_address(fmt::format("{}: {}\n", folder, door.address_with_token()));
   door.run(context);

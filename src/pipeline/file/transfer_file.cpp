@@ -16,8 +16,6 @@ namespace {
 
 constexpr std::string_view head = "sightglass-transfer";
 
-bool names_file(const std::string& word) { return word.find('.') != word.npos || word.find('/') != word.npos; }
-
 std::vector<std::string> read_words(const std::string& path) {
   const MappedFile bytes(path);
   const YamlNode root = parse_yaml(bytes.text(), path);
@@ -57,11 +55,13 @@ std::vector<std::string> read_words(const std::string& path) {
 
 }  // namespace
 
+bool names_transfer_file(const std::string& word) { return word.find('.') != word.npos || word.find('/') != word.npos; }
+
 void load_transfer_files(PipelineFile& file) {
   for (auto& show : file.show) {
     if (show.kind != show_kind<VolumeShow>().name) continue;
     const std::string name = word_value(show.words, "transfer").value_or("");
-    if (!names_file(name)) continue;
+    if (!names_transfer_file(name)) continue;
     std::vector<std::string> words = read_words(path_beside(file.origin, name));
     for (const std::string& w : show.words)
       if (!w.starts_with("transfer=")) words.push_back(w);

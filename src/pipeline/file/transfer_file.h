@@ -6,6 +6,9 @@
 
 namespace sg {
 
+/// Whether a value of `transfer` means a file, rather than one of TransferChoice.
+bool names_transfer_file(const std::string& word);
+
 /// In the shows of volumes, `transfer=FILE.yaml` becomes the words of the file, in front of the stated ones (which win); so a recipe does
 /// not depend on the file. Paths begin at the pipeline file. Throws Error(usage) for unknown words, with the line; Error(data) for no such
 /// file.

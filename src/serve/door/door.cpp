@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/text/text.h"
-#include "pipeline/catalog/catalog.h"
+#include "serve/door/catalog_text.h"
 #include "serve/door/safe_headers.h"
 #include "serve/files/served_folder.h"
 #include "serve/guard/host_check.h"
@@ -135,7 +135,7 @@ struct Door::Inside {
     if (const std::string* token = request.word("token"); token && request.path == "/") return enter(request, *token);
     if (!visitor_of(request)) return request.path == "/" && comes_from_elsewhere(request) ? leads_to_window() : stranger();
     if (request.path == "/catalog.json") {
-      if (!catalog_body) catalog_body = std::make_unique<StaticBody>(catalog_json(catalog()), "application/json");
+      if (!catalog_body) catalog_body = std::make_unique<StaticBody>(catalog_text(), "application/json");
       return catalog_body->answer(request, "no-cache");
     }
     if (request.path == "/files.json") return files(request);

@@ -115,26 +115,27 @@ Json::Members answer_line(const Json& q, const Data& data, Context& context) {
     if (!d) d = part;
   });
   if (!d) fail_usage("there are no values along a line of a table", "line");
+  const Vec3 from = vector_of(q["from"], "from"), to = vector_of(q["to"], "to");
+  const int64_t count = std::clamp<int64_t>(int64_t(q["count"].number()), 2, most_line_points);
   ProbeAtParams p;
-  p.from = vector_of(q["from"], "from"), p.to = vector_of(q["to"], "to");
-  p.count = std::clamp<int64_t>(int64_t(q["count"].number()), 2, most_line_points);
+  std::vector<Json> distances, values;
+  for (int64_t i = 0; i < count; ++i) {
+    const Vec3 at = from + (to - from) * (double(i) / double(count - 1));
+    p.points.insert(p.points.end(), {at.x, at.y, at.z});
+    distances.push_back(number(length(at - from)));
+  }
   const DatasetPtr line = probe_at(d, p, context);
   const std::string name = bytes_of_text(q["field"].text());
   const Field* field = line->fields().find(name, Association::point);
-  const Field* distance = line->fields().find("distance", Association::point);
   const Field* valid = line->fields().find("valid", Association::point);
-  if (!field || !distance || !valid) fail_usage(fmt::format("there is no field '{}'", name), "line");
-  std::vector<Json> distances, values;
-  for (size_t i = 0; i < field->array.count(); ++i) {
-    distances.push_back(number(distance->array.get(i)));
-    double v = field->array.get(i);
-    if (field->components() > 1) {
-      v = 0;
-      for (int c = 0; c < field->components(); ++c) v += field->array.get(i, c) * field->array.get(i, c);
-      v = std::sqrt(v);
-    }
-    values.push_back(valid->array.get(i) != 0 ? number(v) : Json());
-  }
+  if (!field || !valid) fail_usage(fmt::format("there is no field '{}'", printable(name)), "line");
+  const auto value_at = [&](size_t i) {
+    if (field->components() == 1) return field->array.get(i);
+    double squares = 0;
+    for (int c = 0; c < field->components(); ++c) squares += field->array.get(i, c) * field->array.get(i, c);
+    return std::sqrt(squares);
+  };
+  for (size_t i = 0; i < field->array.count(); ++i) values.push_back(valid->array.get(i) != 0 ? number(value_at(i)) : Json());
   return {{"unit", text(field->unit)}, {"distance", Json(std::move(distances))}, {"values", Json(std::move(values))}};
 }
 

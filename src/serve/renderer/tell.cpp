@@ -76,16 +76,33 @@ void tell_result(const Data& data, Json::Members& step) {
                            {"fields", fields_json(parts)}});
 }
 
+// The i-th step as it stands.
+Json::Members step_members(const PipelineFile& file, size_t i) {
+  const PipelineFile::Step& s = file.steps[i];
+  std::vector<std::string> from = s.from;
+  const Operation* op = known_operation(s.operation);
+  if (from.empty() && op && op->min_inputs > 0 && i > 0) from.push_back(file.steps[i - 1].name);
+  return {{"name", text(s.name)}, {"operation", text(s.operation)}, {"words", words_json(s.words)}, {"from", list(from)}};
+}
+
+Json::Members show_members(const PipelineFile& file, size_t i) {
+  const PipelineFile::Show& s = file.show[i];
+  return {{"kind", text(s.kind)}, {"of", text(shown_step(file, i))}, {"words", words_json(s.words)}};
+}
+
+Json picture_json(const PipelineFile& file) {
+  std::vector<std::string> words;
+  for (const std::string& w : file.picture)
+    if (!w.starts_with("camera")) words.push_back(w);
+  return words_json(words);
+}
+
 Json steps_json(const PipelineFile& file, const std::shared_ptr<Cache>& cache, Context& context) {
   std::vector<Json> steps;
   for (size_t i = 0; i < file.steps.size(); ++i) {
-    const PipelineFile::Step& s = file.steps[i];
-    std::vector<std::string> from = s.from;
-    const Operation* op = known_operation(s.operation);
-    if (from.empty() && op && op->min_inputs > 0 && i > 0) from.push_back(file.steps[i - 1].name);
-    Json::Members step{{"name", text(s.name)}, {"operation", text(s.operation)}, {"words", words_json(s.words)}, {"from", list(from)}};
+    Json::Members step = step_members(file, i);
     try {
-      const Data data = result_of(file, s.name, cache, context);
+      const Data data = result_of(file, file.steps[i].name, cache, context);
       tell_result(data, step);
       step.emplace_back("bytes", Json(uint64_t(data_bytes(data))));
     } catch (const Error& e) {
@@ -101,8 +118,7 @@ Json steps_json(const PipelineFile& file, const std::shared_ptr<Cache>& cache, C
 Json shows_json(const PipelineFile& file, const PreparedPicture& prepared, Context& context) {
   std::vector<Json> shows;
   for (size_t i = 0; i < file.show.size(); ++i) {
-    const PipelineFile::Show& s = file.show[i];
-    Json::Members show{{"kind", text(s.kind)}, {"of", text(shown_step(file, i))}, {"words", words_json(s.words)}};
+    Json::Members show = show_members(file, i);
     show.emplace_back("transfer", tell_transfer(prepared, uint32_t(i + 1), context));
     shows.emplace_back(std::move(show));
   }
@@ -145,13 +161,17 @@ Data result_of(const PipelineFile& file, const std::string& step, const std::sha
   fail_usage(fmt::format("there is no step '{}'", step));
 }
 
+Json::Members tell_pipeline(const PipelineFile& file) {
+  std::vector<Json> steps, shows;
+  for (size_t i = 0; i < file.steps.size(); ++i) steps.emplace_back(step_members(file, i));
+  for (size_t i = 0; i < file.show.size(); ++i) shows.emplace_back(show_members(file, i));
+  return {{"steps", Json(std::move(steps))}, {"show", Json(std::move(shows))}, {"picture", picture_json(file)}};
+}
+
 Json::Members tell_state(const PipelineFile& file, const PreparedPicture& prepared, const std::shared_ptr<Cache>& cache, Context& context) {
   const Shown& shown = prepared.shown[0];
   Json::Members members{{"steps", steps_json(file, cache, context)}, {"show", shows_json(file, prepared, context)}};
-  std::vector<std::string> picture;
-  for (const std::string& w : file.picture)
-    if (!w.starts_with("camera")) picture.push_back(w);
-  members.emplace_back("picture", words_json(picture));
+  members.emplace_back("picture", picture_json(file));
   const Box3& b = shown.box;
   members.emplace_back("bounds", b.empty() ? Json() : numbers({b.lo.x, b.hi.x, b.lo.y, b.hi.y, b.lo.z, b.hi.z}));
   members.emplace_back("length_unit", text(shown.length_unit));

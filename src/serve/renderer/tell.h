@@ -13,6 +13,9 @@ namespace sg::serve {
 /// them.
 Json::Members tell_state(const PipelineFile& file, const PreparedPicture& prepared, const std::shared_ptr<Cache>& cache, Context& context);
 
+/// The same of a pipeline that cannot be run: "steps", "show" and "picture" as they stand.
+Json::Members tell_pipeline(const PipelineFile& file);
+
 Json text(std::string s);
 Json list(const std::vector<std::string>& texts);
 /// Null for what is not finite, which JSON cannot hold.

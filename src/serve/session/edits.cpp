@@ -9,7 +9,9 @@
 #include "base/schema/file_params.h"
 #include "base/text/text.h"
 #include "base/text/utf8.h"
+#include "color/map_files/colormap_file.h"
 #include "io/options.h"
+#include "pipeline/file/transfer_file.h"
 #include "pipeline/picture/picture.h"
 #include "scene/show/show.h"
 
@@ -166,7 +168,9 @@ void collect_files(const ParamSet& params, const std::vector<std::string>& words
     const size_t sign = w.find('=');
     const ParamDecl* d = params.schema.find(trim(std::string_view(w).substr(0, sign)));
     if (!d || sign == w.npos) continue;
-    if (names_file(*d)) files.read.push_back(w.substr(sign + 1));
+    const std::string value = w.substr(sign + 1);
+    if (names_file(*d) || (d->name == "map" && names_colormap_file(value)) || (d->name == "transfer" && names_transfer_file(value)))
+      files.read.push_back(value);
     else if (names_new_file(*d)) files.written = true;
   }
 }
@@ -192,6 +196,8 @@ PipelineFile edited(PipelineFile file, const Json& edits, std::vector<EditMistak
   for (const Json& e : edits.items()) editing.make(e);
   return file;
 }
+
+std::vector<std::string> files_read(const PipelineFile& file) { return files_of(file).read; }
 
 std::vector<EditMistake> forbidden(const PipelineFile& before, const PipelineFile& after) {
   std::vector<EditMistake> mistakes;

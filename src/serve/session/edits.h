@@ -20,6 +20,9 @@ struct EditMistake {
 /// of what they are set on, not against the data.
 PipelineFile edited(PipelineFile file, const Json& edits, std::vector<EditMistake>& mistakes);
 
+/// The files that a pipeline reads, as its words name them.
+std::vector<std::string> files_read(const PipelineFile& file);
+
 /// What `after` may not do that `before` does not do: read other files, or write any.
 std::vector<EditMistake> forbidden(const PipelineFile& before, const PipelineFile& after);
 

@@ -341,11 +341,8 @@ void Session::load(std::unique_lock<std::mutex>& lock) {
   }
   if (!problem.empty()) {
     refuse(change.client, change.message["n"].whole(), {mistake_of(change.message, problem)});
-    if (!loaded_) {
-      send_all({{"is", text("note")}, {"text", text(problem)}});
-      return;
-    }
-    history_.complete(good_);  // the picture before it is left standing
+    if (loaded_) history_.complete(good_);  // the picture before it is left standing
+    else needs_tell_ = true;                // so that the mistake can be mended
     return;
   }
   history_.complete(completed);
@@ -363,7 +360,7 @@ void Session::tell(std::unique_lock<std::mutex>& lock) {
   Json::Members told;
   bool cancelled = false;
   try {
-    told = renderer_->tell(context);
+    told = loaded_ ? renderer_->tell(context) : tell_pipeline(file);
   } catch (const Error& e) {
     cancelled = e.kind() == ErrorKind::cancelled;
     told.emplace_back("notes", list({e.what()}));

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "serve/renderer/worker/request_json.h"
+
+#include "serve/renderer/tell.h"
+
+namespace sg::serve {
+
+Json request_json(const DrawRequest& r) {
+  return Json(Json::Members{{"view", Json(int64_t(r.view))},
+                            {"width", Json(int64_t(r.width))},
+                            {"height", Json(int64_t(r.height))},
+                            {"camera", r.camera ? camera_json(*r.camera) : Json()},
+                            {"quality", Json(int64_t(r.quality))}});
+}
+
+DrawRequest request_from(const Json& json) {
+  DrawRequest r;
+  r.view = int(json["view"].number()), r.width = int(json["width"].number()), r.height = int(json["height"].number());
+  if (!json["camera"].is_null()) r.camera = camera_from(json["camera"]);
+  r.quality = Quality(int(json["quality"].number()));
+  return r;
+}
+
+Json drawn_json(const DrawnView& d) {
+  std::vector<Json> area;
+  for (const int a : d.area) area.emplace_back(int64_t(a));
+  return Json(Json::Members{{"width", Json(int64_t(d.width))},
+                            {"height", Json(int64_t(d.height))},
+                            {"type", text(d.type)},
+                            {"camera", camera_json(d.camera)},
+                            {"area", Json(std::move(area))},
+                            {"coarse", Json(d.coarse)},
+                            {"seconds", Json(d.seconds)}});
+}
+
+DrawnView drawn_from(const Json& json, std::string bytes) {
+  DrawnView d;
+  d.width = int(json["width"].number()), d.height = int(json["height"].number()), d.type = json["type"].text();
+  d.camera = camera_from(json["camera"]);
+  for (size_t i = 0; i < 4; ++i) d.area[i] = int(json["area"][i].number());
+  d.coarse = json["coarse"].number(), d.seconds = json["seconds"].number();
+  d.bytes = std::make_shared<const std::string>(std::move(bytes));
+  return d;
+}
+
+}  // namespace sg::serve

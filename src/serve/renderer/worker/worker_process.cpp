@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "serve/renderer/worker/worker_process.h"
+
+#include <condition_variable>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "base/error.h"
+#include "base/file/file_fence.h"
+#include "base/text/utf8.h"
+#include "data/memory/memory_budget.h"
+#include "pipeline/picture/picture.h"
+#include "serve/renderer/local_renderer.h"
+#include "serve/renderer/tell.h"
+#include "serve/renderer/worker/channel.h"
+#include "serve/renderer/worker/request_json.h"
+
+namespace sg::serve {
+
+namespace {
+
+class Worker {
+ public:
+  explicit Worker(int socket) : channel_(socket) {}
+
+  void run() {
+    std::thread draws([this] { work(drawing_); }), answers([this] { work(answering_); });
+    while (auto message = channel_.receive()) {
+      const std::lock_guard lock(mutex_);
+      const Json& head = message->head;
+      if (head.contains("cancel")) {
+        const auto it = contexts_.find(head["cancel"].whole());
+        if (it != contexts_.end()) it->second->cancel();
+        continue;
+      }
+      const std::string& call = head["call"].text();
+      (call == "answer" || call == "save" ? answering_ : drawing_).calls.push_back(head);
+      contexts_[head["id"].whole()] = std::make_unique<Context>();
+      wake_.notify_all();
+    }
+    {
+      const std::lock_guard lock(mutex_);
+      over_ = true;
+      for (auto& [id, context] : contexts_) context->cancel();
+    }
+    wake_.notify_all();
+    draws.join(), answers.join();
+  }
+
+ private:
+  struct Queue {
+    std::deque<Json> calls;
+  };
+
+  void work(Queue& queue) {
+    std::unique_lock lock(mutex_);
+    while (!over_) {
+      if (queue.calls.empty()) {
+        wake_.wait(lock);
+        continue;
+      }
+      const Json call = queue.calls.front();
+      queue.calls.pop_front();
+      const uint64_t id = call["id"].whole();
+      Context& context = *contexts_[id];
+      lock.unlock();
+      context.on_progress = [this, id](double share, std::string_view doing) {
+        channel_.send(Json(Json::Members{{"id", Json(id)}, {"progress", number(share)}, {"doing", text(std::string(doing))}}));
+      };
+      answer(call, context);
+      lock.lock();
+      contexts_.erase(id);
+    }
+  }
+
+  void answer(const Json& call, Context& context) {
+    Json::Members reply{{"id", call["id"]}};
+    std::string bytes;
+    try {
+      do_call(call, reply, bytes, context);
+    } catch (const Error& e) {
+      reply = {{"id", call["id"]}, {"error", text(e.what())}, {"kind", Json(int64_t(e.kind()))}};
+    } catch (const std::exception& e) {
+      reply = {{"id", call["id"]}, {"error", text(e.what())}, {"kind", Json(int64_t(ErrorKind::internal))}};
+    }
+    channel_.send(Json(std::move(reply)), bytes);
+  }
+
+  void do_call(const Json& call, Json::Members& reply, std::string& bytes, Context& context) {
+    const std::string& what = call["call"].text();
+    if (what == "start") {
+      std::vector<std::string> coloring;
+      for (const Json& w : call["coloring"].items()) coloring.push_back(bytes_of_text(w.text()));
+      if (call["memory"].whole() > 0) set_memory_limit(call["memory"].whole());
+      FileFence fence;
+      for (const Json& folder : call["folders"].items()) fence.read_below.push_back(bytes_of_text(folder.text()));
+      fence.who = "a window";
+      if (!fence.read_below.empty()) set_file_fence(std::move(fence));
+      renderer_ = std::make_unique<LocalRenderer>(allowed_memory() / 2, std::move(coloring));
+    } else if (what == "load") {
+      const PipelineFile file =
+          parse_pipeline(bytes_of_text(call["pipeline"].text()), bytes_of_text(call["origin"].text()), picture_vocabulary());
+      reply.emplace_back("pipeline", text(emit_pipeline(renderer_->load(file, context))));
+    } else if (what == "tell") {
+      reply.emplace_back("members", Json(renderer_->tell(context)));
+    } else if (what == "draw") {
+      const DrawnView drawn = renderer_->draw(request_from(call["request"]), context);
+      reply.emplace_back("drawn", drawn_json(drawn)), bytes = *drawn.bytes;
+    } else if (what == "forget") {
+      renderer_->forget(int(call["view"].number()));
+    } else if (what == "answer") {
+      reply.emplace_back("members", Json(renderer_->answer(call["question"], context)));
+    } else if (what == "save") {
+      bytes = renderer_->save(request_from(call["request"]), bytes_of_text(call["name"].text()), context);
+    }
+  }
+
+  Channel channel_;
+  std::unique_ptr<Renderer> renderer_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  bool over_ = false;
+  Queue drawing_, answering_;
+  std::map<uint64_t, std::unique_ptr<Context>> contexts_;
+};
+
+}  // namespace
+
+void run_worker(int socket) { Worker(socket).run(); }
+
+}  // namespace sg::serve

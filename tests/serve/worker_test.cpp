@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "serve/renderer/worker/worker_renderer.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <thread>
+
+#include "base/error.h"
+#include "pipeline/picture/picture.h"
+#include "serve/renderer/local_renderer.h"
+#include "serve/serve.h"
+#include "serve/support/window.h"
+#include "support/test.h"
+
+using namespace sg;
+using namespace sg::serve;
+using sg::test::Window;
+
+namespace {
+
+WorkerOptions options() {
+  WorkerOptions o;
+  o.command = {sg::test::build_folder() + std::string("/sightglass"), worker_command};
+  return o;
+}
+
+PipelineFile pipeline() {
+  return parse_pipeline("sightglass: 1\nsteps:\n  ball: {sphere: {size: 24}}\nshow:\n  - {volume: {opacity: \"0:0.3,1:0\"}, of: ball}\n",
+                        "", picture_vocabulary());
+}
+
+DrawRequest request() {
+  DrawRequest r;
+  r.width = 160, r.height = 120;
+  r.camera = ViewCamera{{3, -4, 2}, {0, 0, 0}, {0, 0, 1}, true, 30, 2.5};
+  return r;
+}
+
+}  // namespace
+
+TEST_CASE("workers: the same bytes as in this process") {
+  Context context;
+  WorkerRenderer worker(options());
+  LocalRenderer local(64 << 20, {});
+  CHECK(worker.load(pipeline(), context) == local.load(pipeline(), context));
+  const DrawnView there = worker.draw(request(), context), here = local.draw(request(), context);
+  CHECK(*there.bytes == *here.bytes);
+  CHECK(there.camera == here.camera);
+  CHECK(Json(worker.tell(context)).dump() == Json(local.tell(context)).dump());
+  CHECK(worker.save(request(), "a.png", context) == local.save(request(), "a.png", context));
+}
+
+TEST_CASE("workers: errors and cancelling pass between the processes") {
+  Context context;
+  WorkerRenderer worker(options());
+  PipelineFile wrong = pipeline();
+  wrong.show[0].words.push_back("field=wool");
+  try {
+    worker.load(wrong, context);
+    FAIL("nothing was thrown");
+  } catch (const Error& e) {
+    CHECK(e.kind() == ErrorKind::usage);
+    CHECK(std::string(e.what()).find("wool") != std::string::npos);
+  }
+  worker.load(pipeline(), context);
+  Context stopped;
+  stopped.cancel();
+  try {
+    worker.draw(request(), stopped);
+    FAIL("nothing was thrown");
+  } catch (const Error& e) {
+    CHECK(e.kind() == ErrorKind::cancelled);
+  }
+  CHECK(worker.draw(request(), context).width == 160);
+}
+
+TEST_CASE("workers: a process that dies is told of, and the next picture comes from a new one") {
+  Context context;
+  WorkerRenderer worker(options());
+  worker.load(pipeline(), context);
+  const std::string before = *worker.draw(request(), context).bytes;
+  const int first = worker.process();
+  REQUIRE(first > 0);
+  ::kill(first, SIGKILL);
+  bool told = false;
+  std::string after;
+  for (int tries = 0; tries < 3 && after.empty(); ++tries) try {
+      after = *worker.draw(request(), context).bytes;
+    } catch (const Error& e) {
+      told = told || std::string(e.what()).find("has ended") != std::string::npos;
+    }
+  CHECK(after == before);
+  CHECK(worker.process() != first);
+}
+
+TEST_CASE("workers: a session outlives the process that draws for it") {
+  auto renderer = std::make_unique<WorkerRenderer>(options());
+  WorkerRenderer& worker = *renderer;
+  const auto session = Session::open(std::move(renderer), pipeline(), "ball");
+  Window window(*session);
+  window.say("{'do':'draw','n':1,'view':0,'size':[160,120]}");
+  const std::string before = window.frames().back().bytes;
+  ::kill(worker.process(), SIGKILL);
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  window.say("{'do':'draw','n':2,'view':0,'size':[160,120]}");
+  CHECK(window.frames().back().bytes == before);
+}
