@@ -54,6 +54,17 @@ EditMistake mistake_of(const Json& change, const std::string& what) {
   return m;
 }
 
+// Which words edits set, as one text: "show/0 opacity;".
+std::string words_of(const Json& edits) {
+  std::string words;
+  for (size_t i = 0; i < edits.size(); ++i) {
+    words += edits[i]["at"].text();
+    for (const auto& [word, value] : edits[i]["set"].members()) words += " " + word;
+    words += ";";
+  }
+  return words;
+}
+
 bool shows_automatically(const PipelineFile& file) {
   return file.show.empty() || std::any_of(file.show.begin(), file.show.end(), [](const auto& s) { return s.kind == auto_show; });
 }
@@ -298,7 +309,7 @@ void Session::make_change(const Change& change) {
       mistakes.push_back({"", "", e.what()});
     }
     if (!mistakes.empty()) return refuse(change.client, n, mistakes);
-    history_.change(std::move(next), m["live"].boolean());
+    history_.change(std::move(next), m["live"].boolean(), words_of(m["edits"]));
   }
   last_change_ = change, needs_load_ = true;
 }
