@@ -203,10 +203,12 @@ void Session::take_draw(Client& client, const Json& message) {
 }
 
 void Session::take_cursor(Client& client, const Json& message) {
-  client.cursor = Json(Json::Members{{"id", Json(int64_t(client.id))},
-                                     {"view", Json(int64_t(message["view"].number()))},
-                                     {"at", numbers({message["at"][0].number(), message["at"][1].number()})}})
-                      .dump();
+  Json::Members cursor{{"id", Json(int64_t(client.id))},
+                       {"view", Json(int64_t(message["view"].number()))},
+                       {"at", numbers({message["at"][0].number(), message["at"][1].number()})}};
+  if (message.contains("camera") && !message["camera"].is_null())
+    cursor.emplace_back("camera", camera_json(camera_from(message["camera"])));
+  client.cursor = Json(std::move(cursor)).dump();
   tell_people();
 }
 
