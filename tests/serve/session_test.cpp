@@ -159,9 +159,9 @@ TEST_CASE("session: what is dragged is taken back as a whole") {
   const auto session = session_of(pipeline(ball, "  - {volume: {opacity: 0.3}, of: ball}\n"));
   Window window(*session);
   window.next("state");
-  for (int i = 1; i <= 5; ++i)
-    window.say("{'do':'edit','n':" + std::to_string(i) + ",'live':true,'edits':[{'at':'show/0','set':{'opacity':'0." + std::to_string(i) +
-               "'}}]}");
+  for (int i = 1; i <= 5; ++i)  // the last one ends the drag
+    window.say("{'do':'edit','n':" + std::to_string(i) + ",'live':" + (i < 5 ? "true" : "false") +
+               ",'edits':[{'at':'show/0','set':{'opacity':'0." + std::to_string(i) + "'}}]}");
   Json state;
   do state = window.next("state");
   while (state["by"].whole() != 5);
@@ -170,6 +170,16 @@ TEST_CASE("session: what is dragged is taken back as a whole") {
   state = window.next("state");
   CHECK(word_number(state, 0, "opacity") == 0.3);
   CHECK_FALSE(state["can_undo"].boolean());
+  // A second drag, and a change of something else within it, are steps of their own.
+  window.say("{'do':'edit','n':7,'live':true,'edits':[{'at':'show/0','set':{'opacity':'0.6'}}]}");
+  window.say("{'do':'edit','n':8,'edits':[{'at':'picture','set':{'title':'Ball'}}]}");
+  window.say("{'do':'edit','n':9,'edits':[{'at':'show/0','set':{'opacity':'0.7'}}]}");
+  window.say("{'do':'undo','n':10}");
+  window.say("{'do':'undo','n':11}");
+  do state = window.next("state");
+  while (state["by"].whole() != 11);
+  CHECK(word_number(state, 0, "opacity") == 0.6);
+  CHECK(state["can_undo"].boolean());
 }
 
 TEST_CASE("session: what cannot be is refused at its control, and changes nothing") {

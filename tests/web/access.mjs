@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Accessibility in both themes, and the window on a phone.
 import assert from "node:assert/strict";
-import { AxeBuilder, andSettle, seen, settled, shot } from "./browser.mjs";
+import { AxeBuilder, andSettle, ownPage, seen, settled, shot } from "./browser.mjs";
 
 async function noSeriousFindings(page, where) {
   const { violations } = await new AxeBuilder({ page }).analyze();
@@ -66,6 +66,7 @@ export async function phone(test, o, page, address) {
   await test("on a phone the panel is a sheet, nothing overflows, and a finger turns", async () => {
     const browser = page.context().browser();
     const context = await browser.newContext({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, deviceScaleFactor: 2, storageState: await page.context().storageState() });
+    if (o.dist) await ownPage(context);
     const small = await context.newPage();
     await small.goto(address);
     await settled(small);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Browser, server and small helpers of the tests of the window.
 import { execFileSync, spawn } from "node:child_process";
-import { existsSync, mkdirSync, mkdtempSync, rmSync } from "node:fs";
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
@@ -22,6 +22,7 @@ export function options() {
     series: value("series"),
     shots: value("shots"),
     only: value("only"),
+    dist: list.includes("--dist"),
   };
 }
 
@@ -82,6 +83,7 @@ export const launch = () => chromium.launch({ executablePath: process.env.CHROMI
 /** A page whose errors, and what the content security policy refuses, are kept in `page.faults`. */
 export async function openPage(browser, url, settings = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, acceptDownloads: true, ...settings });
+  if (options().dist) await ownPage(context);
   const page = await context.newPage();
   page.faults = [];
   page.on("pageerror", (e) => page.faults.push(e.message));
@@ -91,8 +93,19 @@ export async function openPage(browser, url, settings = {}) {
   return page;
 }
 
+/** Serves the page's files from this checkout, under the policy that the server sends, so that a new build needs no new program. */
+export async function ownPage(context) {
+  const dist = join(root, "web/dist/window");
+  const types = { html: "text/html", js: "text/javascript", css: "text/css", svg: "image/svg+xml" };
+  const policy = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self'; font-src 'self'";
+  const send = (route, name) =>
+    route.fulfill({ status: 200, contentType: types[name.split(".").pop()], headers: { "Content-Security-Policy": policy }, body: readFileSync(join(dist, name)) });
+  await context.route(/\/assets\/[\w.]+$/, (route) => send(route, new URL(route.request().url()).pathname.slice(1)));
+  await context.route(/^http:\/\/[^/]+\/$/, (route) => send(route, "index.html"));
+}
+
 /** Waits until every view shows the final picture of what was asked last. */
-export async function settled(page, seconds = 60) {
+export async function settled(page, seconds = 25) {
   await page.waitForFunction(() => document.querySelector(".refining") && !document.querySelector(".refining.on"), null, { timeout: seconds * 1000 });
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The pipelines that a session has had, to be taken back and made again.
 #pragma once
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -15,13 +16,14 @@ class History {
   bool can_undo() const { return !before_.empty(); }
   bool can_redo() const { return !after_.empty(); }
 
-  /// The next pipeline. A `live` one takes the place of a live one before it: a drag is taken back as a whole.
-  void change(PipelineFile next, bool live) {
-    if (!(live && live_)) {
+  /// The next pipeline. After a `live` change the next one of the same `words` takes its place: a drag, ended by one that is not live, is
+  /// taken back as a whole.
+  void change(PipelineFile next, bool live, const std::string& words) {
+    if (dragged_.empty() || dragged_ != words) {
       before_.push_back(std::move(now_));
       if (before_.size() > most) before_.erase(before_.begin());
     }
-    live_ = live, now_ = std::move(next), after_.clear();
+    dragged_ = live ? words : "", now_ = std::move(next), after_.clear();
   }
   /// The same pipeline with what was chosen from the data.
   void complete(PipelineFile completed) { now_ = std::move(completed); }
@@ -32,11 +34,11 @@ class History {
   static constexpr size_t most = 200;
   void move(std::vector<PipelineFile>& from, std::vector<PipelineFile>& to) {
     if (from.empty()) return;
-    to.push_back(std::move(now_)), now_ = std::move(from.back()), from.pop_back(), live_ = false;
+    to.push_back(std::move(now_)), now_ = std::move(from.back()), from.pop_back(), dragged_.clear();
   }
   PipelineFile now_;
   std::vector<PipelineFile> before_, after_;
-  bool live_ = false;
+  std::string dragged_;  // the words that are being dragged
 };
 
 }  // namespace sg::serve

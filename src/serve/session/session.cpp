@@ -54,6 +54,17 @@ EditMistake mistake_of(const Json& change, const std::string& what) {
   return m;
 }
 
+// Which words edits set, as one text: "show/0 opacity;".
+std::string words_of(const Json& edits) {
+  std::string words;
+  for (size_t i = 0; i < edits.size(); ++i) {
+    words += edits[i]["at"].text();
+    for (const auto& [word, value] : edits[i]["set"].members()) words += " " + word;
+    words += ";";
+  }
+  return words;
+}
+
 bool shows_automatically(const PipelineFile& file) {
   return file.show.empty() || std::any_of(file.show.begin(), file.show.end(), [](const auto& s) { return s.kind == auto_show; });
 }
@@ -193,10 +204,12 @@ void Session::take_draw(Client& client, const Json& message) {
 }
 
 void Session::take_cursor(Client& client, const Json& message) {
-  client.cursor = Json(Json::Members{{"id", Json(int64_t(client.id))},
-                                     {"view", Json(int64_t(message["view"].number()))},
-                                     {"at", numbers({message["at"][0].number(), message["at"][1].number()})}})
-                      .dump();
+  Json::Members cursor{{"id", Json(int64_t(client.id))},
+                       {"view", Json(int64_t(message["view"].number()))},
+                       {"at", numbers({message["at"][0].number(), message["at"][1].number()})}};
+  if (message.contains("camera") && !message["camera"].is_null())
+    cursor.emplace_back("camera", camera_json(camera_from(message["camera"])));
+  client.cursor = Json(std::move(cursor)).dump();
   tell_people();
 }
 
@@ -299,7 +312,7 @@ void Session::make_change(const Change& change) {
       mistakes.push_back({"", "", e.what()});
     }
     if (!mistakes.empty()) return refuse(change.client, n, mistakes);
-    history_.change(std::move(next), m["live"].boolean());
+    history_.change(std::move(next), m["live"].boolean(), words_of(m["edits"]));
   }
   last_change_ = change, needs_load_ = true;
 }

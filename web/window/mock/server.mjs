@@ -101,7 +101,8 @@ async function receive(socket, client, m) {
       client.cursor = { view: m.view, at: m.at, camera: m.camera };
       return tellPeople();
     case "save": {
-      const picture = await render(m.camera, m.size, { process: null });
+      const picture = await render(m.camera, m.size, { process: null }).catch(() => null);
+      if (!picture) return refuse([{ at: "", word: "", text: "the picture could not be drawn" }]);
       saved.set(`/saved/${m.n}`, picture);
       return text(socket, { is: "saved", n: m.n, url: `/saved/${m.n}`, name: `${basename(file).split(".")[0]}.png` });
     }

@@ -16,7 +16,7 @@ export class Pipeline {
     this.past = [];
     this.future = [];
     this.revision = 1;
-    this.live = false;
+    this.live = ""; // the words that a drag sets
     this.time = info.times[0] ?? null;
   }
 
@@ -26,8 +26,10 @@ export class Pipeline {
     const errors = [];
     for (const e of edits) this.apply(next, e, errors);
     if (errors.length > 0) return errors;
-    if (!(live && this.live)) this.past.push(this.now);
-    this.live = live;
+    // A drag is one step of undo: its live edits, and the one that ends it, replace one another.
+    const words = JSON.stringify(edits.map((e) => [e.at, Object.keys(e.set ?? {}).sort()]));
+    if (this.live !== words) this.past.push(this.now);
+    this.live = live ? words : "";
     this.future = [];
     this.now = next;
     this.revision++;
@@ -66,7 +68,7 @@ export class Pipeline {
     this.future.push(this.now);
     this.now = this.past.pop();
     this.revision++;
-    this.live = false;
+    this.live = "";
   }
 
   redo() {
