@@ -78,7 +78,8 @@ export function cleanUp() {
   rmSync(scratch, { recursive: true, force: true });
 }
 
-export const launch = () => chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"] });
+// Chromium takes pages whose files a test hands over for pages from elsewhere, which may not talk to this machine.
+export const launch = () => chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox", "--disable-features=LocalNetworkAccessChecks"] });
 
 /** A page whose errors, and what the content security policy refuses, are kept in `page.faults`. */
 export async function openPage(browser, url, settings = {}) {

@@ -116,6 +116,7 @@ await test("a point of the opacity curve is dragged, and the words of the comman
 });
 
 await test("points are added, typed and taken away", async () => {
+  await tab("color");
   const count = () => page.locator(".point").count();
   const before = await count();
   await andSettle(page, () => page.click("text=/\\+ point/"));
@@ -133,6 +134,7 @@ await test("points are added, typed and taken away", async () => {
 });
 
 await test("another colour map and a proposal change the picture, with their reason", async () => {
+  await tab("color");
   const before = (await seen(page)).sum;
   await page.click("text=Choose …");
   await andSettle(page, () => page.click("button.map:has-text('ember')"));
@@ -146,6 +148,7 @@ await test("another colour map and a proposal change the picture, with their rea
 });
 
 await test("widgets over value and gradient are drawn, moved and undone", async () => {
+  await tab("color");
   await page.locator("section:has(h2:text('Value and gradient')) button").first().click();
   await andSettle(page, () => page.click("text=+ rectangle"));
   const text = () => page.locator("[aria-label=\"The command line's words\"]").textContent();

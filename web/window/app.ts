@@ -150,8 +150,10 @@ export class App {
       connection: this.session.connection,
       tool: () => this.tool,
       moved: (view, before, after) => this.moved(view, before, after),
+      asked: () => this.changed(),
       drawn: (view) => {
         this.player.drawn(view);
+        if (view.frame?.final) this.session.progress = null;
         this.changed();
       },
       click: (view, at, button) => {

@@ -61,7 +61,7 @@ function shell(app: App): TemplateResult {
 /** Whether the picture of a view is the last word, or what is still to come. */
 function badge(app: App, index: number): TemplateResult {
   const v = app.views[index];
-  const settled = v.drawing.settled(app.state?.revision ?? 0);
+  const settled = v.drawing.settled(app.state?.revision ?? 0) && !app.session.isChanging;
   v.element.setAttribute("aria-label", `Picture of ${app.state?.title ?? "the data"}${app.layout > 1 ? `, view ${index + 1}` : ""}: arrow keys turn it, with shift they move it, + and - zoom, ? lists all keys`);
   return html`<span class="refining ${settled ? "" : "on"}" aria-hidden="true"></span>`;
 }

@@ -44,6 +44,10 @@ export class Edits {
     return this.underWay === 0 ? (this.queue.shift() ?? null) : null;
   }
 
+  get waiting(): boolean {
+    return this.queue.length > 0;
+  }
+
   sent(n: number, batch: Batch): void {
     if (n === 0) return; // no connection: what was dragged meanwhile is lost, as the state that comes next says
     this.underWay = n;

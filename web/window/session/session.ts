@@ -17,6 +17,8 @@ export class Session {
   progress: { share: number; doing: string } | null = null;
   notes: string[] = [];
   readonly edits = new Edits();
+  /** The number of the last change that the server has not answered, or 0. */
+  private changing = 0;
   readonly connection: Connection;
 
   constructor(
@@ -76,15 +78,27 @@ export class Session {
   }
 
   undo(): void {
-    if (this.state?.can_undo) this.connection.send({ do: "undo" });
+    if (this.state?.can_undo) this.change({ do: "undo" });
   }
 
   redo(): void {
-    if (this.state?.can_redo) this.connection.send({ do: "redo" });
+    if (this.state?.can_redo) this.change({ do: "redo" });
   }
 
   setTime(time: number): void {
-    this.connection.send({ do: "time", time });
+    this.change({ do: "time", time });
+  }
+
+  /** Whether the session is about to be another one. */
+  get isChanging(): boolean {
+    return this.changing > 0 || this.edits.waiting;
+  }
+
+  private change(request: { do: string } & Record<string, unknown>): number {
+    const n = this.connection.send(request);
+    if (n > 0) this.changing = n;
+    this.changed();
+    return n;
   }
 
   /** Replaces the whole pipeline by the text of a file. */
@@ -112,11 +126,13 @@ export class Session {
         const before = this.state;
         this.state = m;
         this.progress = null;
+        this.answered(m.by ?? 0);
         this.edits.stateCame(m.by ?? 0);
         this.on.state(m, before);
         break;
       }
       case "refused":
+        this.answered(m.n);
         this.edits.refused(m.n, m.errors);
         this.sayOthers(m.errors);
         break;
@@ -141,6 +157,10 @@ export class Session {
     this.changed();
   }
 
+  private answered(n: number): void {
+    if (n >= this.changing) this.changing = 0;
+  }
+
   /** Errors that stand at a control are read there; the others are said aloud. */
   private sayOthers(errors: Problem[]): void {
     const others = errors.filter((e) => e.word === "");
@@ -149,7 +169,7 @@ export class Session {
 
   private pump(): void {
     for (let batch = this.edits.next(); batch; batch = this.edits.next()) {
-      const n = this.connection.send({ do: "edit", live: batch.live, edits: batch.edits });
+      const n = this.change({ do: "edit", live: batch.live, edits: batch.edits });
       this.edits.sent(n, batch);
       if (n === 0) {
         this.edits.lost();
@@ -163,6 +183,7 @@ export class Session {
     const before = this.connected;
     this.connected = how;
     if (how === "lost") {
+      this.changing = 0;
       this.edits.lost();
       this.progress = null;
       this.people = { count: 1, cursors: [] };

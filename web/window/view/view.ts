@@ -19,6 +19,7 @@ export interface Host {
   connection: Connection;
   tool: () => string;
   moved: (view: View, before: Camera, after: Camera) => void;
+  asked: () => void;
   drawn: (view: View) => void;
   click: (view: View, at: [number, number], button: string) => void;
   hover: (view: View, at: [number, number] | null) => void;
@@ -135,6 +136,7 @@ export class View {
         base: this.drawing.base(c.width, c.height),
       });
       if (n > 0) this.drawing.asked(n, now, how);
+      this.host.asked();
     }
     if (how !== "still" && this.drawing.due(now + 1e9) !== null) this.schedule();
   }
