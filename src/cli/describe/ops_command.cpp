@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "base/text/text.h"
 #include "cli/cli.h"
-#include "cli/cpp_header.h"
+#include "cli/describe/cpp_header.h"
 #include "pipeline/catalog/catalog.h"
 #include "scene/show/other_names.h"
 
