@@ -19,7 +19,7 @@ export function planeEditor(c: Curve): TemplateResult {
   const text = c.app.session.word(at, "widgets") ?? "";
   const list = parseWidgets(text, c.range) ?? [];
   // Widgets take the place of a curve: the two exclude each other.
-  const exclusive = c.app.session.word(at, "opacity") === undefined ? {} : { opacity: null };
+  const exclusive: Record<string, null> = c.app.session.word(at, "opacity") === undefined ? {} : { opacity: null };
   const problem = c.app.session.edits.problem(at, "widgets");
   const counts = c.app.histograms.plane(c.index);
   const set = (next: Widget[], live = false): void =>
