@@ -3,8 +3,8 @@
 //   h  what a client sends; {COOKIE} and {HOST} stand for right ones
 //   w  frames on a WebSocket that is open
 //   p  names, targets, headers and files of users, for the functions that read them
-// Whatever it is, the server ends the connection soon after the client has, opens sessions only by a right cookie and an origin, of files in
-// its folder, and tells their end.
+// Whatever it is, the server ends the connection soon after the client has, opens sessions only by a right cookie and an origin, of files
+// in its folder, and tells their end.
 #include <arpa/inet.h>
 #include <fmt/core.h>
 #include <netinet/in.h>

@@ -11,6 +11,7 @@
 #include "base/file/file.h"
 #include "base/text/json.h"
 #include "serve/guard/token.h"
+#include "serve/page/page_files.h"
 #include "serve/support/server.h"
 #include "support/test.h"
 
@@ -187,6 +188,21 @@ TEST_CASE("door: the page has no script and no style inside it") {
   }
   CHECK_FALSE(contains(page.body, "<style"));
   CHECK_FALSE(contains(page.body, " onclick="));
+}
+
+TEST_CASE("door: the files of the page come as they were built in, each with its type, and nothing else does") {
+  RunningServer server;
+  const std::string cookie = server.enter();
+  REQUIRE(!embedded_files().empty());
+  for (const EmbeddedFile& file : embedded_files()) {
+    const Reply reply = server.get(file.path == "index.html" ? "/" : "/" + std::string(file.path), cookie);
+    CHECK(reply.status == 200);
+    CHECK(reply.body == file.bytes);
+    CHECK(reply.headers.at("content-type") == content_type(file.path));
+    CHECK(reply.headers.at("cache-control") == "no-cache");
+  }
+  for (const char* path : {"/index.html", "/assets", "/assets/", "/assets/none.js", "/assets/index.html", "/etc/passwd"})
+    CHECK_MESSAGE(server.get(path, cookie).status == 404, path);
 }
 
 TEST_CASE("door: what stays the same is sent once, compressed where that is taken") {

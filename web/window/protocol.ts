@@ -104,6 +104,7 @@ export interface FrameHeader {
   final: boolean;
   camera: Camera;
   area?: [number, number, number, number]; // where in `of` the camera looks: x, y, width, height; the rest is room of legends
+  part?: boolean; // the picture is of `area` alone; the rest stays
   milliseconds: number;
 }
 

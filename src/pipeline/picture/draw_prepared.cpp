@@ -67,8 +67,8 @@ Panel panel_of(const Shown& shown, const CameraDefaults& defaults, const StatedP
   Box3 all = scene_bounds(p.scene);  // glyphs reach beyond the data
   all.add(shown.box);
   fit_planes(p.camera, all);
-  if (stated.picture.axes && !shown.outlined && !shown.box.empty() && !fills_its_box(p.scene))
-    p.scene.items.emplace_back(back_edges(shown.box, p.camera));
+  p.box_edges = stated.picture.axes && !shown.outlined && !shown.box.empty() && !fills_its_box(p.scene);
+  if (p.box_edges) p.scene.items.emplace_back(back_edges(shown.box, p.camera));
   return p;
 }
 

@@ -71,6 +71,7 @@ struct Panel {
   Scene scene;
   Camera camera;
   Annotation annotation;
+  bool box_edges = false;  ///< the last item of the scene is back_edges()
 };
 struct NamedPanel {
   std::string title;

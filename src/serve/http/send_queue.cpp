@@ -5,6 +5,11 @@
 
 namespace sg::serve {
 
+namespace {
+// An empty message takes memory, too.
+size_t cost_of(const SendQueue::Message& message) { return message.bytes->size() + 64; }
+}  // namespace
+
 bool SendQueue::send_text(std::string text) { return send({true, std::make_shared<const std::string>(std::move(text))}); }
 
 bool SendQueue::send_binary(std::shared_ptr<const std::string> bytes) { return send({false, std::move(bytes)}); }
@@ -14,11 +19,11 @@ bool SendQueue::send(Message message) {
   {
     const std::lock_guard lock(mutex_);
     if (!open_ || !message.bytes) return false;
-    if (message.bytes->size() > most_ - waiting_) {
+    if (cost_of(message) > most_ - std::min(most_, waiting_)) {
       overrun_ = true;
       open_ = sent = false;
     } else {
-      waiting_ += message.bytes->size();
+      waiting_ += cost_of(message);
       queue_.push_back(std::move(message));
     }
   }
@@ -69,7 +74,7 @@ std::optional<SendQueue::Message> SendQueue::front() const {
 void SendQueue::pop() {
   const std::lock_guard lock(mutex_);
   if (queue_.empty()) return;
-  waiting_ -= queue_.front().bytes->size();
+  waiting_ -= cost_of(queue_.front());
   queue_.pop_front();
 }
 

@@ -47,7 +47,7 @@ class Socket {
   /// the client with it, as it would miss what the others see. Senders that can leave out messages look at waiting() first.
   virtual bool send_text(std::string text) = 0;
   virtual bool send_binary(std::shared_ptr<const std::string> bytes) = 0;
-  /// Bytes that wait to leave, the message on its way included.
+  /// Bytes that wait to leave, the message on its way included; each message counts 64 more than it has.
   virtual size_t waiting() const = 0;
   virtual bool open() const = 0;
   /// Says goodbye after what is queued; `reason` (at most 120 bytes) is for the person.

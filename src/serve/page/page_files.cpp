@@ -47,7 +47,7 @@ std::optional<HttpResponse> page_answer(const HttpRequest& request) {
   const std::string path = request.path == "/" ? "index.html" : asset ? request.path.substr(1) : "";
   const StaticBody* file = path.empty() ? nullptr : prepared(path);
   if (!file) return {};
-  return file->answer(request, asset ? "private, max-age=31536000, immutable" : "no-cache");
+  return file->answer(request, "no-cache");
 }
 
 }  // namespace sg::serve

@@ -13,14 +13,14 @@
 namespace sg::serve {
 
 struct EmbeddedFile {
-  std::string_view path;  ///< "assets/index-3f2a.js"
+  std::string_view path;  ///< "assets/window.js"
   std::string_view bytes;
 };
 /// Those that were there when the program was built; a page that says so when there were none.
 std::span<const EmbeddedFile> embedded_files();
 
 /// The answer for "/" (index.html) or "/assets/...": with a sum as its tag, compressed where the browser takes that, 304 where it has it.
-/// Names below /assets/ hold sums of their content and are kept by the browser for good. Nothing for other paths.
+/// The browser always asks whether it has changed, since another version of the program may have the same names. Nothing for other paths.
 std::optional<HttpResponse> page_answer(const HttpRequest& request);
 /// "text/html; charset=utf-8" for "index.html"; "application/octet-stream" for what is unknown.
 std::string content_type(std::string_view path);

@@ -73,7 +73,6 @@ PipelineFile LocalRenderer::load(const PipelineFile& pipeline, Context& context)
   options.cache = cache_, options.coloring = coloring_;
   next->prepared = prepare_picture(next->file, options, context);
   coloring_.clear();
-  for (auto& [id, view] : views_) view.around = {};
   const std::lock_guard lock(mutex_);
   planes_.clear(), loaded_ = next;
   return next->file;
@@ -85,34 +84,65 @@ Json::Members LocalRenderer::tell(Context& context) {
 }
 
 void LocalRenderer::forget(int view) {
-  views_.erase(view);
+  pace_.erase(view);
   const std::lock_guard lock(mutex_);
   planes_.erase(view);
 }
 
-// The picture beside the legends in fewer pixels, enlarged; legends and title stay as they are.
-DrawnView LocalRenderer::draw_moving(const PreparedPicture& prepared, const StatedPicture& stated, View& view, Context& context) {
+namespace {
+
+// Edges of the box behind a volume cover parts of pixels, and rays that meet such parts are slow: the volume is drawn over a picture of
+// them.
+Frame draw_over_edges(const Panel& panel, const RenderOptions& options, Context& context) {
+  Scene behind = panel.scene, before = rough(panel.scene, Quality::moving);
+  behind.items.erase(behind.items.begin(), behind.items.end() - 1), behind.shows.clear();
+  before.items.pop_back(), before.transparent = true;
+  Frame frame = render(behind, panel.camera, options, context);
+  const Frame volume = render(before, panel.camera, options, context);
+  for (size_t i = 0; i < frame.rgba.size(); ++i) frame.rgba[i] = volume.rgba[i] + (1 - volume.rgba[i | 3]) * frame.rgba[i];
+  return frame;
+}
+
+bool has_volume(const Scene& scene) {
+  return std::any_of(scene.items.begin(), scene.items.end(), [](const Item& i) { return std::holds_alternative<VolumeItem>(i); });
+}
+
+// Title and legends, with nothing beside them.
+Image draw_around(const Panel& panel, const StatedPicture& stated, Context& context) {
+  Scene empty;
+  empty.background = panel.scene.background, empty.background_top = panel.scene.background_top;
+  empty.transparent = panel.scene.transparent;
+  Annotation texts = panel.annotation;
+  texts.box.reset(), texts.axes = texts.triad = texts.scale_bar = false;
+  return draw_picture(empty, panel.camera, stated, texts, 1, context).image;
+}
+
+}  // namespace
+
+// The picture beside the legends in fewer pixels.
+DrawnView LocalRenderer::draw_moving(const PreparedPicture& prepared, const StatedPicture& stated, bool part, double& seconds_per_sample,
+                                     Context& context) {
   const Panel panel = panel_of(prepared, stated);
   const Rect area = picture_beside_legends(panel.annotation, stated);
-  if (view.around.width != stated.width || view.around.height != stated.height) {
-    Scene empty;
-    empty.background = panel.scene.background, empty.background_top = panel.scene.background_top;
-    empty.transparent = panel.scene.transparent;
-    Annotation texts = panel.annotation;
-    texts.box.reset(), texts.axes = texts.triad = texts.scale_bar = false;
-    view.around = draw_picture(empty, panel.camera, stated, texts, 1, context).image;
-  }
   DrawnView drawn;
-  drawn.coarse = coarseness(area.width * area.height, view.seconds_per_sample, drag_seconds);
+  drawn.coarse = coarseness(area.width * area.height, seconds_per_sample, drag_seconds);
   RenderOptions options;
   options.width = std::max(1, int(std::ceil(area.width / drawn.coarse)));
   options.height = std::max(1, int(std::ceil(area.height / drawn.coarse)));
   options.samples = 1;
   const auto begin = std::chrono::steady_clock::now();
-  const Frame frame = render(rough(panel.scene, Quality::moving), panel.camera, options, context);
-  learn(seconds_since(begin) / (double(options.width) * options.height), view.seconds_per_sample);
-  paste_enlarged(to_image(frame, panel.scene.transparent), int(area.x), int(area.y), int(area.width), int(area.height), view.around);
-  drawn.type = "image/jpeg", drawn.bytes = jpeg_of(view.around), drawn.camera = view_camera(panel.camera);
+  const Frame frame = panel.box_edges && has_volume(panel.scene)
+                          ? draw_over_edges(panel, options, context)
+                          : render(rough(panel.scene, Quality::moving), panel.camera, options, context);
+  learn(seconds_since(begin) / (double(options.width) * options.height), seconds_per_sample);
+  Image image = to_image(frame, panel.scene.transparent);
+  if (!part) {
+    Image around = draw_around(panel, stated, context);
+    paste_enlarged(image, int(area.x), int(area.y), int(area.width), int(area.height), around);
+    image = std::move(around);
+  }
+  drawn.part = part, drawn.width = image.width, drawn.height = image.height;
+  drawn.type = "image/jpeg", drawn.bytes = jpeg_of(image), drawn.camera = view_camera(panel.camera);
   set_area(area, drawn);
   return drawn;
 }
@@ -121,15 +151,15 @@ DrawnView LocalRenderer::draw(const DrawRequest& request, Context& context) {
   const auto begin = std::chrono::steady_clock::now();
   const auto now = loaded();
   const StatedPicture stated = stated_for(request, now->prepared);
-  View& view = views_[request.view];
   DrawnView drawn;
+  drawn.width = stated.width, drawn.height = stated.height;
   if (in_panels(stated.picture)) {
     Picture picture = draw_prepared(now->prepared, stated, {}, context);
     drawn.type = "image/png", drawn.bytes = png_of(picture.image);
     if (request.camera) drawn.camera = *request.camera;
     set_area({0, 0, double(stated.width), double(stated.height)}, drawn);
   } else if (request.quality == Quality::moving) {
-    drawn = draw_moving(now->prepared, stated, view, context);
+    drawn = draw_moving(now->prepared, stated, request.part, pace_[request.view], context);
   } else {
     const Panel panel = panel_of(now->prepared, stated);
     StatedPicture how = stated;
@@ -143,11 +173,10 @@ DrawnView LocalRenderer::draw(const DrawRequest& request, Context& context) {
     planes->area = picture_beside_legends(panel.annotation, stated);
     planes->projection = make_projection(panel.camera, int(planes->area.width), int(planes->area.height));
     set_area(planes->area, drawn);
-    view.around = std::move(picture.image);
     const std::lock_guard lock(mutex_);
     planes_[request.view] = planes;
   }
-  drawn.width = stated.width, drawn.height = stated.height, drawn.seconds = seconds_since(begin);
+  drawn.seconds = seconds_since(begin);
   return drawn;
 }
 

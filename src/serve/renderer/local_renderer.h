@@ -33,17 +33,13 @@ class LocalRenderer : public Renderer {
     Rect area;
     int width;
   };
-  // What stays of a view between its pictures.
-  struct View {
-    Image around;                   ///< the last whole picture, or title and legends alone: they stay while the view moves
-    double seconds_per_sample = 0;  ///< while it moves
-  };
   std::shared_ptr<const Loaded> loaded() const;
-  DrawnView draw_moving(const PreparedPicture& prepared, const StatedPicture& stated, View& view, Context& context);
+  DrawnView draw_moving(const PreparedPicture& prepared, const StatedPicture& stated, bool part, double& seconds_per_sample,
+                        Context& context);
 
   std::shared_ptr<Cache> cache_;
   std::vector<std::string> coloring_;  ///< until a pipeline has it
-  std::map<int, View> views_;          ///< for the thread that draws
+  std::map<int, double> pace_;         ///< of each view: seconds a sample took while it moved; for the thread that draws
   mutable std::mutex mutex_;           ///< for what follows
   std::shared_ptr<const Loaded> loaded_;
   std::map<int, std::shared_ptr<const Planes>> planes_;

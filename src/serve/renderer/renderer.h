@@ -24,6 +24,7 @@ struct DrawRequest {
   int width = 1280, height = 720;    ///< pixels
   std::optional<ViewCamera> camera;  ///< none: chosen from the data
   Quality quality = Quality::exact;
+  bool part = false;  ///< the window has legends and title: while it moves, what lies beside them is enough
 };
 
 struct DrawnView {
@@ -31,6 +32,7 @@ struct DrawnView {
   std::string type;           ///< "image/jpeg", "image/png"
   std::shared_ptr<const std::string> bytes;
   ViewCamera camera;           ///< that it was drawn from
+  bool part = false;           ///< the picture is of `area` alone
   int area[4] = {0, 0, 0, 0};  ///< x, y, width, height of the part in which the camera looks; legends stand beside it
   double coarse = 1;           ///< pixels of the view that one of the picture stands for, along each side
   double seconds = 0;          ///< that it took

@@ -17,6 +17,7 @@ namespace sg::serve {
 struct WantedView {
   DrawRequest request;  ///< view: of the renderer, unlike all others
   uint64_t n = 0;       ///< of the newest request
+  uint64_t base = 0;    ///< revision of the whole picture of this size that the window has; 0: none
   bool moving = false;
   bool due = false;  ///< something better than what was sent is to be drawn
   Quality next = Quality::moving;

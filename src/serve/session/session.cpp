@@ -195,7 +195,8 @@ void Session::take_draw(Client& client, const Json& message) {
   // What was drawn while the view moved serves as the first picture of the view at rest.
   const bool same = view.request.camera == camera && view.request.width == int(width) && view.request.height == int(height);
   const bool has_first = same && view.moving && !view.due;
-  view.request = {client.id * most_views + number, int(width), int(height), camera, Quality::moving};
+  view.request = {client.id * most_views + number, int(width), int(height), camera, Quality::moving, false};
+  view.base = message["base"].whole();
   view.n = message["n"].whole(), view.moving = moving;
   view.restart();
   if (has_first && !moving) view.next = Quality::draft;
@@ -421,8 +422,8 @@ std::pair<Client*, WantedView*> Session::next_view(bool coarse_only) {
 void Session::draw(std::unique_lock<std::mutex>& lock, Client& client, WantedView& wanted) {
   const int id = client.id, renderer_view = wanted.request.view;
   WantedView view = wanted;
-  view.request.quality = view.next;
   const uint64_t revision = revision_;
+  view.request.quality = view.next, view.request.part = view.base == revision;
   Context& context = begin_work(renderer_view);
   lock.unlock();
   DrawnView drawn;

@@ -39,7 +39,10 @@ export class Canvas {
     if (draw) {
       this.context.imageSmoothingEnabled = true;
       this.context.imageSmoothingQuality = "high";
-      this.context.drawImage(bitmap, 0, 0, this.element.width, this.element.height);
+      const e = this.element;
+      const [x, y, width, height] = frame.part && frame.area ? frame.area : [0, 0, ...frame.of];
+      const across = e.width / frame.of[0], down = e.height / frame.of[1];
+      this.context.drawImage(bitmap, x * across, y * down, width * across, height * down);
       this.drawing.show(frame);
     }
     bitmap.close();

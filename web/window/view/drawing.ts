@@ -19,6 +19,7 @@ export class Drawing {
   private resting = true; // the request for the still picture has been sent
   shown: { n: number; revision: number; coarse: number; final: boolean } | null = null;
   newest = 0; // number of the newest request
+  private whole: { revision: number; of: [number, number] } | null = null; // the last picture that was not of a part alone
 
   /** The view has changed: by a hand that may go on, or once. */
   want(now: number, moving: boolean): void {
@@ -55,12 +56,20 @@ export class Drawing {
 
   show(frame: FrameHeader): void {
     this.shown = { n: frame.n, revision: frame.revision, coarse: frame.coarse, final: frame.final };
+    if (!frame.part) this.whole = { revision: frame.revision, of: frame.of };
+  }
+
+  /** The revision of the whole picture of that size that is seen; 0: there is none. */
+  base(width: number, height: number): number {
+    const w = this.whole;
+    return w && w.of[0] === width && w.of[1] === height ? w.revision : 0;
   }
 
   /** After the connection was lost numbers and revisions may begin again. */
   restart(): void {
     this.sent = null;
     this.shown = null;
+    this.whole = null;
     this.want(-Infinity, false);
   }
 

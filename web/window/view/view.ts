@@ -133,6 +133,7 @@ export class View {
         scale: window.devicePixelRatio || 1,
         ...(this.camera ? { camera: this.camera } : {}),
         moving: how === "moving",
+        base: this.drawing.base(c.width, c.height),
       });
       if (n > 0) this.drawing.asked(n, now, how);
       this.host.asked();

@@ -10,6 +10,7 @@ Json request_json(const DrawRequest& r) {
                             {"width", Json(int64_t(r.width))},
                             {"height", Json(int64_t(r.height))},
                             {"camera", r.camera ? camera_json(*r.camera) : Json()},
+                            {"part", Json(r.part)},
                             {"quality", Json(int64_t(r.quality))}});
 }
 
@@ -17,7 +18,7 @@ DrawRequest request_from(const Json& json) {
   DrawRequest r;
   r.view = int(json["view"].number()), r.width = int(json["width"].number()), r.height = int(json["height"].number());
   if (!json["camera"].is_null()) r.camera = camera_from(json["camera"]);
-  r.quality = Quality(int(json["quality"].number()));
+  r.part = json["part"].boolean(), r.quality = Quality(int(json["quality"].number()));
   return r;
 }
 
@@ -28,6 +29,7 @@ Json drawn_json(const DrawnView& d) {
                             {"height", Json(int64_t(d.height))},
                             {"type", text(d.type)},
                             {"camera", camera_json(d.camera)},
+                            {"part", Json(d.part)},
                             {"area", Json(std::move(area))},
                             {"coarse", Json(d.coarse)},
                             {"seconds", Json(d.seconds)}});
@@ -37,6 +39,7 @@ DrawnView drawn_from(const Json& json, std::string bytes) {
   DrawnView d;
   d.width = int(json["width"].number()), d.height = int(json["height"].number()), d.type = json["type"].text();
   d.camera = camera_from(json["camera"]);
+  d.part = json["part"].boolean();
   for (size_t i = 0; i < 4; ++i) d.area[i] = int(json["area"][i].number());
   d.coarse = json["coarse"].number(), d.seconds = json["seconds"].number();
   d.bytes = std::make_shared<const std::string>(std::move(bytes));
