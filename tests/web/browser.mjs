@@ -83,7 +83,7 @@ export const launch = () => chromium.launch({ executablePath: process.env.CHROMI
 
 /** A page whose errors, and what the content security policy refuses, are kept in `page.faults`. */
 export async function openPage(browser, url, settings = {}) {
-  const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, acceptDownloads: true, ...settings });
+  const context = await browser.newContext({ viewport: { width: 1024, height: 640 }, acceptDownloads: true, ...settings });
   if (options().dist) await ownPage(context);
   const page = await context.newPage();
   page.faults = [];

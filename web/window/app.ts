@@ -37,6 +37,8 @@ export class App {
   selected = "show/0"; // of show/N, steps/NAME, picture
   dialog: Dialog = null;
   message = "";
+  /** The pipeline as it was when the window opened. */
+  beginning = "";
   private drawn = false;
   private messageTimer: ReturnType<typeof setTimeout> | undefined;
 
@@ -186,6 +188,7 @@ export class App {
 
   private stateCame(state: State, before: State | null): void {
     if (!before) {
+      this.beginning = state.pipeline;
       // A view that has drawn nothing yet begins with the camera chosen from the data.
       for (const v of this.views) if (!v.camera && state.camera) v.look(state.camera, false, false);
       document.title = state.title ? `${state.title} – Sightglass` : "Sightglass";

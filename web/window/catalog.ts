@@ -52,9 +52,10 @@ export function search(entries: Entry[], query: string): Entry[] {
     const name = e.name.replaceAll("_", " ");
     const text = `${name} ${e.name} ${e.family ?? ""} ${e.sentence}`.toLowerCase();
     if (!words.every((w) => text.includes(w))) return -1;
-    if (words.length === 0) return 3;
+    if (words.length === 0) return 4;
     if (name.startsWith(words[0])) return 0;
-    return name.includes(words[0]) ? 1 : 2;
+    if (name.includes(words[0])) return 1;
+    return e.sentence.toLowerCase().startsWith(words[0]) ? 2 : 3;
   };
   return entries
     .map((entry) => ({ entry, rank: rank(entry) }))

@@ -4,6 +4,7 @@ import { html, nothing, type TemplateResult } from "lit";
 import type { App } from "../app";
 import { search, takesKind, type Entry } from "../catalog";
 import type { Step } from "../protocol";
+import { suiting } from "../controls/field";
 import { dialog } from "./dialog";
 
 const ui = { query: "", all: false, at: 0, second: "" };
@@ -19,7 +20,7 @@ export function addDialog(app: App): TemplateResult {
     const wants = e.inputs?.[0] ?? 1;
     const from = e.kind === "source" ? [] : [input?.name ?? "", ...(ui.second && (e.inputs?.[1] ?? 1) !== 1 ? [ui.second] : [])].filter(Boolean);
     if (from.length < wants) return app.say(`'${e.name}' takes ${wants} steps: choose the second one above the list`);
-    app.session.edit([{ add: "step", operation: e.name, from, set: {} }]);
+    app.session.edit([{ add: "step", operation: e.name, from, set: seenField(app, e, input) }]);
     app.dialog = null;
     ui.query = "";
     ui.second = "";
@@ -54,6 +55,13 @@ export function addDialog(app: App): TemplateResult {
       ${found.length === 0 ? html`<p class="empty">Nothing found${ui.all ? "" : " that takes this kind of data"}.</p>` : nothing}`,
     true,
   );
+}
+
+/** The field that is seen of a step, where the operation takes it: what one looks at is what one means. */
+function seenField(app: App, e: Entry, input: Step | undefined): Record<string, string> {
+  const wants = e.params.properties.field?.field;
+  const seen = app.state!.show.find((s) => s.of === input?.name && s.transfer)?.transfer?.field;
+  return wants && suiting(input?.fields ?? [], wants).some((f) => f.name === seen) ? { field: seen! } : {};
 }
 
 /** The step that is selected, or that what is selected shows. */

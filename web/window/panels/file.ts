@@ -10,9 +10,8 @@ const ui: { mark: string | null; name: string; draft: string | null; problem: st
 export function filePanel(app: App): TemplateResult {
   const s = app.state;
   if (!s) return html``;
-  // What was marked is the beginning of the session, until another file is chosen.
-  ui.mark ??= s.pipeline;
-  const lines = diff(ui.mark, s.pipeline);
+  // Compared with the beginning of the session, until a file is chosen.
+  const lines = diff(ui.mark ?? app.beginning, s.pipeline);
   const changed = lines.some((l) => l.mark !== " ");
   const base = (s.title || "session").split(".")[0];
   return html`

@@ -15,7 +15,7 @@ export function stepsPanel(app: App): TemplateResult {
   const s = app.state;
   if (!s) return html``;
   const chosen = s.steps.find((x) => `steps/${x.name}` === app.selected) ?? null;
-  const total = s.steps.reduce((n, x) => n + (x.seconds ?? 0), 0);
+  const total = s.steps.some((x) => x.seconds != null) ? s.steps.reduce((n, x) => n + (x.seconds ?? 0), 0) : null;
   const memory = s.steps.reduce((n, x) => n + (x.bytes ?? 0), 0);
   return html`
     <section>

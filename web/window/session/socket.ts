@@ -99,7 +99,8 @@ export class Connection {
       return;
     }
     const message = JSON.parse(data) as ServerMessage;
-    const n = "n" in message ? message.n : 0;
+    // The answer to what changes the session is its next state.
+    const n = "n" in message ? message.n : message.is === "state" ? (message.by ?? 0) : 0;
     const waiting = this.waiting.get(n);
     if (waiting) {
       this.waiting.delete(n);

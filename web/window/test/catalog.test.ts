@@ -70,7 +70,7 @@ describe.skipIf(!found)("the catalogue", () => {
 
   it("finds operations by name and by what they do", () => {
     expect(search(catalog.operations, "contour")[0].name).toBe("contour");
-    expect(search(catalog.operations, "isosurface").map((e) => e.name)).toContain("contour");
+    expect(search(catalog.operations, "isosurface")[0].name).toBe("contour");
     expect(search(catalog.operations, "no such thing")).toEqual([]);
     expect(stepEntry(catalog, "read")?.kind).toBe("read");
     expect(takesKind(stepEntry(catalog, "label_surface")!, "unstructured")).toBe(false);

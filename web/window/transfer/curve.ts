@@ -67,8 +67,8 @@ export function curve(c: Curve): TemplateResult {
         <button aria-pressed=${!ui.log ? "true" : "false"} @click=${() => setLog(c, false)}>linear</button>
         <button aria-pressed=${ui.log ? "true" : "false"} @click=${() => setLog(c, true)}>log</button>
       </div>
-      ${marked !== null ? html`<span class="quiet">clicked: ${plain(marked)} ${c.transfer.unit ?? ""}</span>` : nothing}
-      ${c.points ? html`<button class="small" @click=${() => insert(c, marked)}>+ point${marked !== null ? " there" : ""}</button>` : nothing}
+      <span class="grow"></span>
+      ${c.points ? html`<button class="small" @click=${() => insert(c, marked)}>+ point${marked !== null ? ` at ${plain(marked)}` : ""}</button>` : nothing}
     </div>
     ${c.points ? table(c, c.points) : nothing}
   </div>`;
@@ -93,7 +93,9 @@ function histogramPath(c: Curve): SVGTemplateResult | typeof nothing {
 }
 
 function setPoints(c: Curve, points: Point[], live: boolean): void {
-  c.app.session.set(`show/${c.index}`, { opacity: opacityText(points) }, live);
+  // A curve takes the place of widgets: the two exclude each other.
+  const widgets = c.app.session.word(`show/${c.index}`, "widgets") !== undefined;
+  c.app.session.set(`show/${c.index}`, { opacity: opacityText(points), ...(widgets ? { widgets: null } : {}) }, live);
 }
 
 function curvePath(c: Curve, points: Point[]): SVGTemplateResult {

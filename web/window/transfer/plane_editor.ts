@@ -18,9 +18,12 @@ export function planeEditor(c: Curve): TemplateResult {
   const at = `show/${c.index}`;
   const text = c.app.session.word(at, "widgets") ?? "";
   const list = parseWidgets(text, c.range) ?? [];
+  // Widgets take the place of a curve: the two exclude each other.
+  const exclusive: Record<string, null> = c.app.session.word(at, "opacity") === undefined ? {} : { opacity: null };
+  const problem = c.app.session.edits.problem(at, "widgets");
   const counts = c.app.histograms.plane(c.index);
   const set = (next: Widget[], live = false): void =>
-    c.app.session.set(at, next.length > 0 ? { widgets: widgetsText(next) } : { widgets: null }, live);
+    c.app.session.set(at, next.length > 0 ? { widgets: widgetsText(next), ...exclusive } : { widgets: null }, live);
   const add = (shape: Widget["shape"]): void => {
     ui.chosen = list.length;
     set([...list, newWidget(shape, c.range, palette[list.length % palette.length])]);
@@ -33,6 +36,7 @@ export function planeEditor(c: Curve): TemplateResult {
         ${list.map((x, i) => widget(c, list, x, i, set))}
       </svg>
     </div>
+    ${problem ? html`<p class="problem" role="alert">${problem}</p>` : nothing}
     <p class="quiet axis-names"><span>${plain(c.range[0])}</span><span>value → · gradient ↑</span><span>${plain(c.range[1])}</span></p>
     <div class="row">
       <button class="small" @click=${() => add("triangle")}>+ triangle</button>
