@@ -16,6 +16,7 @@
 #include "pipeline/file/read_part.h"
 #include "pipeline/file/transfer_file.h"
 #include "pipeline/film/film_params.h"
+#include "pipeline/offline/page_params.h"
 #include "pipeline/picture/picture_cost.h"
 #include "pipeline/picture/picture_notes.h"
 #include "pipeline/picture/picture_parts.h"
@@ -86,6 +87,8 @@ PipelineVocabulary picture_vocabulary() {
   };
   FilmParams film;
   add(schema_of(film));
+  PageParams page;
+  add(schema_of(page));
   PictureParams p;
   add(schema_of(p));
   return v;
@@ -222,12 +225,15 @@ Panel panel_of(const Shown& shown, const Look& look, const StatedPicture& stated
   if (in_panels(stated.picture)) p.annotation.legends.clear();  // they stand beside the panels
   const Rect area = picture_beside_legends(p.annotation, stated);
   const double aspect = std::max(1.0, area.width) / std::max(1.0, area.height);
-  p.camera = make_camera(camera, shown.box, aspect, look.camera, stated.picture.axes ? 0.11 : 0.05);
+  p.around = look.camera, p.margin = stated.picture.axes ? 0.11 : 0.05;
+  p.camera = make_camera(camera, shown.box, aspect, look.camera, p.margin);
   Box3 all = scene_bounds(p.scene);  // glyphs reach beyond the data
   all.add(shown.box);
   fit_planes(p.camera, all);
-  if (stated.picture.axes && !shown.outlined && !shown.box.empty() && !fills_its_box(p.scene))
+  if (stated.picture.axes && !shown.outlined && !shown.box.empty() && !fills_its_box(p.scene)) {
     p.scene.items.emplace_back(back_edges(shown.box, p.camera));
+    p.box_behind = shown.box;
+  }
   return p;
 }
 
@@ -327,10 +333,16 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   for (Shown& s : shown) s.box = with_room(s.box);  // after the choice of a view, which tells by the box what is flat
   if (!in_panels(stated.picture)) {
     const Panel panel = panel_of(shown[0], look, stated, stated.camera);
+    if (options.on_panel && !options.on_panel(panel, stated)) {
+      context.progress(1, "done");
+      return picture;
+    }
     draw_drafts(panel.scene, panel.camera, stated, panel.annotation, options, picture, drawing);
     context.progress(1, "done");
     return picture;
   }
+  if (options.on_panel)
+    fail_usage("a page shows one picture, not several panels", "layout", "leave out layout and views: its buttons turn to every side");
   const std::vector<std::string>& views = stated.picture.views;
   const size_t count = views.empty() ? shown.size() : views.size();
   Annotation around = annotation_of(stated, shown[0], look);
