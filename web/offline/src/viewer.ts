@@ -80,7 +80,7 @@ export class Viewer {
     const w = Math.round(width * this.ratio), h = Math.round(height * this.ratio);
     if (this.over.width !== w || this.over.height !== h) this.over.width = w, this.over.height = h;
     this.layout = layoutOf(this.step.annotation, width, height);
-    this.draw(false);
+    this.draw(this.step.volumes.length > 0);
   }
 
   aspect(): number {
@@ -120,7 +120,7 @@ export class Viewer {
 
   private pass(samples: number, moving: boolean): { pass: Pass; drawables: Drawable[] } {
     const projection = this.projection(samples * this.ratio);
-    const pass: Pass = { projection, center: this.center, samples: samples * this.ratio, lamps: lampsOf(this.scene, projection), peel: null, moving };
+    const pass: Pass = { projection, center: this.center, samples: samples * this.ratio, lamps: lampsOf(this.scene, projection), peel: null, moving, soft: samples === 1 && !moving };
     const box = this.axes ? this.behind?.at(projection) : null;
     return { pass, drawables: box ? [...this.step.drawables, box] : this.step.drawables };
   }
@@ -157,13 +157,23 @@ export class Viewer {
   }
 
   private stillQuality(): Quality {
-    // Lines, dots and volumes have soft edges of their own.
-    return { samples: this.step.drawables.some((d) => d.stage === "surface") ? 2 : 1, coarse: 1, layers: 8 };
+    const surfaces = this.step.drawables.some((d) => d.stage === "surface");
+    return { samples: surfaces ? 2 : this.step.volumes.length ? 1 : 3, coarse: 1, layers: 8 };
   }
 
   /** Volumes in bands of rows, so that the page answers while they are drawn. */
   private drawStill(): void {
-    const q = this.stillQuality(), generation = this.generation, { pass, drawables } = this.pass(q.samples, false);
+    // First half as fine, where all of it would take long.
+    const all = this.stillQuality();
+    if (this.step.volumes.length && this.level < 0.5) this.drawFine({ ...all, samples: 0.5 }, () => this.drawFine(all, () => this.rested()));
+    else this.drawFine(all, () => this.rested());
+  }
+  private rested(): void {
+    this.still = true;
+    this.onStill?.();
+  }
+  private drawFine(q: Quality, done: () => void): void {
+    const generation = this.generation, { pass, drawables } = this.pass(q.samples, false);
     const height = pass.projection.height, banded = this.step.volumes.length > 0;
     let row = 0, rows = banded ? Math.max(4, Math.round(height / 40)) : height;
     const go = () => {
@@ -178,8 +188,7 @@ export class Viewer {
         return;
       }
       this.present(q.samples);
-      this.still = true;
-      this.onStill?.();
+      done();
     };
     go();
   }

@@ -136,9 +136,9 @@ FlatSurface clustered(const FlatSurface& in, int parts, bool labels) {
       add_normal(&in.normals[3 * size_t(normal)], &out.normals[3 * size_t(c[k])]);
     }
     if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) continue;
-    std::array<uint32_t, 3> sorted = c;
-    std::sort(sorted.begin(), sorted.end());
-    if (!there.insert(sorted).second) continue;
+    std::array<uint32_t, 3> turned = c;  // what turns the other way round is another side
+    std::rotate(turned.begin(), std::min_element(turned.begin(), turned.end()), turned.end());
+    if (!there.insert(turned).second) continue;
     out.triangles.insert(out.triangles.end(), c.begin(), c.end());
     if (!in.colors.per_cell) continue;
     if (!in.colors.positions.empty()) out.colors.positions.push_back(in.colors.positions[t]);

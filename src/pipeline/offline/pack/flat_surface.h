@@ -34,7 +34,7 @@ FlatSurface flat_surface(const raster::PreparedItem& item);
 std::vector<uint32_t> clusters_of(const std::vector<float>& xyz, int parts, size_t& count);
 
 /// Points of a cluster become their mean, as do their colours (of labels the first) and normals; triangles that lose a corner are gone,
-/// and those with the corners of another (vertex clustering, Rossignac and Borrel 1993).
+/// and those with the corners of another, turned alike (vertex clustering, Rossignac and Borrel 1993).
 FlatSurface clustered(const FlatSurface& surface, int parts, bool labels);
 
 }  // namespace sg::offline

@@ -145,13 +145,9 @@ void main() { ivec2 at = ivec2(gl_FragCoord.xy); oColor = vec4(min(texelFetch(uO
 
   /** Depth 0 everywhere: before the first layer. */
   private nothing(): WebGLTexture {
-    if (!this.zero) {
-      const gl = this.gl;
-      this.zero = new Target(gl, gl.R8, false);
-    }
-    const t = this.zero;
-    t.resize(this.opaque.width, this.opaque.height);
     const gl = this.gl, bound = gl.getParameter(gl.FRAMEBUFFER_BINDING) as WebGLFramebuffer;
+    const t = (this.zero ??= new Target(gl, gl.R8, false));
+    t.resize(this.opaque.width, this.opaque.height);
     gl.bindFramebuffer(gl.FRAMEBUFFER, t.frame);
     gl.clear(gl.COLOR_BUFFER_BIT);
     gl.bindFramebuffer(gl.FRAMEBUFFER, bound);

@@ -20,6 +20,8 @@ export interface Pass {
   peel: Peel | null;
   /** In motion: what costs much may be coarser. */
   moving: boolean;
+  /** Lines and dots have soft edges. */
+  soft: boolean;
 }
 
 export interface Drawable {
@@ -52,15 +54,16 @@ export function bindPass(p: Program, pass: Pass): void {
   p.texture("uHiding", 7, pass.peel?.hiding ?? null);
 }
 
-/** Lines and dots: what covers a sample wholly hides what lies behind it; then what covers a part of one goes over all that is there. */
+/** Lines and dots, of single samples: what covers one wholly hides what lies behind it; then comes what covers a part of one, of which the
+ * largest part counts: the segments of a line meet. Several samples need no soft edges. */
 export function drawMarks(p: Program, pass: Pass, whole: boolean, draw: () => void): void {
   const gl = p.gl;
-  if (whole || pass.moving) {
+  if (whole || !pass.soft) {
     p.i("uSoft", 0), draw();
     return;
   }
   p.i("uSoft", 1), draw();
-  gl.enable(gl.BLEND), gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA), gl.depthMask(false);
+  gl.enable(gl.BLEND), gl.blendEquation(gl.MAX), gl.depthMask(false);
   p.i("uSoft", 2), draw();
-  gl.disable(gl.BLEND), gl.depthMask(true);
+  gl.disable(gl.BLEND), gl.blendEquation(gl.FUNC_ADD), gl.depthMask(true);
 }

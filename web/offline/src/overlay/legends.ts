@@ -141,12 +141,11 @@ function drawPanel(pen: Pen, l: LegendInfo, p: Place, font: number, scale: Scale
 function drawGlyph(pen: Pen, l: LegendInfo, p: Place, font: number): void {
   const g = p.rect(l.glyph!), y = g.y + 0.5 * g.height, color = cssColor(l.glyph_color!), size = p.length(l.glyph![2]);
   if (l.glyph_arrow) {
-    const head = Math.min(0.35 * size, 0.7 * font);
-    pen.line(g.x, y, g.x + size - head, y, Math.max(1.5, 0.12 * font), color);
-    pen.polygon([[g.x + size, y], [g.x + size - head, y - 0.4 * head], [g.x + size - head, y + 0.4 * head]], color);
+    const tip = Math.min(0.9 * font, 0.4 * size), half = 0.4 * tip, shaft = Math.max(0.5, 0.12 * tip), neck = g.x + size - tip;
+    pen.polygon([[g.x, y - shaft], [neck, y - shaft], [neck, y - half], [g.x + size, y], [neck, y + half], [neck, y + shaft], [g.x, y + shaft]], color, true);
   } else {
-    const c = pen.context;
-    c.fillStyle = color, c.beginPath(), c.arc(g.x + 0.5 * size, y, 0.5 * size, 0, 2 * Math.PI), c.fill();
+    const r = 0.5 * Math.min(size, g.height);
+    pen.polygon(Array.from({ length: 32 }, (_, k) => [g.x + r + r * Math.cos(k * 0.19634954), y + r * Math.sin(k * 0.19634954)] as [number, number]), color, true);
   }
   pen.text("= " + (l.glyph_text ?? ""), g.x + size + 0.6 * font, y - 0.58 * font, { size: font, halo: true });
 }

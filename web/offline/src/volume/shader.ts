@@ -60,6 +60,23 @@ vec4 nearestOf(sampler2D table, float code) {
   int i = int(clamp(code, 0.0, 1.0) * float(tableLast) + 0.5);
   return texelFetch(table, ivec2(i & 1023, i >> 10), 0);
 }
+/* Central differences; in the outermost cells on to the slope that a parabola has at the border. */
+float slopeAlong(int a, vec3 t, vec3 h) {
+  vec3 e = vec3(0.0);
+  e[a] = h[a];
+  float v = t[a] * uDims[a] - 0.5, last = uDims[a] - 1.0;
+  if (v >= 1.0 && v <= last - 1.0) return 0.5 * (textureLod(uLattice, t + e, 0.0).r - textureLod(uLattice, t - e, 0.0).r);
+  if (last < 2.0) {
+    t[a] = 0.5 * h[a];
+    return textureLod(uLattice, t + e, 0.0).r - textureLod(uLattice, t, 0.0).r;
+  }
+  bool low = v < 1.0;
+  t[a] = low ? 0.5 * h[a] : 1.0 - 0.5 * h[a];
+  if (!low) e = -e;
+  float f0 = textureLod(uLattice, t, 0.0).r, f1 = textureLod(uLattice, t + e, 0.0).r, f2 = textureLod(uLattice, t + 2.0 * e, 0.0).r;
+  float inner = 0.5 * (f2 - f0), border = 2.0 * (f1 - f0) - inner;
+  return (low ? 1.0 : -1.0) * mix(border, inner, clamp(low ? v : last - v, 0.0, 1.0));
+}
 /* Of codes per world length. */
 vec3 gradientAt(vec3 u) {
   vec3 voxel = uSamplesAlong / uDims, t = coordinate(u), h = 1.0 / uDims;
@@ -67,9 +84,7 @@ vec3 gradientAt(vec3 u) {
     vec3 f = vec3(textureLod(uLattice, t + vec3(h.x, 0, 0), 0.0).r, textureLod(uLattice, t + vec3(0, h.y, 0), 0.0).r, textureLod(uLattice, t + vec3(0, 0, h.z), 0.0).r);
     return (f - textureLod(uLattice, t, 0.0).r) / voxel * uToU;
   }
-  vec3 g = vec3(textureLod(uLattice, t + vec3(h.x, 0, 0), 0.0).r - textureLod(uLattice, t - vec3(h.x, 0, 0), 0.0).r,
-                textureLod(uLattice, t + vec3(0, h.y, 0), 0.0).r - textureLod(uLattice, t - vec3(0, h.y, 0), 0.0).r,
-                textureLod(uLattice, t + vec3(0, 0, h.z), 0.0).r - textureLod(uLattice, t - vec3(0, 0, h.z), 0.0).r) * 0.5 / voxel;
+  vec3 g = vec3(slopeAlong(0, t, h), slopeAlong(1, t, h), slopeAlong(2, t, h)) / voxel;
   return g * uToU;
 }
 /* Light and gloss where the field has a gradient; a weak one is no surface. */
@@ -127,6 +142,8 @@ void main() {
   const bool skips = uMode == 0 || uMode == 5 || uMode == 8;
   float t = t0, code = codeAt(o + d * t);
 #if MODE == 0
+  vec2 light = vec2(1.0, 0.0);
+  bool lit = false;
   vec4 sums = uFast || uNearest ? vec4(0.0) : tableAt(uSums, code);
 #endif
   vec3 perTexel = 1.0 / max(abs(d * texel), vec3(1e-20));
@@ -165,8 +182,8 @@ void main() {
     }
     if (m.a > 0.0 && !skipped) {
       float alpha = 1.0 - exp(-m.a * s);
-      vec2 light = vec2(1.0, 0.0);
-      if (uLit && alpha * pass > (uFast ? 0.02 : 0.002)) light = volumeLight(gradientAt(middle), direction, false);
+      /* Where little is seen, the light of the sample before will do. */
+      if (uLit && (!lit || alpha * pass > (uFast ? 0.02 : 0.0004))) light = volumeLight(gradientAt(middle), direction, false), lit = true;
       color += pass * alpha * (m.rgb / m.a * light.x + light.y);
       pass *= 1.0 - alpha;
       if (pass < (uFast ? 0.02 : 0.002)) break;
