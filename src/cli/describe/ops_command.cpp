@@ -35,7 +35,8 @@ std::string overview(const std::vector<CatalogEntry>& all) {
       case EntryKind::read:
       case EntryKind::camera:
       case EntryKind::picture:
-      case EntryKind::film: others += line; break;
+      case EntryKind::film:
+      case EntryKind::page: others += line; break;
     }
   }
   return ops_help() + shows + others + "\nreadable formats\n" + formats_line(all, EntryKind::reader) + "\nwritable formats\n" +

@@ -133,7 +133,7 @@ DrawnView LocalRenderer::draw_moving(const PreparedPicture& prepared, const Stat
   options.height = std::max(1, int(std::ceil(area.height / drawn.coarse)));
   options.samples = 1;
   const auto begin = std::chrono::steady_clock::now();
-  const Frame frame = panel.box_edges && has_volume(panel.scene)
+  const Frame frame = panel.box_behind && has_volume(panel.scene)
                           ? draw_over_edges(panel, options, context)
                           : render(rough(panel.scene, Quality::moving), panel.camera, options, context);
   learn(seconds_since(begin) / (double(options.width) * options.height), seconds_per_sample);
