@@ -22,7 +22,7 @@ const scenes = [
   { name: "maximum of a volume", words: ["-s", "gyroid size=48", "--show", "volume mode=maximum"], volume: true },
   { name: "plane field", words: ["-s", "double_gyre dims=81,41,1", "--show", "surface field=velocity"] },
   { name: "glyphs", words: ["-s", "abc dims=5,5,5", "--show", "glyphs shape=sphere size=1"] },
-  { name: "thick lines", words: ["-s", "abc dims=12,12,12", "-f", "streamlines count=12", "--show", "lines width=12"] },
+  { name: "thick lines", words: ["-s", "abc dims=12,12,12", "-f", "streamlines count=12", "--show", "lines width=12 color=steelblue"] },
   { name: "points as spheres", words: ["-s", "gyroid size=6", "--show", "points size=24"] },
   { name: "seen through", words: ["-s", "sphere", "--show", "surface opacity=0.4"] },
   { name: "isosurface by rays", words: ["-s", "gyroid size=32", "--show", "volume mode=isosurface levels=0"], volume: true },
