@@ -198,7 +198,7 @@ await test("the pipeline forks in the graph, steps tell times and bytes, and one
   await page.keyboard.press("a");
   await page.keyboard.type("slice");
   await andSettle(page, () => page.keyboard.press("Enter"));
-  await page.click("text=graph");
+  await page.locator(".segmented >> text=graph").click();
   assert.equal(await page.locator(".node").count(), 3);
   assert.equal(await page.locator(".edge").count(), 2);
   await shot(o, page, "graph");

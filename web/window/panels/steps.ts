@@ -14,7 +14,8 @@ const ui = { graph: false };
 export function stepsPanel(app: App): TemplateResult {
   const s = app.state;
   if (!s) return html``;
-  const chosen = s.steps.find((x) => `steps/${x.name}` === app.selected) ?? null;
+  const seen = app.selected.startsWith("show/") ? s.show[Number(app.selected.slice(5))]?.of : undefined;
+  const chosen = s.steps.find((x) => `steps/${x.name}` === app.selected || x.name === seen) ?? null;
   const total = s.steps.some((x) => x.seconds != null) ? s.steps.reduce((n, x) => n + (x.seconds ?? 0), 0) : null;
   const memory = s.steps.reduce((n, x) => n + (x.bytes ?? 0), 0);
   return html`
