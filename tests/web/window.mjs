@@ -194,27 +194,28 @@ await test("a contour is added by search, its value dragged, and a mistake stand
 
 await test("the pipeline forks in the graph, steps tell times and bytes, and one in use is not removed", async () => {
   await tab("steps");
+  const steps = await page.locator(".item").count();
   await page.locator(".item-name").first().click();
   await page.keyboard.press("a");
   await page.keyboard.type("slice");
   await andSettle(page, () => page.keyboard.press("Enter"));
   await page.locator(".segmented >> text=graph").click();
-  assert.equal(await page.locator(".node").count(), 3);
-  assert.equal(await page.locator(".edge").count(), 2);
+  assert.equal(await page.locator(".node").count(), steps + 1);
+  assert.equal(await page.locator(".edge").count(), steps, "each step but the first takes from it");
   await shot(o, page, "graph");
   await page.locator(".segmented >> text=list").click();
-  assert.match(await page.locator(".numbers").first().textContent(), /s.*B/);
+  assert.match(await page.locator(".numbers").first().textContent(), /(s|–).*B/);
 });
 
 await test("a plane is dragged in the picture", async () => {
   const handle = page.locator("[data-handle][aria-label^='Plane of']").first();
   await handle.waitFor();
-  const value = await handle.getAttribute("aria-valuenow");
+  const value = await handle.getAttribute("aria-valuetext");
   await handle.focus();
   await andSettle(page, async () => {
     for (let i = 0; i < 3; i++) await page.keyboard.press("ArrowUp");
   });
-  assert.notEqual(await page.locator("[data-handle][aria-label^='Plane of']").first().getAttribute("aria-valuenow"), value);
+  assert.notEqual(await page.locator("[data-handle][aria-label^='Plane of']").first().getAttribute("aria-valuetext"), value);
 });
 
 await test("the table pages through the numbers of a step", async () => {
