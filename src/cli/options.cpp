@@ -357,7 +357,7 @@ void declare_open(CLI::App& a, Options& o, RawText&) {
 }
 
 void declare_ops(CLI::App& a, Options& o, RawText&) {
-  a.add_option("name", o.inputs, "An operation, a way to show, a format, 'read', 'camera', 'picture' or 'film'");
+  a.add_option("name", o.inputs, "An operation, a way to show, a format, 'read', 'camera', 'picture', 'film' or 'page'");
   a.add_flag("--json", o.json, "Print JSON Schemas of the parameters, for programs");
   a.add_flag("--cpp", o.cpp, "Print a C++ header with every operation and way to show as a struct (sightglass/operations.h)");
   a.add_flag("--other-names", o.other_names, "Print what other programs call things, and how it is said here");

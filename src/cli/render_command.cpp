@@ -29,6 +29,7 @@
 #include "pipeline/film/film.h"
 #include "pipeline/graph/slabs.h"
 #include "pipeline/graph/step_report.h"
+#include "pipeline/offline/page.h"
 #include "pipeline/picture/picture.h"
 #include "pipeline/picture/picture_cost.h"
 #include "pipeline/picture/picture_sets.h"
@@ -50,6 +51,7 @@ void check_output(const std::string& path) {
   if (std::find(known.begin(), known.end(), ext) == known.end()) {
     std::string list;
     for (const std::string& e : known) list += (list.empty() ? "." : " .") + e;
+    list += " .html";
     fail_usage(fmt::format("'{}' is not a picture format", ext), path,
                fmt::format("supported: {}{}", list, ext.empty() ? "" : "; data is written by: sightglass convert IN -o NAME." + ext));
   }
@@ -168,8 +170,24 @@ void take_film_flags(const Options& o, FilmParams& film) {
   set_params(schema, o.film, "film");
 }
 
-// Makes a picture, or the pictures of a film, whatever the output is.
+int render_page(PipelineFile file, const PageParams& params, const FilmParams& film, const PictureOptions& options, const Options& o,
+                Context& context) {
+  const Page page = write_page(std::move(file), params, film, options, context);
+  if (o.quiet) return 0;
+  std::string line = fmt::format("{}: {}", printable(film.output), human_bytes(page.html.size()));
+  if (page.steps > 1) line += fmt::format(", {} time steps", page.steps);
+  for (const std::string& note : page.notes) line += "; " + printable(note);
+  say(line + "\n");
+  return 0;
+}
+
+// Makes a picture, the pictures of a film, or a page, whatever the output is.
 int render_into(PipelineFile file, const FilmParams& film, const PictureOptions& options, const Options& o, Context& context) {
+  PageParams page;
+  if (is_page(film.output)) {
+    take_page_words(file, page);
+    if (!o.explain) return render_page(std::move(file), page, film, options, o, context);
+  }
   if (is_film(film.output) && !o.explain) {
     const FilmWritten written = write_film(std::move(file), film, options, context);
     const size_t count = written.times.size();
@@ -201,9 +219,9 @@ int run_render(const Options& o, Context& context) {
   take_film_flags(o, film);
   const char* unnamed = film.turntable > 0 ? "{name}.webm" : "{name}.png";
   film.output = output_name(o.output.empty() ? unnamed : o.output, o.inputs.empty() ? file.steps[0].operation : stem_of(o.inputs[0]));
-  if (is_film(film.output) && (o.progressive || o.within > 0))
-    fail_usage("the pictures of a series are final from the start", o.progressive ? "--progressive" : "--within",
-               "leave it out, or render a single picture");
+  if ((is_film(film.output) || is_page(film.output)) && (o.progressive || o.within > 0))
+    fail_usage(is_page(film.output) ? "a page is final from the start" : "the pictures of a series are final from the start",
+               o.progressive ? "--progressive" : "--within", "leave it out, or render a single picture");
   return render_into(std::move(file), film, options, o, context);
 }
 
@@ -217,6 +235,7 @@ int run_pipeline_file(const Options& o, Context& context) {
     take_film_words(file, film);
     take_film_flags(o, film);
     film.output = o.output.empty() ? path_beside(path, film.output) : output_name(o.output, stem_of(path));
+    if (!is_page(film.output)) std::erase_if(file.picture, [](const std::string& w) { return is_page_word(w); });
     render_into(std::move(file), film, {}, o, context);
   }
   return 0;

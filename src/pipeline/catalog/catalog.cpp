@@ -6,6 +6,7 @@
 #include "base/text/text.h"
 #include "io/options.h"
 #include "pipeline/film/film_params.h"
+#include "pipeline/offline/page_params.h"
 #include "pipeline/picture/picture.h"
 #include "scene/camera_params.h"
 #include "scene/show/show.h"
@@ -90,7 +91,8 @@ std::string_view list_of(EntryKind kind) {
     case EntryKind::read:
     case EntryKind::camera:
     case EntryKind::picture:
-    case EntryKind::film: return "";
+    case EntryKind::film:
+    case EntryKind::page: return "";
   }
   return "";
 }
@@ -108,6 +110,7 @@ std::vector<CatalogEntry> catalog() {
   all.push_back(entry<CameraParams>(EntryKind::camera, "Viewpoint and projection (--camera)."));
   all.push_back(entry<PictureParams>(EntryKind::picture, "Size, background and annotations (--picture)."));
   all.push_back(entry<FilmParams>(EntryKind::film, "Pictures of a time series, numbered or as a film."));
+  all.push_back(entry<PageParams>(EntryKind::page, "A picture that turns, as one HTML file (-o scene.html)."));
   return all;
 }
 

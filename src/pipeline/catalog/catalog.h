@@ -22,12 +22,13 @@ enum class EntryKind {
   camera,
   picture,
   film,
+  page,
 };
 constexpr auto enum_words(EntryKind) {
   using enum EntryKind;
-  return std::array{Word{"source", source}, Word{"operation", operation}, Word{"show", show},
-                    Word{"reader", reader}, Word{"writer", writer},       Word{"read", read},
-                    Word{"camera", camera}, Word{"picture", picture},     Word{"film", film}};
+  return std::array{
+      Word{"source", source}, Word{"operation", operation}, Word{"show", show},       Word{"reader", reader}, Word{"writer", writer},
+      Word{"read", read},     Word{"camera", camera},       Word{"picture", picture}, Word{"film", film},     Word{"page", page}};
 }
 
 struct CatalogEntry {
@@ -49,7 +50,7 @@ std::vector<CatalogEntry> catalog();
 /// of readers "times" (its files may hold several).
 std::string entry_json(const CatalogEntry& entry);
 /// {"sightglass":VERSION,"sources":[...],"operations":[...],"show":[...],"readers":[...],"writers":[...],"read":{...},"camera":{...},
-/// "picture":{...},"film":{...}}.
+/// "picture":{...},"film":{...},"page":{...}}.
 std::string catalog_json(const std::vector<CatalogEntry>& entries);
 
 }  // namespace sg

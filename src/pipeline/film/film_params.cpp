@@ -9,7 +9,8 @@ namespace sg {
 
 void describe(Schema& s, FilmParams& p) {
   s("output", p.output,
-    "Picture to write; {n} in the name numbers the pictures of a time series; .webm, .gif or .mp4 makes a film of them.")
+    "Picture to write; {n} in the name numbers the pictures of a time series; .webm, .gif or .mp4 makes a film of them, .html a page that "
+    "turns in a browser.")
       .unit("new file");
   s("times", p.times,
     "With {n} in the output, or for a film: the times to draw, e.g. 0:10:101 (first:last:count), 0,0.5,1 or 0:114 (the steps of the file "

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <variant>
 
+#include "base/error.h"
 #include "pipeline/picture/prepare.h"
 
 namespace sg {
@@ -63,12 +64,15 @@ Panel panel_of(const Shown& shown, const CameraDefaults& defaults, const StatedP
   if (in_panels(stated.picture)) p.annotation.legends.clear();  // they stand beside the panels
   const Rect area = picture_beside_legends(p.annotation, stated);
   const double aspect = std::max(1.0, area.width) / std::max(1.0, area.height);
-  p.camera = make_camera(camera, shown.box, aspect, defaults, stated.picture.axes ? 0.11 : 0.05);
+  p.around = defaults, p.margin = stated.picture.axes ? 0.11 : 0.05;
+  p.camera = make_camera(camera, shown.box, aspect, defaults, p.margin);
   Box3 all = scene_bounds(p.scene);  // glyphs reach beyond the data
   all.add(shown.box);
   fit_planes(p.camera, all);
-  p.box_edges = stated.picture.axes && !shown.outlined && !shown.box.empty() && !fills_its_box(p.scene);
-  if (p.box_edges) p.scene.items.emplace_back(back_edges(shown.box, p.camera));
+  if (stated.picture.axes && !shown.outlined && !shown.box.empty() && !fills_its_box(p.scene)) {
+    p.scene.items.emplace_back(back_edges(shown.box, p.camera));
+    p.box_behind = shown.box;
+  }
   return p;
 }
 
@@ -84,9 +88,12 @@ Picture draw_prepared(const PreparedPicture& prepared, const StatedPicture& stat
   picture.notes = prepared.notes, picture.legends = shown[0].legends;
   if (!in_panels(stated.picture)) {
     const Panel panel = panel_of(prepared, stated);
+    if (options.on_panel && !options.on_panel(panel, stated)) return picture;
     draw_drafts(panel.scene, panel.camera, stated, panel.annotation, options, picture, context);
     return picture;
   }
+  if (options.on_panel)
+    fail_usage("a page shows one picture, not several panels", "layout", "leave out layout and views: its buttons turn to every side");
   const std::vector<std::string>& views = stated.picture.views;
   const size_t count = views.empty() ? shown.size() : views.size();
   Annotation around = annotation_of(stated, shown[0], prepared.camera);

@@ -7,6 +7,7 @@
 #include "base/text/text.h"
 #include "color/parse_color.h"
 #include "pipeline/film/film_params.h"
+#include "pipeline/offline/page_params.h"
 #include "pipeline/picture/picture_notes.h"
 #include "pipeline/picture/picture_parts.h"
 #include "pipeline/picture/prepare.h"
@@ -74,6 +75,8 @@ PipelineVocabulary picture_vocabulary() {
   };
   FilmParams film;
   add(schema_of(film));
+  PageParams page;
+  add(schema_of(page));
   PictureParams p;
   add(schema_of(p));
   return v;

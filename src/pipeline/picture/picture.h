@@ -42,6 +42,8 @@ void parse_size(const std::string& text, int& width, int& height);
 PipelineVocabulary picture_vocabulary();
 
 struct Picture;
+struct Panel;
+struct StatedPicture;
 
 /// One of several pictures of a volume that memory does not hold.
 struct PictureDraft {
@@ -60,7 +62,9 @@ struct PictureOptions {
   /// others.
   std::function<void(const Picture&, const PictureDraft&)> on_draft;
   std::optional<std::chrono::steady_clock::time_point> until;  ///< with on_draft: then the finest picture so far is returned
-  StepResults results;                                         ///< at hand, see build_graph()
+  /// What is about to be drawn; false: it is not, and the picture has no pixels. Throws Error(usage) for a picture of several panels.
+  std::function<bool(const Panel&, const StatedPicture&)> on_panel;
+  StepResults results;                ///< at hand, see build_graph()
   std::vector<std::string> coloring;  ///< words added to every way to show that colours by a field ("field=T", "map=ember")
 };
 

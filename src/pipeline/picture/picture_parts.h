@@ -71,7 +71,9 @@ struct Panel {
   Scene scene;
   Camera camera;
   Annotation annotation;
-  bool box_edges = false;  ///< the last item of the scene is back_edges()
+  CameraDefaults around;           ///< what named views mean
+  double margin = 0;               ///< share of the picture that views leave free at each side
+  std::optional<Box3> box_behind;  ///< the last item of the scene is back_edges() of it
 };
 struct NamedPanel {
   std::string title;

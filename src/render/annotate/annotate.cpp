@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "render/annotate/annotation_plan.h"
 #include "render/annotate/axes.h"
 #include "render/annotate/legend/legend.h"
 #include "render/annotate/overlay/overlay.h"
@@ -23,16 +24,10 @@ double font_size(const Annotation& a, int width, int height) {
   return std::max(9.0, 15 * lines / 720) * (a.scale > 0 ? a.scale : 1);
 }
 
-struct Plan {
-  double font;
-  TextStyle title_style;
-  Rect title;
-  double caption = 0;  ///< height that it takes below legends; 0: it stands in the picture
-  std::vector<LegendLayout> legends;
-};
+}  // namespace
 
-Plan plan(const Overlay& o, const Annotation& a, int width, int height) {
-  Plan p;
+AnnotationPlan plan_annotation(const Overlay& o, const Annotation& a, int width, int height) {
+  AnnotationPlan p;
   p.font = font_size(a, width, height);
   double top = 0;
   if (!a.title.empty()) {
@@ -53,7 +48,9 @@ Plan plan(const Overlay& o, const Annotation& a, int width, int height) {
   return p;
 }
 
-LegendRoom room_of(const Plan& p, const Annotation& a) {
+namespace {
+
+LegendRoom room_of(const AnnotationPlan& p, const Annotation& a) {
   const auto at = [&](LegendPlace side) { return legends_width(p.legends, side); };
   LegendRoom r{int(std::ceil(at(LegendPlace::left))), int(std::ceil(at(LegendPlace::right))), 0, 0};
   if (const double top = at(LegendPlace::top); top > 0) r.top = int(std::ceil((a.title.empty() ? 0 : p.title.bottom()) + top));
@@ -61,7 +58,7 @@ LegendRoom room_of(const Plan& p, const Annotation& a) {
   return r;
 }
 
-Rect area_of(const Plan& p, const Annotation& a, int width, int height) {
+Rect area_of(const AnnotationPlan& p, const Annotation& a, int width, int height) {
   const LegendRoom room = room_of(p, a);
   const double top = room.top > 0 ? room.top : a.title.empty() ? 0 : std::ceil(p.title.bottom());
   return {double(room.left), top, std::max(1.0, double(width - room.left - room.right)), std::max(1.0, height - top - room.bottom)};
@@ -72,12 +69,12 @@ Rect area_of(const Plan& p, const Annotation& a, int width, int height) {
 LegendRoom legend_room(const Annotation& a, int width, int height) {
   if (a.legends.empty()) return {};
   const Overlay measuring(1, 1, a.dark_background);
-  return room_of(plan(measuring, a, width, height), a);
+  return room_of(plan_annotation(measuring, a, width, height), a);
 }
 
 Rect area_beside(const Annotation& a, int width, int height) {
   const Overlay measuring(1, 1, a.dark_background);
-  return area_of(plan(measuring, a, width, height), a, width, height);
+  return area_of(plan_annotation(measuring, a, width, height), a, width, height);
 }
 
 void annotate(Image& image, const Annotation& a, const Projection& projection, int x, int y) {
@@ -85,7 +82,7 @@ void annotate(Image& image, const Annotation& a, const Projection& projection, i
     fail_usage(fmt::format("an image of {} channels cannot be annotated", image.channels), "annotate", "3 or 4 channels are needed");
   if (image.width < 1 || image.height < 1) fail_usage("an image without pixels cannot be annotated", "annotate");
   Overlay overlay(image.width, image.height, a.dark_background);
-  const Plan p = plan(overlay, a, image.width, image.height);
+  const AnnotationPlan p = plan_annotation(overlay, a, image.width, image.height);
 
   // What must not be written over, in order of importance: title, legends, sides of the patient, triad, notes, axes.
   std::vector<Rect> taken;

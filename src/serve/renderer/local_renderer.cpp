@@ -9,10 +9,12 @@
 #include "base/file/file.h"
 #include "image/codec.h"
 #include "image/enlarge.h"
+#include "pipeline/catalog/catalog.h"
 #include "render/render.h"
 #include "serve/renderer/quality.h"
 #include "serve/renderer/questions.h"
 #include "serve/renderer/tell.h"
+#include "serve/renderer/wish.h"
 
 namespace sg::serve {
 
@@ -37,7 +39,7 @@ std::shared_ptr<const std::string> png_of(const Image& image) {
 std::vector<std::string> with_view(const std::vector<std::string>& words, const DrawRequest& request) {
   std::vector<std::string> r;
   for (const std::string& w : words)
-    if (!w.starts_with("size=") && !(request.camera && (w.starts_with("camera.") || w.starts_with("camera=")))) r.push_back(w);
+    if (!w.starts_with("size=") && !(request.camera && w.substr(0, w.find_first_of(".=")) == word_of(EntryKind::camera))) r.push_back(w);
   r.push_back("size=" + std::to_string(request.width) + "x" + std::to_string(request.height));
   if (request.camera)
     for (const std::string& w : camera_texts(*request.camera)) r.push_back("camera." + w);
@@ -131,7 +133,7 @@ DrawnView LocalRenderer::draw_moving(const PreparedPicture& prepared, const Stat
   options.height = std::max(1, int(std::ceil(area.height / drawn.coarse)));
   options.samples = 1;
   const auto begin = std::chrono::steady_clock::now();
-  const Frame frame = panel.box_edges && has_volume(panel.scene)
+  const Frame frame = panel.box_behind && has_volume(panel.scene)
                           ? draw_over_edges(panel, options, context)
                           : render(rough(panel.scene, Quality::moving), panel.camera, options, context);
   learn(seconds_since(begin) / (double(options.width) * options.height), seconds_per_sample);
@@ -193,7 +195,7 @@ std::string LocalRenderer::save(const DrawRequest& request, const std::string& n
 
 Json::Members LocalRenderer::answer(const Json& question, Context& context) {
   const auto now = loaded();
-  if (question["do"].text() != "probe") return answer_about_steps(question, now->file, now->prepared, cache_, context);
+  if (wish_of(question) != Wish::probe) return answer_about_steps(question, now->file, now->prepared, cache_, context);
   std::shared_ptr<const Planes> planes;
   {
     const std::lock_guard lock(mutex_);

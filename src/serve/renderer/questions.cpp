@@ -13,6 +13,7 @@
 #include "filter/probe/probe.h"
 #include "scene/choose/histogram.h"
 #include "serve/renderer/transfer_questions.h"
+#include "serve/renderer/wish.h"
 
 namespace sg::serve {
 
@@ -71,7 +72,7 @@ std::vector<Json> values_at(const DatasetPtr& d, Vec3 at, Context& context) {
 }
 
 Json::Members answer_rows(const Json& q, const Data& data) {
-  const bool cells = q["on"].text() == "cell";
+  const bool cells = q["on"].text() == association_name(Association::cell);
   const size_t from = q["from"].whole(), wanted = std::min<size_t>(q["count"].whole(), most_rows);
   std::vector<const Field*> fields;
   std::vector<std::string> columns;
@@ -193,14 +194,14 @@ Json::Members probe_picture(const DrawnPlanes& drawn, double x, double y, const 
 
 Json::Members answer_about_steps(const Json& question, const PipelineFile& file, const PreparedPicture& prepared,
                                  const std::shared_ptr<Cache>& cache, Context& context) {
-  const std::string& what = question["do"].text();
-  if (what == "proposals") return answer_proposals(question, prepared, context);
-  if (what == "plane") return answer_plane(question, prepared, context);
+  const auto wish = wish_of(question);
+  if (wish == Wish::proposals) return answer_proposals(question, prepared, context);
+  if (wish == Wish::plane) return answer_plane(question, prepared, context);
   const Data data = result_of(file, bytes_of_text(question["step"].text()), cache, context);
-  if (what == "rows") return answer_rows(question, data);
-  if (what == "line") return answer_line(question, data, context);
-  if (what == "histogram") return answer_histogram(question, data, context);
-  fail_usage(fmt::format("'{}' is no question", what), "question", "docs/protocol.md has them");
+  if (wish == Wish::rows) return answer_rows(question, data);
+  if (wish == Wish::line) return answer_line(question, data, context);
+  if (wish == Wish::histogram) return answer_histogram(question, data, context);
+  fail_usage("that is no question", "question", "docs/protocol.md has them");
 }
 
 }  // namespace sg::serve

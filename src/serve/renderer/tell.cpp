@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/text/utf8.h"
 #include "data/lattice.h"
+#include "pipeline/catalog/catalog.h"
 #include "serve/renderer/tell_transfer.h"
 #include "serve/renderer/view_camera.h"
 
@@ -93,7 +94,7 @@ Json::Members show_members(const PipelineFile& file, size_t i) {
 Json picture_json(const PipelineFile& file) {
   std::vector<std::string> words;
   for (const std::string& w : file.picture)
-    if (!w.starts_with("camera")) words.push_back(w);
+    if (w.substr(0, w.find_first_of(".=")) != word_of(EntryKind::camera)) words.push_back(w);
   return words_json(words);
 }
 

@@ -73,4 +73,10 @@ ViewCamera camera_from(const Json& json) {
   return c;
 }
 
+std::optional<ViewCamera> stated_camera(const Json& message) {
+  const Json& camera = message["camera"];
+  if (camera.is_null()) return std::nullopt;
+  return camera_from(camera);
+}
+
 }  // namespace sg::serve

@@ -25,5 +25,7 @@ std::vector<std::string> camera_texts(const ViewCamera& camera);
 Json camera_json(const ViewCamera& camera);
 /// Throws Error(usage) for numbers that are no camera.
 ViewCamera camera_from(const Json& json);
+/// "camera" of a message; nothing where it has none.
+std::optional<ViewCamera> stated_camera(const Json& message);
 
 }  // namespace sg::serve

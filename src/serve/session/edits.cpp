@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 
 #include "base/error.h"
 #include "base/schema/file_params.h"
@@ -11,6 +12,7 @@
 #include "base/text/utf8.h"
 #include "color/map_files/colormap_file.h"
 #include "io/options.h"
+#include "pipeline/catalog/catalog.h"
 #include "pipeline/file/transfer_file.h"
 #include "pipeline/picture/picture.h"
 #include "scene/show/show.h"
@@ -30,16 +32,19 @@ ParamSet params_of_show(const std::string& kind) {
   return find_show(kind).make_params();
 }
 
+enum class Addition { step, show };
+constexpr auto enum_words(Addition) { return std::array{Word{"step", Addition::step}, Word{"show", Addition::show}}; }
+
 class Editing {
  public:
   Editing(PipelineFile& file, std::vector<EditMistake>& mistakes) : file_(file), mistakes_(mistakes) {}
 
   void make(const Json& edit) {
-    const std::string& add = edit["add"].text();
+    const auto adds = value_of_word<Addition>(edit["add"].text());
     if (edit.contains("at")) set(edit["at"].text(), edit["set"]);
     else if (edit.contains("remove")) remove(edit["remove"].text());
-    else if (add == "step") add_step(edit);
-    else if (add == "show") add_show(edit);
+    else if (adds == Addition::step) add_step(edit);
+    else if (adds == Addition::show) add_show(edit);
     else mistake("", "", "an edit has 'at' and 'set', 'add' or 'remove'");
   }
 
@@ -85,7 +90,7 @@ class Editing {
 
   void set(const std::string& at, const Json& words) {
     try {
-      if (at == "picture") {
+      if (at == word_of(EntryKind::picture)) {
         PictureParams picture;
         Schema schema = schema_of(picture);
         set_words(at, words, schema, file_.picture);

@@ -17,7 +17,7 @@ Json request_json(const DrawRequest& r) {
 DrawRequest request_from(const Json& json) {
   DrawRequest r;
   r.view = int(json["view"].number()), r.width = int(json["width"].number()), r.height = int(json["height"].number());
-  if (!json["camera"].is_null()) r.camera = camera_from(json["camera"]);
+  r.camera = stated_camera(json);
   r.part = json["part"].boolean(), r.quality = Quality(int(json["quality"].number()));
   return r;
 }

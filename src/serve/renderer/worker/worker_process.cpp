@@ -36,8 +36,8 @@ class Worker {
         if (it != contexts_.end()) it->second->cancel();
         continue;
       }
-      const std::string& call = head["call"].text();
-      (call == "answer" || call == "save" ? answering_ : drawing_).calls.push_back(head);
+      const auto call = value_of_word<Call>(head["call"].text());
+      (call == Call::answer || call == Call::save ? answering_ : drawing_).calls.push_back(head);
       contexts_[head["id"].whole()] = std::make_unique<Context>();
       wake_.notify_all();
     }
@@ -90,8 +90,8 @@ class Worker {
   }
 
   void do_call(const Json& call, Json::Members& reply, std::string& bytes, Context& context) {
-    const std::string& what = call["call"].text();
-    if (what == "start") {
+    const auto what = value_of_word<Call>(call["call"].text());
+    if (what == Call::start) {
       std::vector<std::string> coloring;
       for (const Json& w : call["coloring"].items()) coloring.push_back(bytes_of_text(w.text()));
       if (call["memory"].whole() > 0) set_memory_limit(call["memory"].whole());
@@ -100,20 +100,20 @@ class Worker {
       fence.who = "a window";
       if (!fence.read_below.empty()) set_file_fence(std::move(fence));
       renderer_ = std::make_unique<LocalRenderer>(allowed_memory() / 2, std::move(coloring));
-    } else if (what == "load") {
+    } else if (what == Call::load) {
       const PipelineFile file =
           parse_pipeline(bytes_of_text(call["pipeline"].text()), bytes_of_text(call["origin"].text()), picture_vocabulary());
       reply.emplace_back("pipeline", text(emit_pipeline(renderer_->load(file, context))));
-    } else if (what == "tell") {
+    } else if (what == Call::tell) {
       reply.emplace_back("members", Json(renderer_->tell(context)));
-    } else if (what == "draw") {
+    } else if (what == Call::draw) {
       const DrawnView drawn = renderer_->draw(request_from(call["request"]), context);
       reply.emplace_back("drawn", drawn_json(drawn)), bytes = *drawn.bytes;
-    } else if (what == "forget") {
+    } else if (what == Call::forget) {
       renderer_->forget(int(call["view"].number()));
-    } else if (what == "answer") {
+    } else if (what == Call::answer) {
       reply.emplace_back("members", Json(renderer_->answer(call["question"], context)));
-    } else if (what == "save") {
+    } else if (what == Call::save) {
       bytes = renderer_->save(request_from(call["request"]), bytes_of_text(call["name"].text()), context);
     }
   }

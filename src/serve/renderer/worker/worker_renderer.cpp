@@ -24,6 +24,8 @@ constexpr auto glance = std::chrono::milliseconds(5);  // at whether a call was 
 constexpr auto patience = std::chrono::seconds(10);    // with a worker that does not stop when it is told to
 constexpr int socket_there = 3;                        // the descriptor in the worker
 
+Json word(Call call) { return text(std::string(word_of(call))); }
+
 }  // namespace
 
 // A started worker, and the thread that takes in what it says.
@@ -75,7 +77,7 @@ struct WorkerRenderer::Process {
     came.notify_all();
   }
 
-  struct Call {
+  struct Waiting {
     std::optional<ChannelMessage> reply;
     bool told = false;
     double share = 0;
@@ -85,7 +87,7 @@ struct WorkerRenderer::Process {
   std::unique_ptr<Channel> channel;
   std::mutex mutex;
   std::condition_variable came;
-  std::map<uint64_t, Call> calls;
+  std::map<uint64_t, Waiting> calls;
   uint64_t last_id = 0;
   bool ended = false;
   std::thread listener;
@@ -143,7 +145,7 @@ std::shared_ptr<WorkerRenderer::Process> WorkerRenderer::started(Context& contex
     if (!process_->ended) return process_;
   }
   process_ = std::make_shared<Process>(options_.command);
-  process_->call({{"call", text("start")},
+  process_->call({{"call", word(Call::start)},
                   {"coloring", list(options_.coloring)},
                   {"folders", list(options_.folders)},
                   {"memory", Json(options_.memory)}},
@@ -155,7 +157,7 @@ std::shared_ptr<WorkerRenderer::Process> WorkerRenderer::started(Context& contex
 ChannelMessage WorkerRenderer::call(Json::Members message, Context& context) { return started(context)->call(std::move(message), context); }
 
 PipelineFile WorkerRenderer::load(const PipelineFile& pipeline, Context& context) {
-  const Json::Members message{{"call", text("load")}, {"pipeline", text(emit_pipeline(pipeline))}, {"origin", text(pipeline.origin)}};
+  const Json::Members message{{"call", word(Call::load)}, {"pipeline", text(emit_pipeline(pipeline))}, {"origin", text(pipeline.origin)}};
   const ChannelMessage reply = call(message, context);
   {
     const std::lock_guard lock(mutex_);
@@ -166,27 +168,27 @@ PipelineFile WorkerRenderer::load(const PipelineFile& pipeline, Context& context
   return completed;
 }
 
-Json::Members WorkerRenderer::tell(Context& context) { return call({{"call", text("tell")}}, context).head["members"].members(); }
+Json::Members WorkerRenderer::tell(Context& context) { return call({{"call", word(Call::tell)}}, context).head["members"].members(); }
 
 DrawnView WorkerRenderer::draw(const DrawRequest& request, Context& context) {
-  ChannelMessage reply = call({{"call", text("draw")}, {"request", request_json(request)}}, context);
+  ChannelMessage reply = call({{"call", word(Call::draw)}, {"request", request_json(request)}}, context);
   return drawn_from(reply.head["drawn"], std::move(reply.bytes));
 }
 
 void WorkerRenderer::forget(int view) {
   Context context;
   try {
-    call({{"call", text("forget")}, {"view", Json(int64_t(view))}}, context);
+    call({{"call", word(Call::forget)}, {"view", Json(int64_t(view))}}, context);
   } catch (const Error&) {  // a worker that has ended has forgotten
   }
 }
 
 Json::Members WorkerRenderer::answer(const Json& question, Context& context) {
-  return call({{"call", text("answer")}, {"question", question}}, context).head["members"].members();
+  return call({{"call", word(Call::answer)}, {"question", question}}, context).head["members"].members();
 }
 
 std::string WorkerRenderer::save(const DrawRequest& request, const std::string& name, Context& context) {
-  return call({{"call", text("save")}, {"request", request_json(request)}, {"name", text(name)}}, context).bytes;
+  return call({{"call", word(Call::save)}, {"request", request_json(request)}, {"name", text(name)}}, context).bytes;
 }
 
 }  // namespace sg::serve

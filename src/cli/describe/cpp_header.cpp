@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/cpp_header.h"
+#include "cli/describe/cpp_header.h"
 
 #include <fmt/format.h>
 

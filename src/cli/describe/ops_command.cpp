@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "base/text/text.h"
 #include "cli/cli.h"
-#include "cli/cpp_header.h"
+#include "cli/describe/cpp_header.h"
 #include "pipeline/catalog/catalog.h"
 #include "scene/show/other_names.h"
 
@@ -35,7 +35,8 @@ std::string overview(const std::vector<CatalogEntry>& all) {
       case EntryKind::read:
       case EntryKind::camera:
       case EntryKind::picture:
-      case EntryKind::film: others += line; break;
+      case EntryKind::film:
+      case EntryKind::page: others += line; break;
     }
   }
   return ops_help() + shows + others + "\nreadable formats\n" + formats_line(all, EntryKind::reader) + "\nwritable formats\n" +

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+// The thread that draws.
+#include "serve/session/session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <tuple>
+
+#include "base/error.h"
+#include "pipeline/picture/picture.h"
+#include "serve/renderer/tell.h"
+#include "serve/session/command_text.h"
+#include "serve/session/limits.h"
+
+namespace sg::serve {
+
+namespace {
+
+constexpr auto progress_pause = std::chrono::milliseconds(200);
+
+std::string frame_message(const DrawnView& drawn, const WantedView& view, int number, uint64_t revision, bool final) {
+  const Json header(
+      Json::Members{{"is", text("frame")},
+                    {"n", Json(view.n)},
+                    {"view", Json(int64_t(number))},
+                    {"revision", Json(revision)},
+                    {"type", text(drawn.type)},
+                    {"size", numbers({double(drawn.width), double(drawn.height)})},
+                    {"of", numbers({double(view.request.width), double(view.request.height)})},
+                    {"part", Json(drawn.part)},
+                    {"coarse", Json(drawn.coarse)},
+                    {"final", Json(final)},
+                    {"camera", camera_json(drawn.camera)},
+                    {"area", numbers({double(drawn.area[0]), double(drawn.area[1]), double(drawn.area[2]), double(drawn.area[3])})},
+                    {"milliseconds", Json(1000 * drawn.seconds)}});
+  const std::string head = header.dump();
+  std::string message;
+  message.reserve(4 + head.size() + drawn.bytes->size());
+  for (int i = 0; i < 4; ++i) message += char(head.size() >> 8 * i & 255);
+  return message + head + *drawn.bytes;
+}
+
+// Where a mistake belongs that only running has found: to what was just changed.
+EditMistake mistake_of(const Json& change, const std::string& what) {
+  EditMistake m{"", "", what};
+  const Json& edits = change["edits"];
+  if (edits.size() == 0) return m;
+  const Json& last = edits[edits.size() - 1];
+  m.at = last["at"].text();
+  if (last["set"].size() == 1) m.word = last["set"].members()[0].first;
+  return m;
+}
+
+bool shows_automatically(const PipelineFile& file) {
+  return file.show.empty() || std::any_of(file.show.begin(), file.show.end(), [](const auto& s) { return s.kind == auto_show; });
+}
+
+}  // namespace
+
+void Session::draw_thread() {
+  std::unique_lock lock(mutex_);
+  while (!stopping_) {
+    if (!changes_.empty()) {
+      const Change change = changes_.front();
+      changes_.pop_front();
+      make_change(change);
+    } else if (needs_load_) {
+      load(lock);
+    } else if (auto [client, view] = next_view(true); view) {  // a picture at once, then what is told, then better pictures
+      draw(lock, *client, *view);
+    } else if (needs_tell_) {
+      tell(lock);
+    } else if (auto [any, finer] = next_view(false); finer) {
+      draw(lock, *any, *finer);
+    } else {
+      work_.wait(lock);
+    }
+  }
+}
+
+Context& Session::begin_work(int view) {
+  running_ = std::make_unique<Context>(), running_view_ = view;
+  running_->on_progress = [this, last = std::chrono::steady_clock::time_point{}](double share, std::string_view doing) mutable {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last < progress_pause) return;
+    last = now;
+    const std::lock_guard lock(mutex_);
+    send_all({{"is", text("progress")}, {"share", number(share)}, {"doing", text(std::string(doing))}});
+  };
+  return *running_;
+}
+
+void Session::load(std::unique_lock<std::mutex>& lock) {
+  needs_load_ = false;
+  PipelineFile file = history_.now();
+  const Change change = last_change_;
+  const bool times_known = film_.has_value() && loaded_ && file.steps == good_.steps;
+  Context& context = begin_work(-1);
+  std::optional<FilmTimes> film = film_;
+  send_all({{"is", text("busy")}, {"revision", Json(revision_ + 1)}});
+  lock.unlock();
+  PipelineFile completed;
+  std::string problem;
+  bool cancelled = false;
+  try {
+    if (!times_known) try {
+        film = film_times(file, "", context);
+      } catch (const Error& e) {
+        if (e.kind() == ErrorKind::cancelled) throw;
+        film.reset();  // nothing has times
+      }
+    const bool moves = film && time_ && *time_ < film->times.size();
+    completed = renderer_->load(moves ? at_time(file, *film, *time_) : file, context);
+    // Looks that were chosen stay; a time is no part of the pipeline.
+    if (moves) {
+      if (!shows_automatically(file)) completed = file;
+    }
+  } catch (const Error& e) {
+    cancelled = e.kind() == ErrorKind::cancelled, problem = e.what();
+  } catch (const std::exception& e) {
+    problem = e.what();
+  }
+  lock.lock();
+  running_.reset();
+  if (cancelled) {
+    needs_load_ = !stopping_;
+    return;
+  }
+  if (!problem.empty()) {
+    refuse(change.client, change.message["n"].whole(), {mistake_of(change.message, problem)});
+    if (loaded_) history_.complete(good_);  // the picture before it is left standing
+    else needs_tell_ = true;                // so that the mistake can be mended
+    return;
+  }
+  history_.complete(completed);
+  good_ = std::move(completed), film_ = std::move(film), loaded_ = true, needs_tell_ = true;
+  ++revision_;
+  restart_views();
+}
+
+void Session::tell(std::unique_lock<std::mutex>& lock) {
+  needs_tell_ = false;
+  const uint64_t revision = revision_, by = last_change_.message["n"].whole();
+  const PipelineFile file = good_;
+  Context& context = begin_work(-1);
+  lock.unlock();
+  Json::Members told;
+  bool cancelled = false;
+  try {
+    told = loaded_ ? renderer_->tell(context) : tell_pipeline(file);
+  } catch (const Error& e) {
+    cancelled = e.kind() == ErrorKind::cancelled;
+    told.emplace_back("notes", list({e.what()}));
+  }
+  lock.lock();
+  running_.reset();
+  if (cancelled) {
+    needs_tell_ = true;
+    return;
+  }
+  Json::Members state{{"is", text("state")},
+                      {"revision", Json(revision)},
+                      {"by", Json(by)},
+                      {"can_undo", Json(history_.can_undo())},
+                      {"can_redo", Json(history_.can_redo())},
+                      {"title", text(title_)},
+                      {"pipeline", text(emit_pipeline(without_lent(file)))},
+                      {"command", text(command_text(file))}};
+  state.insert(state.end(), told.begin(), told.end());
+  std::vector<Json> times;
+  for (size_t i = 0; film_ && i < film_->times.size(); ++i) times.push_back(number(film_->times[i]));
+  state.emplace_back("times", Json(std::move(times)));
+  state.emplace_back("time", film_ && time_ && *time_ < film_->times.size() ? number(film_->times[*time_]) : Json());
+  state_ = Json(state).dump();
+  for (const auto& [id, client] : clients_) {
+    Json::Members own = state;
+    own.emplace_back("may_edit", Json(client->rights == Rights::edit));
+    send(id, own);
+  }
+}
+
+// The view that has waited longest, moving ones and first pictures before others.
+std::pair<Client*, WantedView*> Session::next_view(bool coarse_only) {
+  std::pair<Client*, WantedView*> best{nullptr, nullptr};
+  if (!loaded_) return best;
+  const auto rank = [](const WantedView& v) { return std::tuple(v.next != Quality::moving, !v.moving, v.served); };
+  for (auto& [id, client] : clients_)
+    for (auto& [number, view] : client->views) {
+      if (!view.due || view.on_its_way || (coarse_only && view.next != Quality::moving)) continue;
+      if (!best.second || rank(view) < rank(*best.second)) best = {client.get(), &view};
+    }
+  return best;
+}
+
+void Session::draw(std::unique_lock<std::mutex>& lock, Client& client, WantedView& wanted) {
+  const int id = client.id, renderer_view = wanted.request.view;
+  WantedView view = wanted;
+  const uint64_t revision = revision_;
+  view.request.quality = view.next, view.request.part = view.base == revision;
+  Context& context = begin_work(renderer_view);
+  lock.unlock();
+  DrawnView drawn;
+  std::string problem;
+  bool cancelled = false;
+  try {
+    drawn = renderer_->draw(view.request, context);
+  } catch (const Error& e) {
+    cancelled = e.kind() == ErrorKind::cancelled, problem = e.what();
+  } catch (const std::exception& e) {
+    problem = e.what();
+  }
+  const bool final = view.next == Quality::exact;
+  std::shared_ptr<const std::string> message;
+  if (problem.empty() && !cancelled)
+    message = std::make_shared<const std::string>(frame_message(drawn, view, renderer_view % most_views, revision, final));
+  lock.lock();
+  running_.reset();
+  const auto it = clients_.find(id);
+  if (it == clients_.end()) {
+    renderer_->forget(renderer_view);
+    return;
+  }
+  WantedView& now = it->second->views[renderer_view % most_views];
+  now.served = std::chrono::steady_clock::now();
+  if (cancelled) return;
+  const bool newer = now.n != view.n;
+  if (!problem.empty()) {
+    if (!newer) now.due = false;
+    refuse(id, view.n, {{"", "", problem}});
+    return;
+  }
+  if (newer && !(now.moving && view.moving)) return;  // another view is wanted; while both move, late is better than nothing
+  now.on_its_way = it->second->socket->send_binary(message);
+  if (newer || now.next != view.next) return;
+  if (view.moving || final) now.due = false;
+  else now.next = view.next == Quality::moving ? Quality::draft : Quality::exact;
+}
+
+}  // namespace sg::serve

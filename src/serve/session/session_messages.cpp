@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// What comes in.
+#include "serve/session/session.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/text/utf8.h"
+#include "pipeline/picture/picture.h"
+#include "serve/renderer/tell.h"
+#include "serve/renderer/wish.h"
+#include "serve/session/limits.h"
+
+namespace sg::serve {
+
+namespace {
+
+// Which words edits set, as one text: "show/0 opacity;".
+std::string words_of(const Json& edits) {
+  std::string words;
+  for (size_t i = 0; i < edits.size(); ++i) {
+    words += edits[i]["at"].text();
+    for (const auto& [word, value] : edits[i]["set"].members()) words += " " + word;
+    words += ";";
+  }
+  return words;
+}
+
+}  // namespace
+
+void Session::take_message(int id, std::string_view words) {
+  Json message;
+  try {
+    message = parse_json(words, "message");
+  } catch (const Error& e) {
+    const std::lock_guard lock(mutex_);
+    return refuse(id, 0, {{"", "", e.what()}});
+  }
+  const std::lock_guard lock(mutex_);
+  const auto it = clients_.find(id);
+  if (it == clients_.end()) return;
+  Client& client = *it->second;
+  try {
+    const auto wish = wish_of(message);
+    if (!wish) fail_usage(fmt::format("'{}' is no message", printable(message["do"].text())));
+    if (*wish == Wish::draw) {
+      take_draw(client, message);
+    } else if (*wish == Wish::shown) {
+      const auto view = client.views.find(int(message["view"].number()));
+      if (view != client.views.end()) view->second.on_its_way = false;
+    } else if (*wish == Wish::cursor) {
+      take_cursor(client, message);
+    } else if (changes(*wish)) {
+      if (client.rights != Rights::edit) fail_usage("this window may look, but not change anything");
+      if (changes_.size() >= most_changes) fail_usage("there are more edits than can be made");
+      changes_.push_back({id, message});
+      if (running_) running_->cancel();
+    } else {
+      // Of what is asked while the mouse moves only the last counts.
+      if (*wish == Wish::probe)
+        std::erase_if(questions_, [&](const Question& q) { return q.client == id && wish_of(q.message) == Wish::probe; });
+      if (questions_.size() >= most_questions) fail_usage("there are more questions than can be answered");
+      questions_.push_back({id, message});
+      questions_wait_.notify_one();
+    }
+  } catch (const Error& e) {
+    refuse(id, message["n"].whole(), {{"", "", e.what()}});
+  }
+  work_.notify_one();
+}
+
+void Session::take_draw(Client& client, const Json& message) {
+  const int number = int(message["view"].number());
+  if (number < 0 || number >= most_views) fail_usage(fmt::format("a window has views 0 to {}", most_views - 1));
+  const double width = message["size"][0].number(), height = message["size"][1].number();
+  if (!(width >= 1 && height >= 1 && width <= 32768 && height <= 32768 && width * height <= most_pixels))
+    fail_usage("the size of a view is out of bounds", "size", "two numbers from 1 on, 4096 x 4096 pixels at most");
+  const std::optional<ViewCamera> camera = stated_camera(message);
+  WantedView& view = client.views[number];
+  const bool moving = message["moving"].boolean();
+  // What was drawn while the view moved serves as the first picture of the view at rest.
+  const bool same = view.request.camera == camera && view.request.width == int(width) && view.request.height == int(height);
+  const bool has_first = same && view.moving && !view.due;
+  view.request = {client.id * most_views + number, int(width), int(height), camera, Quality::moving, false};
+  view.base = message["base"].whole();
+  view.n = message["n"].whole(), view.moving = moving;
+  view.restart();
+  if (has_first && !moving) view.next = Quality::draft;
+  interrupt(view.request.view);
+}
+
+void Session::take_cursor(Client& client, const Json& message) {
+  Json::Members cursor{{"id", Json(int64_t(client.id))},
+                       {"view", Json(int64_t(message["view"].number()))},
+                       {"at", numbers({message["at"][0].number(), message["at"][1].number()})}};
+  if (const auto camera = stated_camera(message)) cursor.emplace_back("camera", camera_json(*camera));
+  client.cursor = Json(std::move(cursor)).dump();
+  tell_people();
+}
+
+void Session::interrupt(int view) {
+  if (running_ && running_view_ == view) running_->cancel();
+}
+
+void Session::restart_views() {
+  for (auto& [id, client] : clients_)
+    for (auto& [number, view] : client->views) view.restart();
+}
+
+void Session::make_change(const Change& change) {
+  const Json& m = change.message;
+  const Wish wish = wish_of(m).value_or(Wish::edit);
+  const uint64_t n = m["n"].whole();
+  if (wish == Wish::undo) {
+    history_.undo();
+  } else if (wish == Wish::redo) {
+    history_.redo();
+  } else if (wish == Wish::time) {
+    const double t = m["time"].number();
+    if (!film_ || film_->times.empty()) return refuse(change.client, n, {{"", "", "nothing here changes with time"}});
+    const auto& times = film_->times;
+    const auto nearest =
+        std::min_element(times.begin(), times.end(), [&](double a, double b) { return std::abs(a - t) < std::abs(b - t); });
+    time_ = size_t(nearest - times.begin());
+  } else {
+    std::vector<EditMistake> mistakes;
+    PipelineFile next;
+    try {
+      if (wish == Wish::pipeline) next = parse_pipeline(bytes_of_text(m["text"].text()), history_.now().origin, picture_vocabulary());
+      else next = edited(history_.now(), m["edits"], mistakes);
+      if (mistakes.empty()) mistakes = forbidden(good_, next);
+    } catch (const Error& e) {
+      mistakes.push_back({"", "", e.what()});
+    }
+    if (!mistakes.empty()) return refuse(change.client, n, mistakes);
+    history_.change(std::move(next), m["live"].boolean(), words_of(m["edits"]));
+  }
+  last_change_ = change, needs_load_ = true;
+}
+
+}  // namespace sg::serve
