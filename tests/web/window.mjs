@@ -2,6 +2,7 @@
 // node tests/web/window.mjs [--mock]: see README.md
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
+import { basename, dirname } from "node:path";
 import { gzipSync } from "node:zlib";
 import { accessibility, phone } from "./access.mjs";
 import { andSettle, cleanUp, dataFile, dragOn, launch, middleOf, openPage, options, seen, serve, seriesFile, settled, shot } from "./browser.mjs";
@@ -192,7 +193,7 @@ await test("a contour is added by search, its value dragged, and a mistake stand
   await settled(page);
 });
 
-await test("the pipeline forks in the graph, steps tell times and bytes, and one in use is not removed", async () => {
+await test("the pipeline forks in the graph, steps tell their bytes and times", async () => {
   await tab("steps");
   const steps = await page.locator(".item").count();
   await page.locator(".item-name").first().click();
@@ -344,6 +345,19 @@ await test("no script failed, and the content security policy refused nothing", 
 
 await accessibility(test, o, browser, page, address);
 await phone(test, o, page, address);
+
+if (!o.url && !o.mock) {
+  await test("a served folder lists its files, and one is opened from it", async () => {
+    const folder = await serve(o, dirname(dataFile(o)), { SERVE: "1" });
+    const other = await openPage(browser, folder.url, {}, (p) => p.waitForSelector(".file-list"));
+    await shot(o, other, "files");
+    await other.click(`.file-list a:has-text("${basename(dataFile(o))}")`);
+    await settled(other);
+    assert.ok((await seen(other)).colors > 10);
+    assert.deepEqual(other.faults, []);
+    folder.stop();
+  });
+}
 
 if (!o.url) {
   const series = await serve(o, seriesFile(o), { MOCK_TIMES: "1" });

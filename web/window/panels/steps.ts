@@ -65,6 +65,7 @@ function details(app: App, s: Step): TemplateResult {
       <button class="small" @click=${() => app.open("table")}>Table</button>
       <button class="icon small" aria-label="Remove ${s.name}" title="Remove" ?disabled=${!app.state!.may_edit || s.from.length === 0} @click=${() => app.session.edit([{ remove: at }])}>${icon("close")}</button>
     </div>
+    ${app.session.edits.problem(at, "") ? html`<p class="problem" role="alert">${app.session.edits.problem(at, "")}</p>` : nothing}
     <p class="quiet">${entry?.sentence ?? s.operation}</p>
     <p class="facts">${s.kind ?? "not run yet"}${s.size ? html` · ${s.size}` : nothing} · ${seconds(s.seconds)} · ${bytes(s.bytes)}</p>
     ${s.fields && s.fields.length > 0
