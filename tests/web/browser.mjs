@@ -53,7 +53,7 @@ export async function serve(o, file, env = {}) {
   const port = 20000 + Math.floor(Math.random() * 20000);
   const command = o.mock
     ? [process.execPath, join(root, "web/window/mock/server.mjs"), "--program", o.program, "--port", String(port), file]
-    : [o.program, "view", file, "--no-browser", "--port", String(port)];
+    : [o.program, ...(env.SERVE ? ["serve", file] : ["view", file, "--no-browser"]), "--port", String(port)];
   const child = spawn(command[0], command.slice(1), { env: { ...process.env, ...env }, stdio: ["ignore", "pipe", "pipe"] });
   started.push(child);
   let printed = "";
@@ -82,7 +82,7 @@ export function cleanUp() {
 export const launch = () => chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox", "--disable-features=LocalNetworkAccessChecks"] });
 
 /** A page whose errors, and what the content security policy refuses, are kept in `page.faults`. */
-export async function openPage(browser, url, settings = {}) {
+export async function openPage(browser, url, settings = {}, ready = settled) {
   const context = await browser.newContext({ viewport: { width: 1024, height: 640 }, acceptDownloads: true, ...settings });
   if (options().dist) await ownPage(context);
   const page = await context.newPage();
@@ -90,7 +90,7 @@ export async function openPage(browser, url, settings = {}) {
   page.on("pageerror", (e) => page.faults.push(e.message));
   page.on("console", (m) => m.type() === "error" && !/WebSocket|ERR_/.test(m.text()) && page.faults.push(m.text()));
   await page.goto(url);
-  await settled(page);
+  await ready(page);
   return page;
 }
 
@@ -102,7 +102,7 @@ export async function ownPage(context) {
   const send = (route, name) =>
     route.fulfill({ status: 200, contentType: types[name.split(".").pop()], headers: { "Content-Security-Policy": policy }, body: readFileSync(join(dist, name)) });
   await context.route(/\/assets\/[\w.]+$/, (route) => send(route, new URL(route.request().url()).pathname.slice(1)));
-  await context.route(/^http:\/\/[^/]+\/$/, (route) => send(route, "index.html"));
+  await context.route(/^http:\/\/[^/]+\/(\?(open|below)=.*)?$/, (route) => send(route, "index.html"));
 }
 
 /** Waits until every view shows the final picture of what was asked last. */

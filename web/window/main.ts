@@ -3,20 +3,24 @@
 import "./theme.css";
 import { App } from "./app";
 import type { Catalog } from "./catalog";
+import { chooser, listing } from "./chooser";
 import { draw } from "./shell";
-import { followSystem } from "./theme";
+import { applyTheme, followSystem } from "./theme";
 
 async function start(): Promise<void> {
   const root = document.getElementById("app")!;
+  applyTheme();
   try {
     const answer = await fetch("/catalog.json", { credentials: "same-origin" });
     if (answer.status === 401 || answer.status === 403) throw new Error("This address needs its token: use the whole address that sightglass printed.");
     if (!answer.ok) throw new Error(`The server answered ${answer.status} to /catalog.json`);
     const catalog = (await answer.json()) as Catalog;
     const open = new URLSearchParams(location.search).get("open");
+    // A server of a folder needs a file's name; one that was started on files has none to list.
+    if (!open && (await listing(""))) return await chooser(root);
     const url = `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/socket${open ? `?open=${encodeURIComponent(open)}` : ""}`;
     root.replaceChildren();
-    const app = new App(catalog, url, (a) => draw(a, root));
+    const app: App = new App(catalog, url, (a) => draw(a, root));
     followSystem(() => app.changed());
     app.changed();
   } catch (error) {

@@ -33,6 +33,7 @@ function shell(app: App): TemplateResult {
   return html`<div class="window ${app.panelOpen ? "with-panel" : ""}">
     <header class="bar">
       <h1 title=${s?.title ?? ""}><img src=${iconUrl} alt="" width="20" height="20" /><span>${s?.title || "Sightglass"}</span></h1>
+      ${new URLSearchParams(location.search).has("open") ? html`<a class="button small" href="/">Files</a>` : nothing}
       <span class="grow"></span>
       ${bar("undo", "undo", "Undo", !s?.can_undo)}${bar("redo", "redo", "Redo", !s?.can_redo)}
       ${bar("add", "add", "Add an operation", !s?.may_edit)}${bar("save", "save", "Save the picture")}
@@ -48,7 +49,7 @@ function shell(app: App): TemplateResult {
       ${status(app)}
     </main>
     ${app.panelOpen ? panel(app) : nothing}
-    ${app.session.connected === "lost" ? html`<div class="banner" role="alert">The connection was lost; trying again …</div>` : nothing}
+    ${app.session.connected === "lost" ? html`<div class="banner" role="alert">The connection was lost; trying again … If the server was ended, start it again and open the address that it prints.</div>` : nothing}
     <div class="toast ${app.message ? "on" : ""}" role="status" aria-live="polite">${app.message}</div>
     ${app.dialog === "help" ? helpDialog(app) : app.dialog === "add" ? addDialog(app) : app.dialog === "save" ? saveDialog(app) : app.dialog === "legend" ? legendDialog(app) : nothing}
   </div>`;

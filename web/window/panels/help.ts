@@ -18,7 +18,7 @@ const shown = (key: string): string =>
   key.replace("Arrow", "").replace("Control", "Ctrl").replace(/(^|\+)Left$/, "$1←").replace(/(^|\+)Right$/, "$1→").replace(/(^|\+)Up$/, "$1↑").replace(/(^|\+)Down$/, "$1↓");
 
 export function helpDialog(app: App): TemplateResult {
-  return dialog(app, "Help", html`<div class="help-columns">
+  return dialog(app, "Help", html`<div class="help-columns" tabindex="0" role="region" aria-label="Mouse, touch and keys">
     <table><caption>Mouse and touch</caption><tbody>${mouse.map(([a, b]) => html`<tr><th scope="row">${a}</th><td>${b}</td></tr>`)}</tbody></table>
     <table><caption>Keys</caption><tbody>${keys.map((k) => html`<tr><th scope="row">${k.keys.map((x) => html`<kbd>${shown(x)}</kbd> `)}</th><td>${k.says}</td></tr>`)}</tbody></table>
   </div><p class="quiet">Arrow keys act on the view that has the focus. Every control has its help behind “?”.</p>`, true);

@@ -29,6 +29,7 @@ export function lookPanel(app: App): TemplateResult {
             <select aria-label="Way to show ${shown.of}" @change=${(e: Event) => changeKind(app, index, (e.target as HTMLSelectElement).value)}>
               ${app.catalog.show.map((k) => html`<option value=${k.name} ?selected=${k.name === shown.kind}>as ${k.name}</option>`)}
             </select></div>
+          ${app.session.edits.problem(`show/${index}`, "") ? html`<p class="problem" role="alert">${app.session.edits.problem(`show/${index}`, "")}</p>` : nothing}
           <p class="quiet">${entry.sentence}</p>
           ${shown.transfer ? html`<div class="row"><button class="small" @click=${() => app.open("color")}>Colours and opacity …</button><button class="small" @click=${() => app.commands.run("legend")}>Legend …</button></div>` : nothing}
           ${form(app, { at: `show/${index}`, entry, step: shown.of, without: legendWords.filter((w) => w !== "legend") })}

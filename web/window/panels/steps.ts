@@ -14,7 +14,8 @@ const ui = { graph: false };
 export function stepsPanel(app: App): TemplateResult {
   const s = app.state;
   if (!s) return html``;
-  const chosen = s.steps.find((x) => `steps/${x.name}` === app.selected) ?? null;
+  const seen = app.selected.startsWith("show/") ? s.show[Number(app.selected.slice(5))]?.of : undefined;
+  const chosen = s.steps.find((x) => `steps/${x.name}` === app.selected || x.name === seen) ?? null;
   const total = s.steps.some((x) => x.seconds != null) ? s.steps.reduce((n, x) => n + (x.seconds ?? 0), 0) : null;
   const memory = s.steps.reduce((n, x) => n + (x.bytes ?? 0), 0);
   return html`
@@ -64,6 +65,7 @@ function details(app: App, s: Step): TemplateResult {
       <button class="small" @click=${() => app.open("table")}>Table</button>
       <button class="icon small" aria-label="Remove ${s.name}" title="Remove" ?disabled=${!app.state!.may_edit || s.from.length === 0} @click=${() => app.session.edit([{ remove: at }])}>${icon("close")}</button>
     </div>
+    ${app.session.edits.problem(at, "") ? html`<p class="problem" role="alert">${app.session.edits.problem(at, "")}</p>` : nothing}
     <p class="quiet">${entry?.sentence ?? s.operation}</p>
     <p class="facts">${s.kind ?? "not run yet"}${s.size ? html` · ${s.size}` : nothing} · ${seconds(s.seconds)} · ${bytes(s.bytes)}</p>
     ${s.fields && s.fields.length > 0

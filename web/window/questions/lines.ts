@@ -5,6 +5,8 @@ import type { Drag } from "../input/pointer";
 import type { LineAnswer, Vec3 } from "../protocol";
 import type { View } from "../view/view";
 
+const solid = new Set(["uniform", "rectilinear", "curvilinear", "unstructured", "amr"]);
+
 export class Lines {
   from: Vec3 | null = null;
   to: Vec3 | null = null;
@@ -22,7 +24,9 @@ export class Lines {
   prepare(): void {
     const s = this.app.state;
     if (!s) return;
-    if (!s.steps.some((x) => x.name === this.step)) this.step = s.show[0]?.of ?? s.steps[0]?.name ?? "";
+    // Along a line there are values in solids; of a surface it meets a point or two.
+    if (!s.steps.some((x) => x.name === this.step))
+      this.step = s.steps.find((x) => solid.has(x.kind ?? ""))?.name ?? s.show[0]?.of ?? s.steps[0]?.name ?? "";
     const fields = s.steps.find((x) => x.name === this.step)?.fields ?? [];
     if (!fields.some((f) => f.name === this.field))
       this.field = s.show.find((x) => x.of === this.step)?.transfer?.field ?? fields[0]?.name ?? "";

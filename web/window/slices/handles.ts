@@ -3,12 +3,12 @@
 import { nothing, svg, type SVGTemplateResult } from "lit";
 import type { App } from "../app";
 import { dragged, draggedAlong, toPixel } from "../camera/projection";
-import { add, scale } from "../camera/vector";
+import { add, dot, scale, sub } from "../camera/vector";
 import { beginDrag } from "../input/handle";
 import type { Step, Vec3 } from "../protocol";
 import type { View } from "../view/view";
 import { plain } from "../words";
-import { movedTo, outline, planeOf, type Plane } from "./plane";
+import { middleOf, movedTo, outline, planeOf, type Plane } from "./plane";
 
 type Point = [number, number];
 
@@ -45,11 +45,11 @@ function arrow(app: App, view: View, step: Step, plane: Plane): SVGTemplateResul
   const q = toPixel(camera, view.area, add(plane.origin, scale(normal, reach)));
   const frame = path(outline(plane.origin, normal, bounds).map((c) => toPixel(camera, view.area, c)));
   if (!p || !q) return svg``;
-  const along = plane.normals[0][0] * plane.origin[0] + normal[1] * plane.origin[1] + normal[2] * plane.origin[2];
+  const along = dot(normal, plane.origin);
   const move = (by: number, live: boolean): void =>
     app.session.set(`steps/${step.name}`, movedTo(plane, add(plane.origin, scale(normal, by)), bounds), live);
   return svg`<path class="plane-outline" d="${frame}Z" />
-    <g class="handle" data-handle tabindex="0" role="slider" aria-label="Plane of ${step.name}" aria-valuenow=${Number(along.toPrecision(5))}
+    <g class="handle" data-handle tabindex="0" role="slider" aria-label="Plane of ${step.name}" aria-valuenow=${Math.round((100 * dot(normal, sub(plane.origin, middleOf(bounds)))) / (reach / 0.12))}
       aria-valuetext=${plain(along)}
       @pointerdown=${(e: PointerEvent) =>
         beginDrag(e, () => ({

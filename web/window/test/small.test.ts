@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from "vitest";
+import { join, trail } from "../chooser";
 import { actionOf, keys, nameOf } from "../input/keys";
 import { sideAt } from "../panels/legend";
 import { place } from "../panels/layout";
@@ -93,6 +94,13 @@ describe("window and level", () => {
     const [c, d] = levelled([0, 100], 1000, -50, 0.5);
     expect(d).toBeGreaterThan(c);
   });
+});
+
+it("a served folder knows the folders above it", () => {
+  expect(trail("a/b")).toEqual([["a", "a"], ["b", "a/b"]]);
+  expect(trail("")).toEqual([]);
+  expect(join("", "x.vti")).toBe("x.vti");
+  expect(join("a", "x.vti")).toBe("a/x.vti");
 });
 
 describe("keys", () => {

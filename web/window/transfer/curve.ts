@@ -106,7 +106,7 @@ function curvePath(c: Curve, points: Point[]): SVGTemplateResult {
     <path class="opacity-line" d="${left}${path}${right}" />
     ${points.map(
       ([v, o], i) => svg`<g class="point ${i === ui.point ? "chosen" : ""}" tabindex="0" role="slider" data-index=${i}
-        aria-label="Point ${i + 1} of ${points.length}" aria-valuenow=${Number(o.toPrecision(3))} aria-valuemin="0" aria-valuemax="1"
+        aria-label="Point ${i + 1} of ${points.length}" aria-valuenow=${o.toFixed(3)} aria-valuemin="0" aria-valuemax="1"
         aria-valuetext="opacity ${plain(o, 3)} at ${plain(v)}"
         @focus=${() => { if (ui.point !== i) { ui.point = i; c.app.changed(); } }}
         @pointerdown=${(e: PointerEvent) => dragPoint(c, points, i, e)}>
@@ -191,7 +191,7 @@ function rangeEnds(c: Curve): SVGTemplateResult {
     };
     const base = pad.top + inner.h;
     return svg`<g class="range-end" tabindex="0" role="slider" aria-label=${k === 0 ? "Lower end of the colours" : "Upper end of the colours"}
-      aria-valuenow=${Number(c.range[k].toPrecision(5))} aria-valuetext=${plain(c.range[k])}
+      aria-valuemin="0" aria-valuemax="100" aria-valuenow=${Math.round(100 * share(c.axis, c.range[k]))} aria-valuetext=${plain(c.range[k])}
       @pointerdown=${(e: PointerEvent) => {
         const scale = unitOf(e);
         beginDrag(e, () => ({ move: (dx, _dy, done) => set(valueAt(c.axis, share(c.axis, c.range[k]) + (dx * scale) / inner.w), !done) }));

@@ -50,7 +50,7 @@ export function planeEditor(c: Curve): TemplateResult {
 function details(list: Widget[], w: Widget, set: (next: Widget[], live?: boolean) => void): TemplateResult {
   const change = (part: Partial<Widget>, live: boolean): void => set(list.map((x, i) => (i === ui.chosen ? { ...x, ...part } : x)), live);
   return html`<div class="row">
-    <input type="color" aria-label="Colour of the widget" .value=${hexOf(w.color === "map" ? "" : w.color)} @input=${(e: Event) => change({ color: (e.target as HTMLInputElement).value }, true)} />
+    <input type="color" aria-label="Colour of the widget" .value=${hexOf(w.color === "map" ? "" : w.color)} @input=${(e: Event) => change({ color: (e.target as HTMLInputElement).value }, true)} @change=${(e: Event) => change({ color: (e.target as HTMLInputElement).value }, false)} />
     <label class="grow row">opacity <input class="grow" type="range" min="0" max="1" step="0.01" .value=${String(w.opacity)} aria-label="Opacity of the widget"
       @input=${(e: Event) => change({ opacity: Number((e.target as HTMLInputElement).value) }, true)} @change=${(e: Event) => change({ opacity: Number((e.target as HTMLInputElement).value) }, false)} /></label>
     <button class="small" aria-pressed=${w.color === "map" ? "true" : "false"} @click=${() => change({ color: w.color === "map" ? "tomato" : "map" }, false)}>map's colour</button>
