@@ -70,7 +70,7 @@ const client = async ({ size, frames }) => {
     const [x, y, w, h] = frame.part ? frame.area : [0, 0, ...size];
     context.drawImage(bitmap, x, y, w, h);
     if (!frame.part) whole = frame.revision;
-    socket.send(JSON.stringify({ do: "shown", n: frame.n, view: 0 }));
+    socket.send(JSON.stringify({ do: "shown", n: frame.n, view: 0, base: whole }));
     shown(frame);
   };
   const until = (good) => new Promise((done) => (shown = (frame) => good(frame) && done(frame)));

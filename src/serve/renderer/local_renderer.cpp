@@ -122,8 +122,8 @@ Image draw_around(const Panel& panel, const StatedPicture& stated, Context& cont
 }  // namespace
 
 // The picture beside the legends in fewer pixels.
-DrawnView LocalRenderer::draw_moving(const PreparedPicture& prepared, const StatedPicture& stated, bool part, double& seconds_per_sample,
-                                     Context& context) {
+DrawnView LocalRenderer::draw_moving(const PreparedPicture& prepared, const StatedPicture& stated, const DrawRequest& request,
+                                     double& seconds_per_sample, Context& context) {
   const Panel panel = panel_of(prepared, stated);
   const Rect area = picture_beside_legends(panel.annotation, stated);
   DrawnView drawn;
@@ -138,14 +138,15 @@ DrawnView LocalRenderer::draw_moving(const PreparedPicture& prepared, const Stat
                           : render(rough(panel.scene, Quality::moving), panel.camera, options, context);
   learn(seconds_since(begin) / (double(options.width) * options.height), seconds_per_sample);
   Image image = to_image(frame, panel.scene.transparent);
-  if (!part) {
+  set_area(area, drawn);
+  drawn.part = request.part == drawn.area;
+  if (!drawn.part) {
     Image around = draw_around(panel, stated, context);
     paste_enlarged(image, int(area.x), int(area.y), int(area.width), int(area.height), around);
     image = std::move(around);
   }
-  drawn.part = part, drawn.width = image.width, drawn.height = image.height;
+  drawn.width = image.width, drawn.height = image.height;
   drawn.type = "image/jpeg", drawn.bytes = jpeg_of(image), drawn.camera = view_camera(panel.camera);
-  set_area(area, drawn);
   return drawn;
 }
 
@@ -161,7 +162,7 @@ DrawnView LocalRenderer::draw(const DrawRequest& request, Context& context) {
     if (request.camera) drawn.camera = *request.camera;
     set_area({0, 0, double(stated.width), double(stated.height)}, drawn);
   } else if (request.quality == Quality::moving) {
-    drawn = draw_moving(now->prepared, stated, request.part, pace_[request.view], context);
+    drawn = draw_moving(now->prepared, stated, request, pace_[request.view], context);
   } else {
     const Panel panel = panel_of(now->prepared, stated);
     StatedPicture how = stated;

@@ -34,8 +34,8 @@ class LocalRenderer : public Renderer {
     int width;
   };
   std::shared_ptr<const Loaded> loaded() const;
-  DrawnView draw_moving(const PreparedPicture& prepared, const StatedPicture& stated, bool part, double& seconds_per_sample,
-                        Context& context);
+  DrawnView draw_moving(const PreparedPicture& prepared, const StatedPicture& stated, const DrawRequest& request,
+                        double& seconds_per_sample, Context& context);
 
   std::shared_ptr<Cache> cache_;
   std::vector<std::string> coloring_;  ///< until a pipeline has it

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a session asks for pictures: something in this process or in another one. All that passes is a value that could be sent.
 #pragma once
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,18 +25,20 @@ struct DrawRequest {
   int width = 1280, height = 720;    ///< pixels
   std::optional<ViewCamera> camera;  ///< none: chosen from the data
   Quality quality = Quality::exact;
-  bool part = false;  ///< the window has legends and title: while it moves, what lies beside them is enough
+  /// The window has legends and title around this part (x, y, width, height): while it moves, a picture of it is enough, if it is still
+  /// where the camera looks.
+  std::optional<std::array<int, 4>> part;
 };
 
 struct DrawnView {
   int width = 0, height = 0;  ///< of the encoded picture
   std::string type;           ///< "image/jpeg", "image/png"
   std::shared_ptr<const std::string> bytes;
-  ViewCamera camera;           ///< that it was drawn from
-  bool part = false;           ///< the picture is of `area` alone
-  int area[4] = {0, 0, 0, 0};  ///< x, y, width, height of the part in which the camera looks; legends stand beside it
-  double coarse = 1;           ///< pixels of the view that one of the picture stands for, along each side
-  double seconds = 0;          ///< that it took
+  ViewCamera camera;          ///< that it was drawn from
+  bool part = false;          ///< the picture is of `area` alone
+  std::array<int, 4> area{};  ///< x, y, width, height of the part in which the camera looks; legends stand beside it
+  double coarse = 1;          ///< pixels of the view that one of the picture stands for, along each side
+  double seconds = 0;         ///< that it took
 };
 
 /// A pipeline, and what becomes of it. load(), tell() and draw() are called by one thread, answer() and save() by another one meanwhile, of

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One window at a session, and its views.
 #pragma once
+#include <array>
 #include <chrono>
 #include <map>
 #include <memory>
@@ -15,9 +16,11 @@ namespace sg::serve {
 
 /// What a window wants to see in one of its views, and how far that has come.
 struct WantedView {
-  DrawRequest request;  ///< view: of the renderer, unlike all others
-  uint64_t n = 0;       ///< of the newest request
-  uint64_t base = 0;    ///< revision of the whole picture of this size that the window has; 0: none
+  DrawRequest request;              ///< view: of the renderer, unlike all others
+  uint64_t n = 0;                   ///< of the newest request
+  uint64_t base = 0;                ///< revision of the whole picture of this size that the window shows; 0: none
+  uint64_t whole = 0;               ///< revision of the last whole picture that was sent, ...
+  std::array<int, 4> whole_area{};  ///< ... and where in it the camera looks
   bool moving = false;
   bool due = false;  ///< something better than what was sent is to be drawn
   Quality next = Quality::moving;

@@ -82,6 +82,7 @@ class Session : public std::enable_shared_from_this<Session> {
   History history_;
   PipelineFile good_;  ///< the last one that could be loaded
   Change last_change_{0, Json()};
+  bool live_ = false;  ///< the last edit was one of a drag that may go on
   bool loaded_ = false, needs_load_ = true, needs_tell_ = false;
   uint64_t revision_ = 0;
   std::optional<FilmTimes> film_;

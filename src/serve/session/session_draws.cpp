@@ -196,7 +196,10 @@ void Session::draw(std::unique_lock<std::mutex>& lock, Client& client, WantedVie
   const int id = client.id, renderer_view = wanted.request.view;
   WantedView view = wanted;
   const uint64_t revision = revision_;
-  view.request.quality = view.next, view.request.part = view.base == revision;
+  view.request.quality = view.next;
+  // While something is dragged legends may be those of before.
+  const bool has_legends = view.base > 0 && view.base == view.whole && (view.base == revision || live_);
+  if (has_legends) view.request.part = view.whole_area;
   Context& context = begin_work(renderer_view);
   lock.unlock();
   DrawnView drawn;
@@ -231,6 +234,7 @@ void Session::draw(std::unique_lock<std::mutex>& lock, Client& client, WantedVie
   }
   if (newer && !(now.moving && view.moving)) return;  // another view is wanted; while both move, late is better than nothing
   now.on_its_way = it->second->socket->send_binary(message);
+  if (!drawn.part) now.whole = revision, now.whole_area = drawn.area;
   if (newer || now.next != view.next) return;
   if (view.moving || final) now.due = false;
   else now.next = view.next == Quality::moving ? Quality::draft : Quality::exact;

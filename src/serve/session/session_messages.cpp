@@ -50,7 +50,7 @@ void Session::take_message(int id, std::string_view words) {
       take_draw(client, message);
     } else if (*wish == Wish::shown) {
       const auto view = client.views.find(int(message["view"].number()));
-      if (view != client.views.end()) view->second.on_its_way = false;
+      if (view != client.views.end()) view->second.on_its_way = false, view->second.base = message["base"].whole();
     } else if (*wish == Wish::cursor) {
       take_cursor(client, message);
     } else if (changes(*wish)) {
@@ -83,8 +83,9 @@ void Session::take_draw(Client& client, const Json& message) {
   const bool moving = message["moving"].boolean();
   // What was drawn while the view moved serves as the first picture of the view at rest.
   const bool same = view.request.camera == camera && view.request.width == int(width) && view.request.height == int(height);
+  if (view.request.width != int(width) || view.request.height != int(height)) view.whole = 0;
   const bool has_first = same && view.moving && !view.due;
-  view.request = {client.id * most_views + number, int(width), int(height), camera, Quality::moving, false};
+  view.request = {client.id * most_views + number, int(width), int(height), camera, Quality::moving, {}};
   view.base = message["base"].whole();
   view.n = message["n"].whole(), view.moving = moving;
   view.restart();
@@ -138,7 +139,7 @@ void Session::make_change(const Change& change) {
     if (!mistakes.empty()) return refuse(change.client, n, mistakes);
     history_.change(std::move(next), m["live"].boolean(), words_of(m["edits"]));
   }
-  last_change_ = change, needs_load_ = true;
+  live_ = m["live"].boolean(), last_change_ = change, needs_load_ = true;
 }
 
 }  // namespace sg::serve

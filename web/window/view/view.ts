@@ -98,7 +98,7 @@ export class View {
 
   private received(frame: FrameHeader, drawn: boolean): void {
     if (drawn) this.frame = frame;
-    this.host.connection.tell({ do: "shown", n: frame.n, view: this.index });
+    this.host.connection.tell({ do: "shown", n: frame.n, view: this.index, base: this.drawing.base(this.canvas.element.width, this.canvas.element.height) });
     if (drawn && !this.camera) this.camera = frame.camera;
     this.host.drawn(this);
     this.schedule();
