@@ -29,19 +29,19 @@ std::string html_text(std::string text) {
   return text;
 }
 
-// Shown while the page opens, and where the browser cannot draw: means over whole squares of pixels.
-Image poster_of(const Image& image) {
-  const int n = std::max(1, (image.width + poster_width - 1) / poster_width);
-  Image out(image.width / n, image.height / n, image.channels);
-  for (int y = 0; y < out.height; ++y)
-    for (int x = 0; x < out.width; ++x)
-      for (int c = 0; c < out.channels; ++c) {
-        int sum = 0;
-        for (int j = 0; j < n; ++j)
-          for (int i = 0; i < n; ++i) sum += image.at(x * n + i, y * n + j)[c];
-        out.at(x, y)[c] = uint8_t((sum + n * n / 2) / (n * n));
-      }
-  return out;
+// Shown while the page opens, and where the browser cannot draw.
+Image poster_of(const offline::PageStep& step, Context& context) {
+  StatedPicture small = step.stated;
+  const double factor = std::min(1.0, poster_width / double(small.width));
+  small.width = std::max(1, int(small.width * factor)), small.height = std::max(1, int(small.height * factor));
+  return draw_picture(step.panel.scene, step.panel.camera, small, step.panel.annotation, 1, context).image;
+}
+
+std::string recipe_text(const PipelineFile& file, const std::string& output) {
+  Image none(1, 1, 3);
+  attach_recipe(none, file, output.empty() ? "scene.html" : output);
+  const auto at = std::find_if(none.text.begin(), none.text.end(), [](const auto& t) { return t.first == "sightglass"; });
+  return at == none.text.end() ? "" : at->second;
 }
 
 std::string json_in_script(std::string json) {
@@ -106,9 +106,8 @@ Page make_page(PipelineFile file, const PageParams& params, const FilmParams& fi
   std::vector<offline::PageStep> steps;
   options.on_panel = [&](const Panel& panel, const StatedPicture& stated) {
     steps.push_back({{}, panel, stated});
-    return steps.size() == 1;
+    return false;
   };
-  Image image;
   std::string recipe;
   FilmParams moments = film;
   // What is at hand has one time.
@@ -117,23 +116,17 @@ Page make_page(PipelineFile file, const PageParams& params, const FilmParams& fi
   if (moments.times.empty()) {
     Picture picture = make_picture(file, options, computing);
     page.notes.insert(page.notes.begin(), picture.notes.begin(), picture.notes.end());
-    attach_recipe(picture.image, file, film.output.empty() ? "scene.html" : film.output);
-    image = std::move(picture.image);
+    recipe = recipe_text(file, film.output);
   } else {
     make_film(file, moments, options,
               {nullptr,
                [&](FilmFrame&& f) {
                  steps.back().time = f.time;
-                 if (f.number > 0) return;
-                 attach_recipe(f.image, f.pipeline, film.output.empty() ? "scene.html" : film.output);
-                 image = std::move(f.image);
+                 if (f.number == 0) recipe = recipe_text(f.pipeline, film.output);
                }},
               computing);
   }
-  for (const auto& [key, value] : image.text)
-    if (key == "sightglass") recipe = value;
-  image.text.clear();
-  const std::vector<uint8_t> poster = encode_png(poster_of(image));
+  const std::vector<uint8_t> poster = encode_png(poster_of(steps[0], computing));
   const std::string& stated_title = steps[0].panel.annotation.title;
   const std::string title = stated_title.empty() ? "Sightglass" : stated_title;
   const std::string frame = page_text({}, title, poster, recipe);  // all but what is shown

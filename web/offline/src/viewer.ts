@@ -8,7 +8,7 @@ import { type Drawable, lampsOf, type Pass } from "./draw/pass";
 import { loadScales, type Scale } from "./draw/scales";
 import { BoxBehind, boundsOf, loadStep, type Step } from "./draw/step";
 import { layoutOf, type Layout } from "./overlay/layout";
-import { drawOverlay } from "./overlay/overlay";
+import { drawOverlay, LegendCache } from "./overlay/overlay";
 import { Camera, centerOf } from "./view/camera";
 import type { Vec3 } from "./view/vec";
 
@@ -30,6 +30,7 @@ export class Viewer {
 
   private readonly composer: Composer;
   private readonly context: CanvasRenderingContext2D;
+  private readonly legends = new LegendCache();
   private readonly center: Vec3;
   private readonly steps: (Promise<Step> | undefined)[];
   private behind: BoxBehind | null = null;
@@ -46,7 +47,7 @@ export class Viewer {
   private constructor(private readonly gl: GL, readonly canvas: HTMLCanvasElement, readonly over: HTMLCanvasElement, readonly scene: SceneInfo, private readonly store: ArrayStore) {
     this.camera = new Camera(scene.camera), this.first = new Camera(scene.camera);
     this.composer = new Composer(gl, scene);
-    this.context = over.getContext("2d", { willReadFrequently: true })!;  // letters are drawn faster by the processor where there is no graphics card
+    this.context = over.getContext("2d")!;
     const start = scene.steps[0];
     this.center = centerOf(boundsOf(start.items, start.annotation));
     this.steps = scene.steps.map(() => undefined);
@@ -133,7 +134,7 @@ export class Viewer {
     const c = this.context;
     c.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
     c.clearRect(0, 0, this.layout.width, this.layout.height);
-    drawOverlay(c, { annotation: this.step.annotation, layout: this.layout, projection: this.projection(), box: this.step.box, scales: this.scales, opacity: this.step.volumes[0]?.points ?? null, axes: this.axes });
+    drawOverlay(c, { annotation: this.step.annotation, layout: this.layout, projection: this.projection(), box: this.step.box, scales: this.scales, opacity: this.step.volumes[0]?.points ?? null, axes: this.axes, moving: this.moving && !this.still }, this.legends);
   }
 
   private drawMoving(): void {

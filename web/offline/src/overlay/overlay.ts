@@ -19,10 +19,33 @@ export interface Annotated {
   scales: Scale[];
   opacity: Curve | null;
   axes: boolean;
+  moving: boolean;
 }
 
-export function drawOverlay(context: CanvasRenderingContext2D, v: Annotated): void {
-  const { annotation: a, layout: at, projection: p } = v, pen = new Pen(context, a.dark), font = a.font * at.factor, { area } = at;
+/** Legends as they were last drawn: they are many rectangles, and stay while the picture turns. */
+export class LegendCache {
+  private readonly canvas = document.createElement("canvas");
+  private of: unknown[] = [];
+  private columns: Rect[] = [];
+
+  draw(context: CanvasRenderingContext2D, v: Annotated): Rect[] {
+    const { annotation: a, layout: at } = v, m = context.getTransform(), of = [a, at, v.opacity, m.a];
+    if (of.some((x, i) => x !== this.of[i])) {
+      this.of = of;
+      this.canvas.width = context.canvas.width, this.canvas.height = context.canvas.height;
+      const own = this.canvas.getContext("2d")!, pen = new Pen(own, a.dark);
+      own.setTransform(m);
+      this.columns = a.legends.map((l) => drawLegend(pen, l, a, at, v.scales, v.opacity));
+    }
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    if (a.legends.length) context.drawImage(this.canvas, 0, 0);
+    context.setTransform(m);
+    return this.columns.map((r) => ({ ...r }));
+  }
+}
+
+export function drawOverlay(context: CanvasRenderingContext2D, v: Annotated, legends: LegendCache): void {
+  const { annotation: a, layout: at, projection: p } = v, pen = new Pen(context, a.dark, v.moving), font = a.font * at.factor, { area } = at;
   const taken: Rect[] = [];
   if (a.title) {
     const size = a.title_size * at.factor, wrap = Math.max(1, at.width - 1.6 * font), e = pen.measure(a.title, { size, wrap });
@@ -30,7 +53,7 @@ export function drawOverlay(context: CanvasRenderingContext2D, v: Annotated): vo
     pen.text(a.title, r.x, r.y, { size, wrap, centred: true, halo: true });
     taken.push(r);
   }
-  for (const l of a.legends) taken.push(grown(drawLegend(pen, l, a, at, v.scales, v.opacity), 0.5 * font));
+  for (const r of legends.draw(context, v)) taken.push(grown(r, 0.5 * font));
   // From here on in pixels of the picture beside the legends.
   for (const r of taken) r.x -= area.x, r.y -= area.y;
   context.save();

@@ -17,7 +17,8 @@ export interface Style {
 export class Pen {
   readonly ink: string;
   readonly rim: string;
-  constructor(readonly context: CanvasRenderingContext2D, dark: boolean) {
+  /** `quick`: without rims round the letters, which cost most. */
+  constructor(readonly context: CanvasRenderingContext2D, dark: boolean, private readonly quick = false) {
     this.ink = dark ? "rgb(237 237 242)" : "rgb(23 23 28)";
     this.rim = dark ? "rgb(13 13 18)" : "rgb(255 255 255)";
   }
@@ -52,7 +53,7 @@ export class Pen {
     c.textBaseline = "alphabetic", c.textAlign = "left", c.lineJoin = "round";
     lines.forEach((line, i) => {
       const at = x + (s.centred ? 0.5 * (width - c.measureText(line).width) : 0), base = y + (i * lineHeight + ascent) * s.size;
-      if (s.halo) c.strokeStyle = this.rim, c.lineWidth = 0.2 * s.size, c.strokeText(line, at, base);
+      if (s.halo && !this.quick) c.strokeStyle = this.rim, c.lineWidth = 0.2 * s.size, c.strokeText(line, at, base);
       c.fillStyle = s.color ?? this.ink;
       c.fillText(line, at, base);
     });
