@@ -48,7 +48,7 @@ await test("the page weighs less than 250 kB, and all of it is the server's", as
   other.on("response", (r) => {
     if (/^(blob|data):/.test(r.url())) return;
     assert.ok(r.url().startsWith(new URL(address).origin), r.url());
-    if (!/catalog/.test(r.url())) bodies.push(r.body());
+    if (r.ok() && !/catalog/.test(r.url())) bodies.push(r.body());
   });
   await other.goto(address);
   await settled(other);
