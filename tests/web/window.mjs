@@ -311,6 +311,13 @@ await test("a second window sees the same session and the cursor of the first", 
   await page.locator("select[aria-label^='Add a way']").selectOption("outline");
   await other.waitForFunction((n) => document.querySelectorAll(".item").length === n + 1, before);
   await shot(o, other, "second_window");
+  await settled(other);
+  const own = (await seen(other)).sum;
+  await other.locator("select[aria-label='Look along with']").selectOption({ index: 1 });
+  await picture.focus();
+  await andSettle(page, () => page.keyboard.press("ArrowLeft"));
+  await andSettle(other, () => undefined);
+  assert.notEqual((await seen(other)).sum, own, "looking along follows the other's camera");
   await other.close();
 });
 
