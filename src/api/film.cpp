@@ -10,6 +10,7 @@
 #include "base/schema/value.h"
 #include "io/file_series.h"
 #include "io/options.h"
+#include "pipeline/offline/page.h"
 #include "pipeline/operation/operation.h"
 #include "pipeline/picture/picture.h"
 
@@ -90,6 +91,28 @@ std::vector<double> Scene::frames(const std::function<void(const Frame&)>& take,
     if (thrown) std::rethrow_exception(thrown);
     throw;
   }
+}
+
+std::string Scene::page(const Params& params, int width, int height, const Context& context) const {
+  return guarded([&] {
+    const auto is_time = [](const Param& p) { return p.name == "times"; };
+    Params of_page, of_film;
+    for (const Param& p : params) (is_time(p) ? of_film : of_page).push_back(p);
+    sg::PageParams page;
+    sg::Schema schema = sg::schema_of(page);
+    set_values(schema, of_page, "page");
+    const sg::FilmParams film = film_params("", of_film, {"times"});
+    sg::Context& core = context.state().core;
+    sg::PictureOptions options;
+    const auto at_hand = [&](const std::string& step, const Data::Held& held, StepsOf&) {
+      options.results.insert_or_assign(step, held.data);
+    };
+    sg::PipelineFile file = film.times.empty() ? state_->pipeline(width, height, at_hand)
+                                               : moving_pipeline(*state_, width, height, options.results, core);
+    if (film.times.empty())
+      for (const auto& step : file.steps) options.results.try_emplace(step.name, sg::DatasetPtr());
+    return sg::make_page(std::move(file), page, film, options, core).html;
+  });
 }
 
 struct Film::State {

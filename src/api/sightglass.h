@@ -508,6 +508,9 @@ class SIGHTGLASS_API Scene {
   /// the film and comes out of this.
   std::vector<double> frames(const std::function<void(const Frame&)>& take, const Params& params = {}, int width = 1280, int height = 720,
                              const Context& context = {}) const;
+  /// A page that turns in any browser: the text of one HTML file, which needs no network. Parameters: `sightglass ops page`; and `times` as
+  /// of film(), for a page with time steps. Throws Error(usage) where the stated size is too small.
+  std::string page(const Params& params = {}, int width = 1280, int height = 720, const Context& context = {}) const;
 
  private:
   struct State;

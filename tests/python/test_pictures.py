@@ -94,3 +94,25 @@ def test_other_processes_draw_too():
 
 def picture_of_gyroid():
     return sg.gyroid(size=20).contour(values=[0.1]).plot(size=(120, 90), picture={"title": "gyroid"})._repr_png_()
+
+
+def test_a_picture_turns_as_a_page(tmp_path):
+    picture = sg.sphere(size=12).plot(size=(120, 90))
+    page = picture.interactive()
+    assert page.html.startswith("<!doctype html>") and "http" not in page.html.split("<script>")[0].replace("http-equiv", "")
+    frame = page._repr_html_()
+    assert frame.startswith("<iframe srcdoc=") and "<script" not in frame and "aspect-ratio: 120 / 90" in frame
+    page.save(tmp_path / "s.html")
+    assert [p.name for p in tmp_path.iterdir()] == ["s.html"]
+    assert (tmp_path / "s.html").read_text(encoding="utf-8") == page.html
+    small = sg.scene().add(sg.gyroid(size=48), "volume", opacity="0:0,1:0.3").interactive(size=(120, 90), max="220K")
+    assert len(small.html.encode()) <= 220 * 1024
+    with pytest.raises(sg.UsageError, match="no room"):
+        picture.interactive(max="1K")
+    with pytest.raises(sg.UsageError, match="maxi"):
+        picture.interactive(maxi="1M")
+
+
+def test_a_page_has_the_steps_of_what_moves():
+    page = sg.scene().add(sg.double_gyre(dims=[21, 11, 1]), "surface", field="velocity").interactive(size=(120, 90), times=[0, 0.5, 1])
+    assert page.html.count('"time":') == 3

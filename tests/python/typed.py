@@ -11,6 +11,7 @@ joined: sg.Data = surface.append(cut, cut)
 made: sg.Data = sg.gyroid(size=16)
 picture: sg.Picture = surface.plot(size=(100, 100))
 pixels: "np.ndarray" = picture.array
+page: str = picture.interactive(max="2M").html
 names: list[str] = volume.keys()
 wrong_type: sg.Data = volume.contour(normals="yes")  # type: ignore[arg-type]
 wrong_name: sg.Data = volume.contour(vales=[1.0])  # type: ignore[call-arg]

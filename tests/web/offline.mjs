@@ -21,7 +21,11 @@ const scenes = [
   { name: "volume", words: ["-s", "gyroid size=48", "--show", "volume opacity=0:0,0.6:0,1:0.3"], volume: true },
   { name: "maximum of a volume", words: ["-s", "gyroid size=48", "--show", "volume mode=maximum"], volume: true },
   { name: "plane field", words: ["-s", "double_gyre dims=81,41,1", "--show", "surface field=velocity"] },
-  { name: "glyphs", words: ["-s", "abc dims=8,8,8", "--show", "glyphs"] },
+  { name: "glyphs", words: ["-s", "abc dims=5,5,5", "--show", "glyphs shape=sphere size=1"] },
+  { name: "thick lines", words: ["-s", "abc dims=12,12,12", "-f", "streamlines count=12", "--show", "lines width=12 color=steelblue"] },
+  { name: "points as spheres", words: ["-s", "gyroid size=6", "--show", "points size=24"] },
+  { name: "seen through", words: ["-s", "sphere", "--show", "surface opacity=0.4"] },
+  { name: "isosurface by rays", words: ["-s", "gyroid size=32", "--show", "volume mode=isosurface levels=0"], volume: true },
 ];
 
 const failures = [];
@@ -152,6 +156,49 @@ for (const s of scenes) {
   console.log(`${s.name}: ${(statSync(html).size / 1024).toFixed(0)} KiB, mean ${d.mean?.toFixed(2)}, 99 % ${d.most99}, edges ${d.edge?.toFixed(1)}, bar ${d.bar ?? "-"} (of 255, ${d.pixels} pixels); opens in ${opened} ms, still after ${still} ms, turns at ${turned.frames.toFixed(1)} frames/s`);
   if (keep) await page.screenshot({ path: html.replace(".html", ".shot.png") });
   await page.close();
+}
+if (!only) {
+  // Time steps: another one is another picture, and the slider tells of it.
+  const series = join(folder, "series.html");
+  const trouble = render(["-s", "double_gyre dims=41,21,1", "--show", "surface field=velocity", "--times", "0,0.3,0.6"], series);
+  check(!trouble, `series: ${trouble}`);
+  if (!trouble) {
+    const { page, errors } = await open(series);
+    const seen = await page.evaluate(async () => {
+      const v = window.sightglass.viewer, before = v.snapshot().toDataURL();
+      await v.show(2);
+      while (!v.still) await new Promise((r) => setTimeout(r, 20));
+      return { changed: v.snapshot().toDataURL() !== before, told: document.querySelector(".time").textContent, at: document.querySelector(".times input").value };
+    });
+    check(seen.changed && seen.told.startsWith("3 of 3, t = 0.6") && seen.at === "2", `series: the third step is seen and told, had ${JSON.stringify(seen)}`);
+    check(errors.length === 0, `series: no errors, had ${errors.slice(0, 3).join("; ")}`);
+    await page.close();
+  }
+  // Mouse and keys.
+  const ball = join(folder, "ball.html");
+  check(!render(["-s", "sphere"], ball), "ball");
+  const { page } = await open(ball);
+  const camera = () => page.evaluate(() => JSON.stringify(window.sightglass.viewer.camera));
+  const moved = async (what, act) => {
+    const before = await camera();
+    await act();
+    check((await camera()) !== before, `controls: ${what}`);
+  };
+  await page.mouse.move(300, 200);
+  await moved("a drag turns", async () => { await page.mouse.down(), await page.mouse.move(340, 230), await page.mouse.up(); });
+  await moved("the wheel zooms", () => page.mouse.wheel(0, 200));
+  await moved("a key turns", () => page.keyboard.press("ArrowLeft"));
+  await moved("a button shows another side", () => page.getByRole("button", { name: /View: top/ }).click());
+  await moved("a button changes the projection", () => page.getByRole("button", { name: /projection/ }).click());
+  await page.close();
+  // Without WebGL2 the page has its picture, and says why it does not turn.
+  const plain = await chromium.launch({ executablePath: browserPath, args: ["--no-sandbox", "--disable-gpu", "--disable-3d-apis"] });
+  const still = await plain.newPage({ viewport: { width: 640, height: 400 } });
+  await still.goto("file://" + ball);
+  await still.waitForFunction(() => document.documentElement.dataset.state, null, { timeout: 60000 });
+  const shown = await still.evaluate(() => ({ state: document.documentElement.dataset.state, text: document.querySelector(".sentence")?.textContent, width: document.getElementById("poster")?.naturalWidth }));
+  check(shown.state === "picture" && /no WebGL2/.test(shown.text) && shown.width > 100, `without WebGL2: ${JSON.stringify(shown)}`);
+  await plain.close();
 }
 await browser.close();
 if (!keep) rmSync(folder, { recursive: true, force: true });

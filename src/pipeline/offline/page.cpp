@@ -111,7 +111,8 @@ Page make_page(PipelineFile file, const PageParams& params, const FilmParams& fi
   Image image;
   std::string recipe;
   FilmParams moments = film;
-  moments.times = times_of(file, film, page.notes, context);
+  // What is at hand has one time.
+  if (film.times.empty() && options.results.empty()) moments.times = times_of(file, film, page.notes, context);
   Context computing(context, 0, 0.6), packing(context, 0.6, 1);
   if (moments.times.empty()) {
     Picture picture = make_picture(file, options, computing);

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from ._legend import Legend
+    from ._page import Page
 
 
 def _at_values(value: Any) -> Any:
@@ -25,10 +26,11 @@ def _at_values(value: Any) -> Any:
 class Picture:
     """Pixels, with the pipeline that makes them again and what was chosen. A notebook shows it."""
 
-    __slots__ = ("_core", "__weakref__")
+    __slots__ = ("_core", "_scene", "__weakref__")
 
-    def __init__(self, core: _core.Image):
+    def __init__(self, core: _core.Image, scene: _core.Scene | None = None):
         self._core = core
+        self._scene = scene
 
     @property
     def array(self) -> np.ndarray:
@@ -73,6 +75,17 @@ class Picture:
         """As .png (with the recipe), .jpg or .webp."""
         self._core.write(str(path))
 
+    def interactive(self, **params: Any) -> Page:
+        """The same picture as a page that turns, for notebooks and files; parameters: see sightglass.help("page").
+
+        ``max``: the most bytes it may have, e.g. "2M"; ``times``: its time steps, as of :meth:`Scene.movie`.
+        """
+        from ._page import Page
+
+        if self._scene is None:
+            raise usage("the picture of a pipeline", "interactive", "scenes have pages; of a pipeline's file: sightglass run FILE -o scene.html")
+        return Page(self._scene.page(params, *self.size), self.size)
+
     def _repr_png_(self) -> bytes:
         return self._core.png()
 
@@ -108,7 +121,13 @@ class Scene:
 
     def render(self, size: tuple[int, int] = (1280, 720)) -> Picture:
         """The picture, ``size`` pixels wide and high."""
-        return Picture(self._core.render(int(size[0]), int(size[1])))
+        return Picture(self._core.render(int(size[0]), int(size[1])), _core.Scene(self._core))
+
+    def interactive(self, size: tuple[int, int] = (1280, 720), **params: Any) -> Page:
+        """A page that turns, as :meth:`Picture.interactive`."""
+        from ._page import Page
+
+        return Page(self._core.page(params, int(size[0]), int(size[1])), (int(size[0]), int(size[1])))
 
     def movie(self, path: Any, size: tuple[int, int] = (1280, 720), orbit: float | None = None, frames: int = 120, **params: Any) -> list[float]:
         """A film of what moves: .webm, .gif or numbered pictures ("a_{n}.png"); parameters: see sightglass.help("film"). Returns the times.

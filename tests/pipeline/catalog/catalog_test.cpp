@@ -44,7 +44,8 @@ TEST_CASE("catalog: every operation, way to show, reader and writer is an entry,
   CHECK(count[EntryKind::show] == show_kinds().size());
   CHECK(count[EntryKind::reader] == readers);
   CHECK(count[EntryKind::writer] == writers);
-  for (const EntryKind one : {EntryKind::read, EntryKind::camera, EntryKind::picture, EntryKind::film, EntryKind::page}) CHECK(count[one] == 1);
+  for (const EntryKind one : {EntryKind::read, EntryKind::camera, EntryKind::picture, EntryKind::film, EntryKind::page})
+    CHECK(count[one] == 1);
 }
 
 TEST_CASE("catalog: an operation as JSON has name, family, sentence, inputs and the schema of its parameters") {

@@ -27,6 +27,7 @@ async function start(): Promise<void> {
   const scene = JSON.parse(textOf("scene")) as SceneInfo;
   const stage = element("div", { className: "stage", tabIndex: 0, role: "application", ariaLabel: document.title }, canvas, over);
   document.body.append(stage);
+  document.body.classList.toggle("timed", scene.steps.length > 1);
   const viewer = await Viewer.open(gl, canvas, over, scene, (n) => textOf(`a${n}`));
   canvas.addEventListener("webglcontextlost", () => stayWithPicture("The graphics card has given up this page: load it again."));
 
@@ -50,6 +51,8 @@ async function start(): Promise<void> {
     const times = makeTimes(viewer);
     document.body.append(times.bar);
     tools.keys[" "] = times.play;
+    const before = viewer.onStep;
+    viewer.onStep = () => { before?.(), times.tell(); };
   }
   addControls(viewer, stage, tools.keys);
   new ResizeObserver(() => viewer.resize()).observe(stage);

@@ -5,7 +5,7 @@ import { button, element } from "./dom";
 
 const perSecond = 8;
 
-export function makeTimes(v: Viewer): { bar: HTMLElement; play: () => void } {
+export function makeTimes(v: Viewer): { bar: HTMLElement; play: () => void; tell: () => void } {
   const count = v.scene.steps.length;
   const slider = element("input", { type: "range", min: "0", max: String(count - 1), step: "1", value: "0", ariaLabel: "Time step" });
   const label = element("span", { className: "time" });
@@ -18,7 +18,6 @@ export function makeTimes(v: Viewer): { bar: HTMLElement; play: () => void } {
   const next = async () => {
     const start = performance.now();
     await v.show((v.number + 1) % count);
-    tell();
     if (timer) timer = window.setTimeout(next, Math.max(0, 1000 / perSecond - (performance.now() - start)));
   };
   const play = () => {
@@ -27,7 +26,7 @@ export function makeTimes(v: Viewer): { bar: HTMLElement; play: () => void } {
     go.textContent = timer ? "❚❚" : "►";
   };
   const go = button("►", "Play (space)", play);
-  slider.oninput = () => void v.show(Number(slider.value)).then(tell);
+  slider.oninput = () => void v.show(Number(slider.value));
   tell();
-  return { bar: element("div", { className: "bar times" }, go, slider, label), play };
+  return { bar: element("div", { className: "bar times" }, go, slider, label), play, tell };
 }
