@@ -48,7 +48,7 @@ await test("the page weighs less than 250 kB, and all of it is the server's", as
   other.on("response", (r) => {
     if (/^(blob|data):/.test(r.url())) return;
     assert.ok(r.url().startsWith(new URL(address).origin), r.url());
-    if (!/catalog/.test(r.url())) bodies.push(r.body());
+    if (r.ok() && !/catalog/.test(r.url())) bodies.push(r.body());
   });
   await other.goto(address);
   await settled(other);
@@ -311,6 +311,13 @@ await test("a second window sees the same session and the cursor of the first", 
   await page.locator("select[aria-label^='Add a way']").selectOption("outline");
   await other.waitForFunction((n) => document.querySelectorAll(".item").length === n + 1, before);
   await shot(o, other, "second_window");
+  await settled(other);
+  const own = (await seen(other)).sum;
+  await other.locator("select[aria-label='Look along with']").selectOption({ index: 1 });
+  await picture.focus();
+  await andSettle(page, () => page.keyboard.press("ArrowLeft"));
+  await andSettle(other, () => undefined);
+  assert.notEqual((await seen(other)).sum, own, "looking along follows the other's camera");
   await other.close();
 });
 

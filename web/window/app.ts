@@ -46,12 +46,14 @@ export class App {
     readonly catalog: Catalog,
     url: string,
     private readonly render: (app: App) => void,
+    neverOpened: () => void = () => undefined,
   ) {
     this.session = new Session(url, catalog, () => this.changed(), {
       frame: (header, picture) => void this.views[header.view]?.canvas.receive(header, picture),
       state: (state, before) => this.stateCame(state, before),
       restart: () => this.views.forEach((v) => v.restart()),
       say: (text) => this.say(text),
+      neverOpened,
       people: () => this.company.peopleCame(),
     });
     this.company = new Company(this);

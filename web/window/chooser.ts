@@ -6,7 +6,7 @@ import { bytes } from "./words";
 
 export interface Listing {
   folders: string[];
-  files: { name: string; bytes: number; series?: boolean | number | null }[];
+  files: { name: string; bytes: number; series?: number | null }[];
   more?: boolean;
 }
 
@@ -24,6 +24,7 @@ export async function listing(below: string): Promise<Listing | null> {
 }
 
 export async function chooser(root: HTMLElement): Promise<void> {
+  root.replaceChildren();
   const go = async (below: string): Promise<void> => {
     const found = await listing(below);
     render(page(below, found, go), root);
@@ -47,7 +48,7 @@ function page(below: string, found: Listing | null, go: (below: string) => Promi
       ${found
         ? html`<ul class="file-list">
             ${found.folders.map((name) => html`<li>${folder(`${name}/`, join(below, name))}</li>`)}
-            ${found.files.map((f) => html`<li><a href="/?open=${encodeURIComponent(join(below, f.name))}">${f.name}</a><span class="quiet">${f.series ? "series · " : ""}${f.bytes > 0 ? bytes(f.bytes) : "folder of data"}</span></li>`)}
+            ${found.files.map((f) => html`<li><a href="/?open=${encodeURIComponent(join(below, f.name))}">${f.name}</a><span class="quiet">${Number(f.series) > 1 ? `series of ${Number(f.series)} · ` : ""}${f.bytes > 0 ? bytes(f.bytes) : "folder of data"}</span></li>`)}
           </ul>
           ${found.folders.length + found.files.length === 0 ? html`<p class="empty">Nothing here can be read.</p>` : nothing}
           ${found.more ? html`<p class="quiet">There is more than is listed.</p>` : nothing}`

@@ -16,11 +16,13 @@ async function start(): Promise<void> {
     if (!answer.ok) throw new Error(`The server answered ${answer.status} to /catalog.json`);
     const catalog = (await answer.json()) as Catalog;
     const open = new URLSearchParams(location.search).get("open");
-    // A server of a folder needs a file's name; one that was started on files has none to list.
-    if (!open && (await listing(""))) return await chooser(root);
+    if (new URLSearchParams(location.search).has("below")) return await chooser(root);
     const url = `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/socket${open ? `?open=${encodeURIComponent(open)}` : ""}`;
     root.replaceChildren();
-    const app: App = new App(catalog, url, (a) => draw(a, root));
+    const app: App = new App(catalog, url, (a) => draw(a, root), async () => {
+      // A server of a folder opens no session without a file's name: it is chosen first.
+      if (!open && (await listing(""))) location.replace("/?below=");
+    });
     followSystem(() => app.changed());
     app.changed();
   } catch (error) {

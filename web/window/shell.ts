@@ -33,7 +33,7 @@ function shell(app: App): TemplateResult {
   return html`<div class="window ${app.panelOpen ? "with-panel" : ""}">
     <header class="bar">
       <h1 title=${s?.title ?? ""}><img src=${iconUrl} alt="" width="20" height="20" /><span>${s?.title || "Sightglass"}</span></h1>
-      ${new URLSearchParams(location.search).has("open") ? html`<a class="button small" href="/">Files</a>` : nothing}
+      ${new URLSearchParams(location.search).has("open") ? html`<a class="button small" href="/?below=">Files</a>` : nothing}
       <span class="grow"></span>
       ${bar("undo", "undo", "Undo", !s?.can_undo)}${bar("redo", "redo", "Redo", !s?.can_redo)}
       ${bar("add", "add", "Add an operation", !s?.may_edit)}${bar("save", "save", "Save the picture")}
@@ -104,7 +104,7 @@ function status(app: App): TemplateResult {
     <span class="grow probe">${here ? probeText(here, app.state?.length_unit) : html`<span class="quiet">${toolHint(app.tool)}</span>`}</span>
     ${p ? html`<span class="progress"><progress max="1" .value=${p.share} aria-label="Progress"></progress> ${p.doing}</span>` : nothing}
     ${session.people.count > 1 ? people(app) : nothing}
-    ${f ? html`<span class="quiet facts-line">${f.of[0]}×${f.of[1]} · ${Math.round(f.milliseconds)} ms${app.view.camera?.parallel ? " · parallel" : ""}${f.final ? "" : ` · ${plain(f.coarse)}×coarser`}</span>` : nothing}
+    ${f ? html`<span class="quiet facts-line">${f.of[0]}×${f.of[1]} · ${Math.round(f.milliseconds)} ms${app.view.camera?.parallel ? " · parallel" : ""}${f.final ? "" : f.coarse > 1 ? ` · ${plain(f.coarse)}× coarser` : " · refining"}</span>` : nothing}
   </footer>`;
 }
 

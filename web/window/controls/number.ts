@@ -8,8 +8,17 @@ import type { Context } from "./form";
 import { held, typed, typing } from "./held";
 import { defaultText, sliderRange, typesOf } from "./kind";
 
+/** A position along an axis that another word names goes from end to end of the data. */
+function alongAxis(c: Context): ReturnType<typeof sliderRange> {
+  const axis = ["x", "y", "z"].indexOf(c.app.session.word(c.at, "axis") ?? "");
+  const bounds = c.app.state?.bounds;
+  if (c.name !== "position" || axis < 0 || !bounds || !(bounds[2 * axis + 1] > bounds[2 * axis])) return null;
+  const [min, max] = [bounds[2 * axis], bounds[2 * axis + 1]];
+  return { min, max, step: (max - min) / 500 };
+}
+
 export function number(c: Context, id: string): TemplateResult {
-  const range = sliderRange(c.schema, fieldOf(c)?.range);
+  const range = alongAxis(c) ?? sliderRange(c.schema, fieldOf(c)?.range);
   const fallback = defaultText(c.schema);
   const value = c.value ?? "";
   const position = Number(value || fallback || (range ? (range.min + range.max) / 2 : 0));

@@ -16,6 +16,7 @@ export class Session {
   people: People = { count: 1, cursors: [] };
   progress: { share: number; doing: string } | null = null;
   notes: string[] = [];
+  private opened = false;
   readonly edits = new Edits();
   /** The number of the last change that the server has not answered, or 0. */
   private changing = 0;
@@ -31,6 +32,8 @@ export class Session {
       restart: () => void;
       say: (text: string) => void;
       people: (people: People) => void;
+      /** The first try to connect has failed. */
+      neverOpened: () => void;
     },
   ) {
     this.connection = new Connection(url, {
@@ -182,6 +185,8 @@ export class Session {
   private connectedAs(how: Connected): void {
     const before = this.connected;
     this.connected = how;
+    if (how === "open") this.opened = true;
+    if (how === "lost" && !this.opened) this.on.neverOpened();
     if (how === "lost") {
       this.changing = 0;
       this.edits.lost();

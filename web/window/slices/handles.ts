@@ -17,6 +17,7 @@ export function planeHandles(app: App, view: View): SVGTemplateResult | typeof n
   const camera = view.camera;
   if (!state?.bounds || !camera) return nothing;
   const drawn: SVGTemplateResult[] = [];
+  const seen = app.selected.startsWith("show/") ? state.show[Number(app.selected.slice(5))]?.of : undefined;
   for (const step of state.steps) {
     const at = `steps/${step.name}`;
     const words = Object.fromEntries(
@@ -28,7 +29,7 @@ export function planeHandles(app: App, view: View): SVGTemplateResult | typeof n
     const plane = planeOf(step.operation, words, state.bounds);
     if (!plane) continue;
     if (plane.normals.length > 1) drawn.push(crosshair(app, view, step, plane));
-    else if (app.selected === at) drawn.push(arrow(app, view, step, plane));
+    else if (app.selected === at || (seen === step.name && app.tab === "steps" && app.panelOpen)) drawn.push(arrow(app, view, step, plane));
   }
   return drawn.length > 0 ? svg`${drawn}` : nothing;
 }
