@@ -125,6 +125,7 @@ class Evaluation {
     });
     const std::string at = one_time_ && s.varies && s.request.time ? fmt::format(" at the time {}", short_number(*s.request.time)) : "";
     context_.log(LogLevel::debug, fmt::format("{}{}: {}: {}", doing, at, watch.text(), result_text(made)));
+    if (g_.options.on_ran) g_.options.on_ran(node.name, watch.seconds());
     return made;
   }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/io.h"
@@ -28,6 +29,8 @@ struct GraphOptions {
   /// Reads a file; null = read_part. ReadOptions already holds the time, piece and fields that the
   /// request needs; it may hold names of fields that a filter makes, so a reader passes over those that the file lacks.
   std::function<Data(const std::string& path, const ReadOptions& options, const Request& request, Context& context)> read;
+  /// Told of each step that has run, by its name, and of the seconds it took; from any thread. May be null.
+  std::function<void(std::string_view name, double seconds)> on_ran;
   /// Times of a file; null = file_times.
   std::function<std::vector<double>(const std::string& path, const ReadOptions& options, Context& context)> times;
   /// Names of the fields in a file, when they are cheap to find out; lets validate() check field names. May be null.

@@ -13,6 +13,7 @@ class StopWatch {
  public:
   /// "12.5 ms", "3.07 s": three digits that count.
   std::string text() const;
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
 
  private:
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();

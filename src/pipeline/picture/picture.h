@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/context.h"
@@ -64,7 +65,8 @@ struct PictureOptions {
   std::optional<std::chrono::steady_clock::time_point> until;  ///< with on_draft: then the finest picture so far is returned
   /// What is about to be drawn; false: it is not, and the picture has no pixels. Throws Error(usage) for a picture of several panels.
   std::function<bool(const Panel&, const StatedPicture&)> on_panel;
-  StepResults results;                ///< at hand, see build_graph()
+  std::function<void(std::string_view name, double seconds)> on_ran;  ///< see GraphOptions
+  StepResults results;                                                ///< at hand, see build_graph()
   std::vector<std::string> coloring;  ///< words added to every way to show that colours by a field ("field=T", "map=ember")
 };
 

@@ -102,7 +102,7 @@ PreparedPicture prepare_picture(PipelineFile& file, const PictureOptions& option
     });
   };
   GraphOptions graph_options;
-  graph_options.cache = cache;
+  graph_options.cache = cache, graph_options.on_ran = options.on_ran;
   if (!stated.camera.up && has_contour(file))
     graph_options.read = [&](const std::string& path, const ReadOptions& read, const Request& request, Context& c) {
       Data data = read_part(path, read, request, c);

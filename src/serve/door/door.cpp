@@ -23,12 +23,13 @@ HttpResponse told(int status, std::string text) { return {status, "text/plain; c
 HttpResponse json(std::string text) { return {200, "application/json", {}, std::move(text), nullptr}; }
 
 // Leads to the window by a step of its own page: a cookie for this site alone is not sent along a way that began at another one.
-HttpResponse leads_to_window() {
+HttpResponse leads_to_window(const std::string& window) {
   return {200,
           "text/html; charset=utf-8",
           {},
-          "<!doctype html><html lang=\"en\"><meta http-equiv=\"refresh\" content=\"0;url=/\"><title>Sightglass</title><p><a href=\"/\">Go "
-          "on</a></html>\n",
+          fmt::format("<!doctype html><html lang=\"en\"><meta http-equiv=\"refresh\" content=\"0;url={0}\"><title>Sightglass</title><p><a "
+                      "href=\"{0}\">Go on</a></html>\n",
+                      window),
           nullptr};
 }
 
@@ -93,13 +94,16 @@ struct Door::Inside {
                  : "This needs a token: open the address that sightglass printed. It counts once; start sightglass again for another one.");
   }
 
+  // The window of the session, or the list of files to choose from.
+  std::string window() const { return folder ? "/?below=" : "/"; }
+
   HttpResponse enter(const HttpRequest& request, const std::string& token) {
     if (request.method != "GET") return stranger();
     const auto secret = visitors.enter(token);
-    HttpResponse response = leads_to_window();
+    HttpResponse response = leads_to_window(window());
     if (!comes_from_elsewhere(request)) {
       response = told(303, "");
-      response.headers.emplace_back("Location", "/");
+      response.headers.emplace_back("Location", window());
     }
     if (!secret) return visitor_of(request) ? response : stranger();
     const bool secure = hosts.origin_of(request.host)->starts_with("https:");
@@ -133,7 +137,7 @@ struct Door::Inside {
   HttpResponse answer(const HttpRequest& request) {
     if (auto refusal = wrong_way(request, false)) return *refusal;
     if (const std::string* token = request.word("token"); token && request.path == "/") return enter(request, *token);
-    if (!visitor_of(request)) return request.path == "/" && comes_from_elsewhere(request) ? leads_to_window() : stranger();
+    if (!visitor_of(request)) return request.path == "/" && comes_from_elsewhere(request) ? leads_to_window(window()) : stranger();
     if (request.path == "/catalog.json") {
       if (!catalog_body) catalog_body = std::make_unique<StaticBody>(catalog_text(), "application/json");
       return catalog_body->answer(request, "no-cache");

@@ -73,6 +73,10 @@ PipelineFile LocalRenderer::load(const PipelineFile& pipeline, Context& context)
   next->file = pipeline;
   PictureOptions options;
   options.cache = cache_, options.coloring = coloring_;
+  options.on_ran = [this](std::string_view name, double seconds) {
+    const std::lock_guard lock(mutex_);
+    seconds_[std::string(name)] = seconds;
+  };
   next->prepared = prepare_picture(next->file, options, context);
   coloring_.clear();
   const std::lock_guard lock(mutex_);
@@ -82,7 +86,12 @@ PipelineFile LocalRenderer::load(const PipelineFile& pipeline, Context& context)
 
 Json::Members LocalRenderer::tell(Context& context) {
   const auto now = loaded();
-  return tell_state(now->file, now->prepared, cache_, context);
+  StepSeconds seconds;
+  {
+    const std::lock_guard lock(mutex_);
+    seconds = seconds_;
+  }
+  return tell_state(now->file, now->prepared, seconds, cache_, context);
 }
 
 void LocalRenderer::forget(int view) {

@@ -7,6 +7,7 @@
 
 #include "pipeline/picture/prepare.h"
 #include "serve/renderer/renderer.h"
+#include "serve/renderer/tell.h"
 
 namespace sg::serve {
 
@@ -43,6 +44,7 @@ class LocalRenderer : public Renderer {
   mutable std::mutex mutex_;           ///< for what follows
   std::shared_ptr<const Loaded> loaded_;
   std::map<int, std::shared_ptr<const Planes>> planes_;
+  StepSeconds seconds_;
 };
 
 }  // namespace sg::serve

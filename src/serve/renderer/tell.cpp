@@ -98,7 +98,7 @@ Json picture_json(const PipelineFile& file) {
   return words_json(words);
 }
 
-Json steps_json(const PipelineFile& file, const std::shared_ptr<Cache>& cache, Context& context) {
+Json steps_json(const PipelineFile& file, const StepSeconds& seconds, const std::shared_ptr<Cache>& cache, Context& context) {
   std::vector<Json> steps;
   for (size_t i = 0; i < file.steps.size(); ++i) {
     Json::Members step = step_members(file, i);
@@ -110,7 +110,8 @@ Json steps_json(const PipelineFile& file, const std::shared_ptr<Cache>& cache, C
       if (e.kind() == ErrorKind::cancelled) throw;
       step.emplace_back("error", text(e.what()));
     }
-    step.emplace_back("seconds", Json());
+    const auto took = seconds.find(file.steps[i].name);
+    step.emplace_back("seconds", took == seconds.end() ? Json() : number(took->second));
     steps.emplace_back(std::move(step));
   }
   return Json(std::move(steps));
@@ -169,9 +170,10 @@ Json::Members tell_pipeline(const PipelineFile& file) {
   return {{"steps", Json(std::move(steps))}, {"show", Json(std::move(shows))}, {"picture", picture_json(file)}};
 }
 
-Json::Members tell_state(const PipelineFile& file, const PreparedPicture& prepared, const std::shared_ptr<Cache>& cache, Context& context) {
+Json::Members tell_state(const PipelineFile& file, const PreparedPicture& prepared, const StepSeconds& seconds,
+                         const std::shared_ptr<Cache>& cache, Context& context) {
   const Shown& shown = prepared.shown[0];
-  Json::Members members{{"steps", steps_json(file, cache, context)}, {"show", shows_json(file, prepared, context)}};
+  Json::Members members{{"steps", steps_json(file, seconds, cache, context)}, {"show", shows_json(file, prepared, context)}};
   members.emplace_back("picture", picture_json(file));
   const Box3& b = shown.box;
   members.emplace_back("bounds", b.empty() ? Json() : numbers({b.lo.x, b.hi.x, b.lo.y, b.hi.y, b.lo.z, b.hi.z}));

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a window is told of a pipeline: members of the message "state" (docs/protocol.md).
 #pragma once
+#include <map>
 #include <memory>
+#include <string>
 
 #include "base/text/json.h"
 #include "pipeline/graph/cache.h"
@@ -9,9 +11,13 @@
 
 namespace sg::serve {
 
+/// What each step took when it last ran, by its name.
+using StepSeconds = std::map<std::string, double>;
+
 /// "steps", "show", "picture", "times", "time", "bounds", "length_unit", "camera", "notes". Steps run if nothing that is shown has needed
 /// them.
-Json::Members tell_state(const PipelineFile& file, const PreparedPicture& prepared, const std::shared_ptr<Cache>& cache, Context& context);
+Json::Members tell_state(const PipelineFile& file, const PreparedPicture& prepared, const StepSeconds& seconds,
+                         const std::shared_ptr<Cache>& cache, Context& context);
 
 /// The same of a pipeline that cannot be run: "steps", "show" and "picture" as they stand.
 Json::Members tell_pipeline(const PipelineFile& file);

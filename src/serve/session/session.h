@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One pipeline, the windows that look at it, and the pictures that they get (docs/protocol.md).
 #pragma once
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <map>
@@ -82,7 +83,8 @@ class Session : public std::enable_shared_from_this<Session> {
   History history_;
   PipelineFile good_;  ///< the last one that could be loaded
   Change last_change_{0, Json()};
-  bool live_ = false;  ///< the last edit was one of a drag that may go on
+  bool live_ = false;                              ///< the last edit was one of a drag that may go on
+  std::chrono::steady_clock::time_point rest_at_;  ///< when that drag counts as over
   bool loaded_ = false, needs_load_ = true, needs_tell_ = false;
   uint64_t revision_ = 0;
   std::optional<FilmTimes> film_;

@@ -60,6 +60,7 @@ bool shows_automatically(const PipelineFile& file) {
 void Session::draw_thread() {
   std::unique_lock lock(mutex_);
   while (!stopping_) {
+    const bool dragged = std::chrono::steady_clock::now() < rest_at_;  // what takes longer waits for the end of it
     if (!changes_.empty()) {
       const Change change = changes_.front();
       changes_.pop_front();
@@ -68,6 +69,8 @@ void Session::draw_thread() {
       load(lock);
     } else if (auto [client, view] = next_view(true); view) {  // a picture at once, then what is told, then better pictures
       draw(lock, *client, *view);
+    } else if (dragged) {
+      work_.wait_until(lock, rest_at_);
     } else if (needs_tell_) {
       tell(lock);
     } else if (auto [any, finer] = next_view(false); finer) {

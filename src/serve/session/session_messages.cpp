@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "base/error.h"
@@ -17,6 +18,8 @@
 namespace sg::serve {
 
 namespace {
+
+constexpr auto drag_pause = std::chrono::milliseconds(150);  // between two edits of a drag
 
 // Which words edits set, as one text: "show/0 opacity;".
 std::string words_of(const Json& edits) {
@@ -139,7 +142,9 @@ void Session::make_change(const Change& change) {
     if (!mistakes.empty()) return refuse(change.client, n, mistakes);
     history_.change(std::move(next), m["live"].boolean(), words_of(m["edits"]));
   }
-  live_ = m["live"].boolean(), last_change_ = change, needs_load_ = true;
+  live_ = m["live"].boolean();
+  rest_at_ = live_ ? std::chrono::steady_clock::now() + drag_pause : std::chrono::steady_clock::time_point{};
+  last_change_ = change, needs_load_ = true;
 }
 
 }  // namespace sg::serve
