@@ -107,8 +107,8 @@ std::string Scene::page(const Params& params, int width, int height, const Conte
     const auto at_hand = [&](const std::string& step, const Data::Held& held, StepsOf&) {
       options.results.insert_or_assign(step, held.data);
     };
-    sg::PipelineFile file = film.times.empty() ? state_->pipeline(width, height, at_hand)
-                                               : moving_pipeline(*state_, width, height, options.results, core);
+    sg::PipelineFile file =
+        film.times.empty() ? state_->pipeline(width, height, at_hand) : moving_pipeline(*state_, width, height, options.results, core);
     if (film.times.empty())
       for (const auto& step : file.steps) options.results.try_emplace(step.name, sg::DatasetPtr());
     return sg::make_page(std::move(file), page, film, options, core).html;

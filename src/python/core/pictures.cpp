@@ -85,10 +85,11 @@ void declare_scene(py::module_& m) {
       .def("picture", [](Scene& scene, const py::dict& params) { scene.picture(params_of(params)); })
       .def("render", [](const Scene& scene, int width,
                         int height) { return call([&](const Context& context) { return scene.render(width, height, context); }); })
-      .def("film", [](const Scene& scene, const std::string& output, const py::dict& params, int width, int height) {
-        const Params stated = params_of(params);
-        return call([&](const Context& context) { return scene.film(output, stated, width, height, context); });
-      })
+      .def("film",
+           [](const Scene& scene, const std::string& output, const py::dict& params, int width, int height) {
+             const Params stated = params_of(params);
+             return call([&](const Context& context) { return scene.film(output, stated, width, height, context); });
+           })
       .def("page", [](const Scene& scene, const py::dict& params, int width, int height) {
         const Params stated = params_of(params);
         return call([&](const Context& context) { return scene.page(stated, width, height, context); });
