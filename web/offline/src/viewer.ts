@@ -145,7 +145,8 @@ export class Viewer {
     const { pass, drawables } = this.pass(samples, true);
     this.composer.finish();  // of what the browser itself had to do
     const drawing = performance.now();
-    this.composer.draw(pass, drawables, this.step.volumes, { samples, coarse: 2, layers: 3 });
+    const layers = this.composer.layersOf(pass, drawables, 3);
+    this.composer.draw(pass, drawables, this.step.volumes, { samples, coarse: 2, layers });
     this.composer.finish();
     const time = performance.now() - drawing;
     this.present(samples);
@@ -154,12 +155,12 @@ export class Viewer {
     this.lastLevel = samples;
     if (!same) return;  // new targets had to be made
     const wanted = this.level * Math.min(2, Math.max(0.25, Math.sqrt(movingTime / time)));
-    this.coarse = Math.min(1, Math.max(2 ** -3.5, this.coarse + 0.3 * (wanted - this.coarse)));
+    this.coarse = Math.min(1, Math.max(2 ** -3.5, this.coarse + (time > 2 * movingTime ? 1 : 0.3) * (wanted - this.coarse)));
   }
 
   private stillQuality(): Quality {
     const surfaces = this.step.drawables.some((d) => d.stage === "surface");
-    return { samples: surfaces ? 2 : this.step.volumes.length ? 1 : 3, coarse: 1, layers: 8 };
+    return { samples: surfaces ? 2 : this.step.volumes.length ? 1 : 3, coarse: 1, layers: 12 };
   }
 
   /** Volumes in bands of rows, so that the page answers while they are drawn. */
@@ -175,16 +176,18 @@ export class Viewer {
   }
   private drawFine(q: Quality, done: () => void): void {
     const generation = this.generation, { pass, drawables } = this.pass(q.samples, false);
-    const height = pass.projection.height, banded = this.step.volumes.length > 0;
-    let row = 0, rows = banded ? Math.max(4, Math.round(height / 40)) : height;
+    const height = pass.projection.height, through = drawables.some((d) => d.translucent);
+    q = { ...q, layers: this.composer.layersOf(pass, drawables, q.layers) };
+    const least = Math.ceil(height / (this.step.volumes.length ? 100 : 12));  // each band costs something by itself
+    let row = 0, rows = this.step.volumes.length ? Math.max(4, Math.round(height / 40)) : through ? Math.ceil(height / 8) : height;
     const go = () => {
       if (generation !== this.generation) return;
       const start = performance.now(), end = Math.min(height, row + rows);
       this.composer.draw(pass, drawables, this.step.volumes, q, [row, end]);
       row = end;
+      this.composer.finish();
       if (row < height) {
-        this.composer.finish();
-        rows = Math.max(2, Math.round(rows * Math.min(2, Math.max(0.5, bandTime / (performance.now() - start)))));
+        rows = Math.max(least, Math.round(rows * Math.min(2, Math.max(0.5, bandTime / (performance.now() - start)))));
         requestAnimationFrame(go);
         return;
       }
@@ -204,7 +207,7 @@ export class Viewer {
     const out = document.createElement("canvas"), c = out.getContext("2d")!;
     out.width = this.canvas.width, out.height = this.canvas.height;
     const q = this.stillQuality(), { pass, drawables } = this.pass(q.samples, false);
-    if (!this.still) this.composer.draw(pass, drawables, this.step.volumes, q);
+    if (!this.still) this.composer.draw(pass, drawables, this.step.volumes, { ...q, layers: this.composer.layersOf(pass, drawables, q.layers) });
     this.present(q.samples);
     c.drawImage(this.canvas, 0, 0), c.drawImage(this.over, 0, 0);
     return out;

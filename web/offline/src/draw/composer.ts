@@ -58,14 +58,37 @@ export class Composer {
   private readonly opaque: Target;
   private readonly layers: [Target, Target];
   private readonly sum: Target;
+  private readonly format: number;
 
   constructor(private readonly gl: GL, private readonly scene: SceneInfo) {
     const half = gl.getExtension("EXT_color_buffer_float") || gl.getExtension("EXT_color_buffer_half_float");
-    const format = half ? gl.RGBA16F : gl.SRGB8_ALPHA8;
+    const format = this.format = half ? gl.RGBA16F : gl.SRGB8_ALPHA8;
     this.copy = new Program(gl, triangle, copyText), this.resolve = new Program(gl, triangle, resolveText);
     this.opaque = new Target(gl, format, true), this.sum = new Target(gl, format, false);
     this.layers = [new Target(gl, format, true), new Target(gl, format, true)];
   }
+
+  /** How many layers of what is seen through lie one behind the other, at most `most`: from the sum of their opacities in a small picture. */
+  layersOf(pass: Pass, drawables: Drawable[], most: number): number {
+    const gl = this.gl, through = drawables.filter((d) => d.translucent), p = pass.projection;
+    if (!through.length || this.format !== gl.RGBA16F) return through.length ? most : 0;
+    const factor = Math.min(1, 240 / p.width), w = Math.max(1, Math.round(p.width * factor)), h = Math.max(1, Math.round(p.height * factor));
+    const t = (this.counted ??= new Target(gl, gl.RGBA16F, false));
+    t.resize(w, h);
+    t.bind();
+    gl.disable(gl.SCISSOR_TEST), gl.disable(gl.DEPTH_TEST), gl.clearColor(0, 0, 0, 0), gl.clear(gl.COLOR_BUFFER_BIT);
+    gl.enable(gl.BLEND), gl.blendFunc(gl.ONE, gl.ONE);
+    const small: Pass = { ...pass, projection: { ...p, width: w, height: h, scale: p.scale * factor }, samples: pass.samples * factor, peel: null, soft: false };
+    for (const d of through) d.draw(small);
+    gl.disable(gl.BLEND);
+    const pixels = new Float32Array(4 * w * h);
+    gl.readPixels(0, 0, w, h, gl.RGBA, gl.FLOAT, pixels);
+    let sum = 0;
+    for (let i = 3; i < pixels.length; i += 4) sum = Math.max(sum, pixels[i]);
+    const least = Math.max(1 / 64, Math.min(...through.map((d) => d.opacity)));
+    return Math.min(most, Math.ceil(sum / least + 0.5));
+  }
+  private counted: Target | null = null;
 
   /** All of a picture, or the rows [first, last) of it alone. */
   draw(pass: Pass, drawables: Drawable[], volumes: Volume[], q: Quality, rows?: [number, number]): void {

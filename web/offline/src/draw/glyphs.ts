@@ -63,10 +63,11 @@ function picked<T extends Float32Array | Uint8Array>(from: T, which: Uint32Array
 export class Glyphs implements Drawable {
   readonly stage = "surface";
   readonly translucent: boolean;
+  readonly opacity: number;
   private readonly lists: { list: WebGLVertexArrayObject; corners: number; count: number }[] = [];
 
   private constructor(private readonly gl: GL, private readonly info: GlyphsInfo, private readonly coloring: Coloring) {
-    this.translucent = info.translucent;
+    this.translucent = info.translucent, this.opacity = info.opacity;
   }
 
   static async load(gl: GL, info: GlyphsInfo, center: Triple, scales: Scale[], store: ArrayStore): Promise<Drawable> {

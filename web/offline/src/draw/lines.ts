@@ -147,13 +147,14 @@ export interface LineLook {
 
 export class Lines implements Drawable {
   readonly translucent: boolean;
+  readonly opacity: number;
   readonly stage: "edges" | "marks";
   private readonly list: WebGLVertexArrayObject;
   private readonly count: number;
 
   constructor(private readonly gl: GL, private readonly look: LineLook, private readonly coloring: Coloring, private readonly s: Segments) {
     this.count = s.from.length / 3;
-    this.translucent = look.opacity < 1;
+    this.translucent = look.opacity < 1, this.opacity = look.opacity;
     this.stage = s.room && !this.translucent ? "edges" : "marks";
     this.list = gl.createVertexArray()!;
     gl.bindVertexArray(this.list);

@@ -26,6 +26,8 @@ export interface Pass {
 
 export interface Drawable {
   readonly translucent: boolean;
+  /** Of its most transparent parts, about. */
+  readonly opacity: number;
   /** Surfaces first; edges lie on them; marks come last. */
   readonly stage: "surface" | "edges" | "marks";
   draw(pass: Pass): void;

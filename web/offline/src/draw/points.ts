@@ -81,11 +81,12 @@ let program: Program | null = null;
 export class Points implements Drawable {
   readonly stage = "marks";
   readonly translucent: boolean;
+  readonly opacity: number;
   private count = 0;
   private readonly list: WebGLVertexArrayObject;
 
   private constructor(private readonly gl: GL, private readonly info: PointsInfo, private readonly coloring: Coloring) {
-    this.translucent = info.opacity < 1;
+    this.translucent = info.opacity < 1, this.opacity = info.opacity;
     this.list = gl.createVertexArray()!;
   }
   static async load(gl: GL, info: PointsInfo, center: Triple, scales: Scale[], store: ArrayStore): Promise<Points> {

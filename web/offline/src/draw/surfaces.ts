@@ -76,13 +76,14 @@ function taken<T extends Float32Array | Uint8Array>(from: T, which: ArrayLike<nu
 export class Surface implements Drawable {
   readonly stage = "surface";
   readonly translucent: boolean;
+  readonly opacity: number;
   private readonly list: WebGLVertexArrayObject;
   private count = 0;
   private indexed = false;
   private smooth = false;
 
   private constructor(private readonly gl: GL, private readonly info: SurfaceInfo, private readonly coloring: Coloring) {
-    this.translucent = info.translucent;
+    this.translucent = info.translucent, this.opacity = info.opacity;
     this.list = gl.createVertexArray()!;
   }
 
