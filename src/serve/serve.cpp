@@ -13,7 +13,8 @@
 #include "base/file/file.h"
 #include "base/file/file_fence.h"
 #include "data/memory/memory_budget.h"
-#include "pipeline/picture/picture.h"
+#include "pipeline/picture/picture_parts.h"
+#include "scene/show/show.h"
 #include "serve/door/door.h"
 #include "serve/guard/users.h"
 #include "serve/renderer/local_renderer.h"
@@ -75,6 +76,14 @@ void describe(Schema& s, ServeParams& p) {
 
 namespace {
 
+// Mistakes that can be seen without running anything end the command instead of standing in the window.
+void check_pipeline(const PipelineFile& file) {
+  stated_in(file);
+  for (const PipelineFile::Show& s : file.show)
+    if (s.kind != auto_show) show_params(find_show(s.kind), s.words);
+  build_graph(file).graph.validate();
+}
+
 std::vector<std::string> folders_of(const std::vector<std::string>& files) {
   std::vector<std::string> folders;
   for (const std::string& f : files) folders.push_back(folder_of(f).empty() ? "." : folder_of(f));
@@ -93,6 +102,7 @@ std::unique_ptr<Renderer> new_renderer(const ServeParams& p, const std::vector<s
 }  // namespace
 
 void view(PipelineFile file, const std::vector<std::string>& coloring, const std::string& title, const ServeParams& p, Context& context) {
+  check_pipeline(file);
   const std::vector<std::string> folders = folders_of(files_read(file));
   Sessions sessions([&](const std::string&) { return Session::open(new_renderer(p, coloring, folders), file, title); });
   fence_in(folders, "a window");
