@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/enlarge.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/random.h"

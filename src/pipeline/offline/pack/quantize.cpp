@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "image/image.h"
 #include "pipeline/offline/pack/json_text.h"
 
 namespace sg::offline {
