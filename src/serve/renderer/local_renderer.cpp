@@ -20,7 +20,7 @@ namespace sg::serve {
 
 namespace {
 
-constexpr double drag_seconds = 0.024;  // for drawing, of the 50 ms from a drag to its picture
+constexpr double drag_seconds = 0.032;  // for drawing, of the 50 ms from a drag to its picture
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
