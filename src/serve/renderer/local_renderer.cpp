@@ -26,9 +26,6 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-// The mean of what was measured, the latest counting most.
-void learn(double measured, double& mean) { mean = mean > 0 ? 0.5 * (mean + measured) : measured; }
-
 std::shared_ptr<const std::string> jpeg_of(const Image& image) { return std::make_shared<const std::string>(encode_jpeg(image, 85)); }
 std::shared_ptr<const std::string> png_of(const Image& image) {
   const std::vector<uint8_t> bytes = encode_png(image);
@@ -95,7 +92,7 @@ Json::Members LocalRenderer::tell(Context& context) {
 }
 
 void LocalRenderer::forget(int view) {
-  pace_.erase(view);
+  coarse_.erase(view);
   const std::lock_guard lock(mutex_);
   planes_.erase(view);
 }
@@ -132,11 +129,11 @@ Image draw_around(const Panel& panel, const StatedPicture& stated, Context& cont
 
 // The picture beside the legends in fewer pixels.
 DrawnView LocalRenderer::draw_moving(const PreparedPicture& prepared, const StatedPicture& stated, const DrawRequest& request,
-                                     double& seconds_per_sample, Context& context) {
+                                     double& coarse, Context& context) {
   const Panel panel = panel_of(prepared, stated);
   const Rect area = picture_beside_legends(panel.annotation, stated);
   DrawnView drawn;
-  drawn.coarse = coarseness(area.width * area.height, seconds_per_sample, drag_seconds);
+  drawn.coarse = coarse > 0 ? coarse : first_coarseness;
   RenderOptions options;
   options.width = std::max(1, int(std::ceil(area.width / drawn.coarse)));
   options.height = std::max(1, int(std::ceil(area.height / drawn.coarse)));
@@ -145,7 +142,7 @@ DrawnView LocalRenderer::draw_moving(const PreparedPicture& prepared, const Stat
   const Frame frame = panel.box_behind && has_volume(panel.scene)
                           ? draw_over_edges(panel, options, context)
                           : render(rough(panel.scene, Quality::moving), panel.camera, options, context);
-  learn(seconds_since(begin) / (double(options.width) * options.height), seconds_per_sample);
+  coarse = next_coarseness(drawn.coarse, seconds_since(begin), drag_seconds);
   Image image = to_image(frame, panel.scene.transparent);
   set_area(area, drawn);
   drawn.part = request.part == drawn.area;
@@ -171,7 +168,7 @@ DrawnView LocalRenderer::draw(const DrawRequest& request, Context& context) {
     if (request.camera) drawn.camera = *request.camera;
     set_area({0, 0, double(stated.width), double(stated.height)}, drawn);
   } else if (request.quality == Quality::moving) {
-    drawn = draw_moving(now->prepared, stated, request, pace_[request.view], context);
+    drawn = draw_moving(now->prepared, stated, request, coarse_[request.view], context);
   } else {
     const Panel panel = panel_of(now->prepared, stated);
     StatedPicture how = stated;

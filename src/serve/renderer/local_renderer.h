@@ -35,12 +35,12 @@ class LocalRenderer : public Renderer {
     int width;
   };
   std::shared_ptr<const Loaded> loaded() const;
-  DrawnView draw_moving(const PreparedPicture& prepared, const StatedPicture& stated, const DrawRequest& request,
-                        double& seconds_per_sample, Context& context);
+  DrawnView draw_moving(const PreparedPicture& prepared, const StatedPicture& stated, const DrawRequest& request, double& coarse,
+                        Context& context);
 
   std::shared_ptr<Cache> cache_;
   std::vector<std::string> coloring_;  ///< until a pipeline has it
-  std::map<int, double> pace_;         ///< of each view: seconds a sample took while it moved; for the thread that draws
+  std::map<int, double> coarse_;       ///< of the next moving picture of each view; for the thread that draws
   mutable std::mutex mutex_;           ///< for what follows
   std::shared_ptr<const Loaded> loaded_;
   std::map<int, std::shared_ptr<const Planes>> planes_;

@@ -37,12 +37,14 @@ Scene rough(Scene scene, Quality quality) {
   return scene;
 }
 
-double coarseness(double pixels, double seconds_per_sample, double seconds) {
+double next_coarseness(double coarse, double seconds, double budget) {
   constexpr std::array steps{1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0};
-  if (!(seconds_per_sample > 0)) return 4;
-  for (const double c : steps)
-    if (pixels / (c * c) * seconds_per_sample <= seconds) return c;
-  return steps.back();
+  const auto now = std::lower_bound(steps.begin(), steps.end(), coarse);
+  if (seconds > budget) return now + 1 < steps.end() ? *(now + 1) : steps.back();
+  if (now == steps.begin()) return coarse;
+  // Were all of the time spent on samples, a finer picture would take so much longer; a good part of it is not.
+  const double finer = *(now - 1), at_most = seconds * (coarse / finer) * (coarse / finer);
+  return at_most <= 1.3 * budget ? finer : coarse;
 }
 
 }  // namespace sg::serve

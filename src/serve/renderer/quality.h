@@ -10,8 +10,9 @@ namespace sg::serve {
 /// where they have voxels, else within a wider tolerance.
 Scene rough(Scene scene, Quality quality);
 
-/// How many pixels of a view one sample stands for, along each side, so that `pixels` of the view are drawn within `seconds`: 1, 1.5, 2, 3,
-/// 4, 6 or 8. `seconds_per_sample`: of earlier pictures of the same kind; 0: there are none.
-double coarseness(double pixels, double seconds_per_sample, double seconds);
+/// How many pixels of a view one sample stands for, along each side, in the next picture while it moves, so that it takes `budget` seconds:
+/// 1, 1.5, 2, 3, 4, 6 or 8, a step from `coarse`, whose picture took `seconds`.
+double next_coarseness(double coarse, double seconds, double budget);
+inline constexpr double first_coarseness = 4;
 
 }  // namespace sg::serve
