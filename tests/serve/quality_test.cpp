@@ -21,7 +21,7 @@ TEST_CASE("quality: pictures of a moving view settle where they take the time th
         coarse = next_coarseness(coarse, takes(coarse), 0.032);
       }
       CHECK((takes(worst) <= 0.032 || worst == 8));
-      CHECK(worst / best <= 2);  // it does not jump about
+      CHECK(worst / best <= 2);                  // it does not jump about
       if (takes(1) <= 0.016) CHECK(worst == 1);  // all pixels where that takes half of it
     }
 }
