@@ -35,6 +35,17 @@ const address = page.url(); // without the token, which counts once
 const picture = page.locator(".view-surface").first();
 const middle = await middleOf(picture);
 const tab = (name) => page.click(`#tab-${name}`);
+/** How many there are, once there is one: panels are drawn a moment after what they show has changed. */
+const countOf = async (selector) => {
+  await page.locator(selector).first().waitFor();
+  return page.locator(selector).count();
+};
+/** Waits until there are so many. */
+const become = async (selector, wanted, why = selector) => {
+  const until = Date.now() + 10000;
+  while ((await page.locator(selector).count()) !== wanted && Date.now() < until) await page.waitForTimeout(50);
+  assert.equal(await page.locator(selector).count(), wanted, why);
+};
 
 await test("the first picture comes by itself, final and not empty", async () => {
   assert.ok((await seen(page)).colors > 10);
@@ -119,13 +130,12 @@ await test("a point of the opacity curve is dragged, and the words of the comman
 
 await test("points are added, typed and taken away", async () => {
   await tab("color");
-  const count = () => page.locator(".point").count();
-  const before = await count();
+  const before = await countOf(".point");
   await andSettle(page, () => page.click("text=/\\+ point/"));
-  assert.equal(await count(), before + 1);
+  await become(".point", before + 1);
   await page.locator(".point").nth(1).focus();
   await andSettle(page, () => page.keyboard.press("Delete"));
-  assert.equal(await count(), before);
+  await become(".point", before);
   await page.click("text=points as numbers");
   const box = page.getByLabel("Opacity of point 2", { exact: true });
   await andSettle(page, async () => {
@@ -170,7 +180,7 @@ await test("a contour is added by search, its value dragged, and a mistake stand
   await shot(o, page, "add");
   await andSettle(page, () => page.keyboard.press("Enter"));
   await page.waitForSelector("[data-word=values]");
-  assert.equal(await page.locator("[data-word=values]").count(), 1);
+  await become("[data-word=values]", 1);
   const before = (await seen(page)).sum;
   const slider = page.locator("[data-word=values] input[type=range]").first();
   if (await slider.count()) {
@@ -195,14 +205,14 @@ await test("a contour is added by search, its value dragged, and a mistake stand
 
 await test("the pipeline forks in the graph, steps tell their bytes and times", async () => {
   await tab("steps");
-  const steps = await page.locator(".item").count();
+  const steps = await countOf(".item");
   await page.locator(".item-name").first().click();
   await page.keyboard.press("a");
   await page.keyboard.type("slice");
   await andSettle(page, () => page.keyboard.press("Enter"));
   await page.locator(".segmented >> text=graph").click();
-  assert.equal(await page.locator(".node").count(), steps + 1);
-  assert.equal(await page.locator(".edge").count(), steps, "each step but the first takes from it");
+  await become(".node", steps + 1);
+  await become(".edge", steps, "each step but the first takes from it");
   await shot(o, page, "graph");
   await page.locator(".segmented >> text=list").click();
   assert.match(await page.locator(".numbers").first().textContent(), /(s|–).*B/);
@@ -245,11 +255,15 @@ await test("the session is a file: saved, changed as text, compared, loaded", as
   const [download] = await Promise.all([page.waitForEvent("download"), page.click("text=Save …")]);
   const file = await download.path();
   assert.match(readFileSync(file, "utf8"), /^sightglass: /);
-  assert.ok((await page.locator(".diff .plus").count()) > 0, "what changed in this session is listed");
-  await andSettle(page, () => page.click("button[aria-label=Undo]"));
-  const undone = await page.locator("pre.code").first().textContent();
+  await page.locator(".diff .plus").first().waitFor(); // what changed in this session is listed
+  const code = () => page.locator("pre.code").first().textContent();
+  const other = (text) => page.waitForFunction((t) => document.querySelector("pre.code")?.textContent !== t, text);
+  const before = await code();
+  await page.click("button[aria-label=Undo]");
+  await other(before);
+  const undone = await code();
   await page.setInputFiles("label:has-text('Load …') input", { name: "saved.yaml", mimeType: "application/yaml", buffer: readFileSync(file) });
-  await page.waitForFunction((t) => document.querySelector("pre.code")?.textContent !== t, undone);
+  await other(undone);
   await settled(page);
   await shot(o, page, "session");
 });
@@ -307,6 +321,7 @@ await test("a second window sees the same session and the cursor of the first", 
   const revision = (p) => p.evaluate(() => document.querySelectorAll(".item").length);
   await tab("look");
   await other.click("#tab-look");
+  await other.waitForSelector("select[aria-label^='Add a way']");
   const before = await revision(other);
   await page.locator("select[aria-label^='Add a way']").selectOption("outline");
   await other.waitForFunction((n) => document.querySelectorAll(".item").length === n + 1, before);
@@ -322,11 +337,11 @@ await test("a second window sees the same session and the cursor of the first", 
 });
 
 await test("after a reload the session is there again", async () => {
-  const steps = await page.locator(".item").count();
+  const steps = await countOf(".item");
   await page.reload();
   await settled(page);
   await page.click("#tab-look");
-  assert.equal(await page.locator(".item").count(), steps);
+  await become(".item", steps);
 });
 
 await test("a lost connection is said, and comes back by itself", async () => {
