@@ -40,6 +40,12 @@ const countOf = async (selector) => {
   await page.locator(selector).first().waitFor();
   return page.locator(selector).count();
 };
+/** Opens the search for operations and types, until that one stands first. */
+const found = async (words, operation) => {
+  await page.keyboard.press("a");
+  await page.locator("dialog[open] input").first().fill(words);
+  await page.waitForFunction((name) => document.querySelector(".add-list li")?.textContent.includes(name), operation);
+};
 /** Waits until there are so many. */
 const become = async (selector, wanted, why = selector) => {
   const until = Date.now() + 10000;
@@ -174,9 +180,7 @@ await test("widgets over value and gradient are drawn, moved and undone", async 
 
 await test("a contour is added by search, its value dragged, and a mistake stands at its control", async () => {
   await picture.focus();
-  await page.keyboard.press("a");
-  await page.keyboard.type("isosurf");
-  await page.waitForSelector(".add-list li");
+  await found("isosurf", "contour");
   await shot(o, page, "add");
   await andSettle(page, () => page.keyboard.press("Enter"));
   await page.waitForSelector("[data-word=values]");
@@ -207,8 +211,7 @@ await test("the pipeline forks in the graph, steps tell their bytes and times", 
   await tab("steps");
   const steps = await countOf(".item");
   await page.locator(".item-name").first().click();
-  await page.keyboard.press("a");
-  await page.keyboard.type("slice");
+  await found("slice", "slice");
   await andSettle(page, () => page.keyboard.press("Enter"));
   await page.locator(".segmented >> text=graph").click();
   await become(".node", steps + 1);
