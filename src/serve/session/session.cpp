@@ -67,7 +67,8 @@ void Session::leave(int id) {
   const std::lock_guard lock(mutex_);
   const auto it = clients_.find(id);
   if (it == clients_.end()) return;
-  for (const auto& [number, view] : it->second->views) interrupt(view.request.view);
+  for (const auto& [number, view] : it->second->views) interrupt(view.request.view), left_.push_back(view.request.view);
+  work_.notify_one();
   clients_.erase(it);
   std::erase_if(questions_, [&](const Question& q) { return q.client == id; });
   tell_people();

@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 #include "base/context.h"
 #include "pipeline/film/film_times.h"
@@ -25,7 +26,7 @@ namespace sg::serve {
 /// One thread draws, another answers questions; messages are taken in by whichever thread has them. Ends with its last owner.
 class Session : public std::enable_shared_from_this<Session> {
  public:
-  /// `title`: of the window. `log`: gets the notes of work that are not for one window; may be null.
+  /// `title`: of the window, and of pictures that are saved.
   static std::shared_ptr<Session> open(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title);
   ~Session();
   Session(const Session&) = delete;
@@ -79,6 +80,7 @@ class Session : public std::enable_shared_from_this<Session> {
   std::map<int, std::unique_ptr<Client>> clients_;
   std::deque<Change> changes_;
   std::deque<Question> questions_;
+  std::vector<int> left_;  ///< views of the renderer whose windows have gone
 
   History history_;
   PipelineFile good_;  ///< the last one that could be loaded

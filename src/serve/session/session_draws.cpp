@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <tuple>
+#include <utility>
 
 #include "base/error.h"
 #include "pipeline/picture/picture.h"
@@ -61,7 +62,12 @@ void Session::draw_thread() {
   std::unique_lock lock(mutex_);
   while (!stopping_) {
     const bool dragged = std::chrono::steady_clock::now() < rest_at_;  // what takes longer waits for the end of it
-    if (!changes_.empty()) {
+    if (!left_.empty()) {
+      const std::vector<int> left = std::exchange(left_, {});
+      lock.unlock();
+      for (const int v : left) renderer_->forget(v);
+      lock.lock();
+    } else if (!changes_.empty()) {
       const Change change = changes_.front();
       changes_.pop_front();
       make_change(change);
@@ -222,10 +228,7 @@ void Session::draw(std::unique_lock<std::mutex>& lock, Client& client, WantedVie
   lock.lock();
   running_.reset();
   const auto it = clients_.find(id);
-  if (it == clients_.end()) {
-    renderer_->forget(renderer_view);
-    return;
-  }
+  if (it == clients_.end()) return;
   WantedView& now = it->second->views[renderer_view % most_views];
   now.served = std::chrono::steady_clock::now();
   if (cancelled) return;
