@@ -182,6 +182,31 @@ TEST_CASE("session: what is dragged is taken back as a whole") {
   CHECK(state["can_undo"].boolean());
 }
 
+TEST_CASE("session: an edit that changes nothing is not one to be taken back") {
+  const auto session = session_of(pipeline(ball, "  - {volume: {opacity: 0.3}, of: ball}\n"));
+  Window window(*session);
+  window.next("state");
+  const auto opacity = [&](int n, const char* value, bool live) {
+    window.say("{'do':'edit','n':" + std::to_string(n) + ",'live':" + (live ? "true" : "false") +
+               ",'edits':[{'at':'show/0','set':{'opacity':'" + value + "'}}]}");
+  };
+  opacity(1, "0.4", false);
+  opacity(2, "0.4", false);
+  opacity(3, "0.4", true);  // a drag that begins where it stands
+  opacity(4, "0.5", true);
+  opacity(5, "0.5", false);
+  window.say("{'do':'undo','n':6}");
+  Json state;
+  do state = window.next("state");
+  while (state["by"].whole() != 6);
+  CHECK(word_number(state, 0, "opacity") == 0.4);
+  window.say("{'do':'undo','n':7}");
+  do state = window.next("state");
+  while (state["by"].whole() != 7);
+  CHECK(word_number(state, 0, "opacity") == 0.3);
+  CHECK_FALSE(state["can_undo"].boolean());
+}
+
 TEST_CASE("session: what cannot be is refused at its control, and changes nothing") {
   const auto session = session_of(pipeline(ball + skin));
   Window window(*session);

@@ -17,13 +17,16 @@ class History {
   bool can_redo() const { return !after_.empty(); }
 
   /// The next pipeline. After a `live` change the next one of the same `words` takes its place: a drag, ended by one that is not live, is
-  /// taken back as a whole.
+  /// taken back as a whole. What changes nothing is nothing to be taken back.
   void change(PipelineFile next, bool live, const std::string& words) {
-    if (dragged_.empty() || dragged_ != words) {
+    const bool goes_on = !dragged_.empty() && dragged_ == words, same = next == now_;
+    dragged_ = live && (goes_on || !same) ? words : "";
+    if (same) return;
+    if (!goes_on) {
       before_.push_back(std::move(now_));
       if (before_.size() > most) before_.erase(before_.begin());
     }
-    dragged_ = live ? words : "", now_ = std::move(next), after_.clear();
+    now_ = std::move(next), after_.clear();
   }
   /// The same pipeline with what was chosen from the data.
   void complete(PipelineFile completed) { now_ = std::move(completed); }

@@ -19,19 +19,32 @@ export function planeHandles(app: App, view: View): SVGTemplateResult | typeof n
   const drawn: SVGTemplateResult[] = [];
   const seen = app.selected.startsWith("show/") ? state.show[Number(app.selected.slice(5))]?.of : undefined;
   for (const step of state.steps) {
-    const at = `steps/${step.name}`;
-    const words = Object.fromEntries(
-      ["origin", "normal", "axis", "position", "planes", "sphere", "cylinder", "box", "quadric", "function", "field", "value", "positions"].flatMap((w) => {
-        const value = app.session.word(at, w);
-        return value === undefined ? [] : [[w, value]];
-      }),
-    );
-    const plane = planeOf(step.operation, words, state.bounds);
+    const plane = planeNow(app, step);
     if (!plane) continue;
     if (plane.normals.length > 1) drawn.push(crosshair(app, view, step, plane));
-    else if (app.selected === at || (seen === step.name && app.tab === "steps" && app.panelOpen)) drawn.push(arrow(app, view, step, plane));
+    else if (app.selected === `steps/${step.name}` || (seen === step.name && app.tab === "steps" && app.panelOpen)) drawn.push(arrow(app, view, step, plane));
   }
   return drawn.length > 0 ? svg`${drawn}` : nothing;
+}
+
+const WORDS = ["origin", "normal", "axis", "position", "planes", "sphere", "cylinder", "box", "quadric", "function", "field", "value", "positions"];
+
+/** The plane of a step as it is asked for now: what was dragged a moment ago counts, drawn or not. */
+function planeNow(app: App, step: Step): Plane | null {
+  const words = Object.fromEntries(
+    WORDS.flatMap((w) => {
+      const value = app.session.word(`steps/${step.name}`, w);
+      return value === undefined ? [] : [[w, value]];
+    }),
+  );
+  return planeOf(step.operation, words, app.state!.bounds!);
+}
+
+/** Moves the plane of a step: a drag from where it began, a key from where it is now. */
+function mover(app: App, step: Step, start: Plane): { drag: (by: Vec3, live: boolean) => void; key: (by: Vec3) => void } {
+  const move = (from: Plane, by: Vec3, live: boolean): void =>
+    app.session.set(`steps/${step.name}`, movedTo(from, add(from.origin, by), app.state!.bounds!), live);
+  return { drag: (by, live) => move(start, by, live), key: (by) => move(planeNow(app, step) ?? start, by, false) };
 }
 
 const path = (points: (Point | null)[]): string =>
@@ -47,16 +60,15 @@ function arrow(app: App, view: View, step: Step, plane: Plane): SVGTemplateResul
   const frame = path(outline(plane.origin, normal, bounds).map((c) => toPixel(camera, view.area, c)));
   if (!p || !q) return svg``;
   const along = dot(normal, plane.origin);
-  const move = (by: number, live: boolean): void =>
-    app.session.set(`steps/${step.name}`, movedTo(plane, add(plane.origin, scale(normal, by)), bounds), live);
+  const move = mover(app, step, plane);
   return svg`<path class="plane-outline" d="${frame}Z" />
     <g class="handle" data-handle tabindex="0" role="slider" aria-label="Plane of ${step.name}" aria-valuenow=${Math.round((100 * dot(normal, sub(plane.origin, middleOf(bounds)))) / (reach / 0.12))}
       aria-valuetext=${plain(along)}
       @pointerdown=${(e: PointerEvent) =>
         beginDrag(e, () => ({
-          move: (dx, dy, done) => move(draggedAlong(camera, view.area, plane.origin, normal, dx, dy), !done),
+          move: (dx, dy, done) => move.drag(scale(normal, draggedAlong(camera, view.area, plane.origin, normal, dx, dy)), !done),
         }))}
-      @keydown=${(e: KeyboardEvent) => keyed(e, (by) => move(by * reach * 0.1, false))}>
+      @keydown=${(e: KeyboardEvent) => keyed(e, (by) => move.key(scale(normal, by * reach * 0.1)))}>
       <line x1=${p[0]} y1=${p[1]} x2=${q[0]} y2=${q[1]} class="handle-stem" />
       <circle cx=${p[0]} cy=${p[1]} r="12" class="handle-hit" /><circle cx=${p[0]} cy=${p[1]} r="5" class="handle-dot" />
       <circle cx=${q[0]} cy=${q[1]} r="14" class="handle-hit" /><circle cx=${q[0]} cy=${q[1]} r="6" class="handle-dot" />
@@ -74,17 +86,17 @@ function crosshair(app: App, view: View, step: Step, plane: Plane): SVGTemplateR
     const end = (side: number): Vec3 => plane.origin.map((x, j) => (j === k ? bounds[2 * k + side] : x)) as Vec3;
     return svg`<path class="crosshair axis-${k}" d=${path([toPixel(camera, view.area, end(0)), toPixel(camera, view.area, end(1))])} />`;
   });
-  const move = (by: Vec3, live: boolean): void => app.session.set(`steps/${step.name}`, movedTo(plane, add(plane.origin, by), bounds), live);
+  const move = mover(app, step, plane);
   return svg`${lines}<g class="handle" data-handle tabindex="0" role="slider" aria-label="Crosshair of ${step.name}"
       aria-valuetext=${plane.origin.map((x) => plain(x)).join(", ")} aria-valuenow="0"
       @pointerdown=${(e: PointerEvent) =>
-        beginDrag(e, () => ({ move: (dx, dy, done) => move(dragged(camera, view.area, plane.origin, dx, dy), !done) }))}
+        beginDrag(e, () => ({ move: (dx, dy, done) => move.drag(dragged(camera, view.area, plane.origin, dx, dy), !done) }))}
       @keydown=${(e: KeyboardEvent) => {
         const step: Record<string, Point> = { ArrowLeft: [-4, 0], ArrowRight: [4, 0], ArrowUp: [0, -4], ArrowDown: [0, 4] };
         const by = step[e.key];
         if (!by) return;
         e.preventDefault();
-        move(dragged(camera, view.area, plane.origin, ...by), false);
+        move.key(dragged(camera, view.area, plane.origin, ...by));
       }}>
       <circle cx=${p[0]} cy=${p[1]} r="16" class="handle-hit" /><circle cx=${p[0]} cy=${p[1]} r="7" class="handle-ring" />
     </g>`;
