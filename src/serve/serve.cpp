@@ -106,6 +106,7 @@ void view(PipelineFile file, const std::vector<std::string>& coloring, const std
   const std::vector<std::string> folders = folders_of(files_read(file));
   Sessions sessions([&](const std::string&) { return Session::open(new_renderer(p, coloring, folders), file, title); });
   fence_in(folders, "a window");
+  sessions.begin("");  // reads while the browser starts
   Door door(door_options(p), sessions);
   say_address(fmt::format("{}: {}\n", title, door.address_with_token()));
   if (p.browser && !open_browser(door.address_with_token())) context.info("no browser could be started: open the address in one");

@@ -59,6 +59,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void make_change(const Change& change);
   void load(std::unique_lock<std::mutex>& lock);
   void tell(std::unique_lock<std::mutex>& lock);
+  void warm_up(std::unique_lock<std::mutex>& lock);
   std::pair<Client*, WantedView*> next_view(bool coarse_only);
   void draw(std::unique_lock<std::mutex>& lock, Client& client, WantedView& view);
   void answer(std::unique_lock<std::mutex>& lock, const Question& question);
@@ -87,7 +88,7 @@ class Session : public std::enable_shared_from_this<Session> {
   Change last_change_{0, Json()};
   bool live_ = false;                              ///< the last edit was one of a drag that may go on
   std::chrono::steady_clock::time_point rest_at_;  ///< when that drag counts as over
-  bool loaded_ = false, needs_load_ = true, needs_tell_ = false;
+  bool loaded_ = false, needs_load_ = true, needs_tell_ = false, cold_ = true;
   uint64_t revision_ = 0;
   std::optional<FilmTimes> film_;
   std::optional<size_t> time_;  ///< index of the step that is shown; none: what the reader gives

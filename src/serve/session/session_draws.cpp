@@ -81,6 +81,8 @@ void Session::draw_thread() {
       tell(lock);
     } else if (auto [any, finer] = next_view(false); finer) {
       draw(lock, *any, *finer);
+    } else if (cold_ && loaded_) {
+      warm_up(lock);
     } else {
       work_.wait(lock);
     }
@@ -145,6 +147,23 @@ void Session::load(std::unique_lock<std::mutex>& lock) {
   good_ = std::move(completed), film_ = std::move(film), loaded_ = true, needs_tell_ = true;
   ++revision_;
   restart_views();
+}
+
+// A picture that nobody sees, before there is a window: what rays need to know of the data is found then.
+void Session::warm_up(std::unique_lock<std::mutex>& lock) {
+  cold_ = false;
+  if (!clients_.empty()) return;
+  DrawRequest request;
+  request.view = -1, request.quality = Quality::moving;
+  Context& context = begin_work(-1);
+  lock.unlock();
+  try {
+    renderer_->draw(request, context);
+    renderer_->forget(-1);
+  } catch (const std::exception&) {  // the window is told when it asks
+  }
+  lock.lock();
+  running_.reset();
 }
 
 void Session::tell(std::unique_lock<std::mutex>& lock) {

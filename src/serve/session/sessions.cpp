@@ -20,17 +20,28 @@ void Sessions::drop_idle() {
   if (oldest != sessions_.end()) sessions_.erase(oldest);
 }
 
-std::optional<SocketHandler> Sessions::join(const std::string& file, Rights rights, const std::string& user,
-                                            std::shared_ptr<Socket> socket) {
-  const std::lock_guard lock(mutex_);
+Sessions::Held* Sessions::held(const std::string& file) {
   auto found = sessions_.find(file);
   if (found == sessions_.end()) {
     drop_idle();
-    if (sessions_.size() >= most_) return std::nullopt;
+    if (sessions_.size() >= most_) return nullptr;
     found = sessions_.emplace(file, Held{make_(file), {}}).first;
   }
   found->second.used = std::chrono::steady_clock::now();
-  return found->second.session->join(rights, user, std::move(socket));
+  return &found->second;
+}
+
+void Sessions::begin(const std::string& file) {
+  const std::lock_guard lock(mutex_);
+  held(file);
+}
+
+std::optional<SocketHandler> Sessions::join(const std::string& file, Rights rights, const std::string& user,
+                                            std::shared_ptr<Socket> socket) {
+  const std::lock_guard lock(mutex_);
+  Held* const h = held(file);
+  if (!h) return std::nullopt;
+  return h->session->join(rights, user, std::move(socket));
 }
 
 std::optional<Saved> Sessions::saved(const std::string& id) {

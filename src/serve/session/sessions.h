@@ -19,6 +19,8 @@ using MakeSession = std::function<std::shared_ptr<Session>(const std::string& fi
 class Sessions : public SessionHost {
  public:
   explicit Sessions(MakeSession make, size_t most = 16, std::chrono::minutes idle = std::chrono::minutes(30));
+  /// Makes the session of a file before a window asks for it, so that its data are read meanwhile.
+  void begin(const std::string& file);
   std::optional<SocketHandler> join(const std::string& file, Rights rights, const std::string& user,
                                     std::shared_ptr<Socket> socket) override;
   std::optional<Saved> saved(const std::string& id) override;
@@ -29,6 +31,7 @@ class Sessions : public SessionHost {
     std::chrono::steady_clock::time_point used;
   };
   void drop_idle();
+  Held* held(const std::string& file);  // null: there is no room
   const MakeSession make_;
   const size_t most_;
   const std::chrono::minutes idle_;
