@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulate/fluid/pressure.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <utility>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/union_find.h"
+
+namespace sg::fluid {
+
+namespace {
+
+constexpr size_t grain = 1 << 15;
+
+template <class T>
+double dot(const Lattice<T>& a, const Lattice<T>& b, const Context& context) {
+  return parallel_reduce(
+      a.values.size(), grain, 0.0,
+      [&](size_t begin, size_t end) {
+        double s = 0;
+        for (size_t i = begin; i < end; ++i) s += double(a.values[i]) * double(b.values[i]);
+        return s;
+      },
+      [](double x, double y) { return x + y; }, &context);
+}
+
+template <class T>
+double largest(const Lattice<T>& a, const Context& context) {
+  return parallel_reduce(
+      a.values.size(), grain, 0.0,
+      [&](size_t begin, size_t end) {
+        T m = 0;
+        for (size_t i = begin; i < end; ++i) m = std::max(m, std::abs(a.values[i]));
+        return double(m);
+      },
+      [](double x, double y) { return std::max(x, y); }, &context);
+}
+
+// to[i] = f(i)
+template <class T, class F>
+void each(Lattice<T>& to, const Context& context, F&& f) {
+  parallel_for(
+      to.values.size(), grain,
+      [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) to.values[i] = f(i);
+      },
+      &context);
+}
+
+}  // namespace
+
+template <class T>
+PressureSolver<T>::PressureSolver(std::array<size_t, 3> cells, Faces<T> open, const OpenSides& sides)
+    : multigrid_(cells, std::move(open), sides), r_(cells), z_(cells), s_(cells) {
+  const auto& w = multigrid_.open();
+  const size_t count = cells[0] * cells[1] * cells[2];
+  const auto id = [&](size_t i, size_t j, size_t k) { return i + cells[0] * (j + cells[1] * k); };
+  UnionFind<> rooms(count);
+  std::vector<uint8_t> opens(count), wet(count);
+  for (size_t k = 0; k < cells[2]; ++k)
+    for (size_t j = 0; j < cells[1]; ++j)
+      for (size_t i = 0; i < cells[0]; ++i) {
+        const size_t c = id(i, j, k);
+        const auto face = [&](int a, size_t x, size_t y, size_t z, bool border, size_t neighbour) {
+          if (!(w[size_t(a)](x, y, z) > 0)) return;
+          wet[c] = 1;
+          if (border) opens[c] = 1;
+          else rooms.join(uint32_t(c), uint32_t(neighbour));
+        };
+        face(0, i, j, k, i == 0, c - 1), face(0, i + 1, j, k, i + 1 == cells[0], c + 1);
+        face(1, i, j, k, j == 0, c - cells[0]), face(1, i, j + 1, k, j + 1 == cells[1], c + cells[0]);
+        face(2, i, j, k, k == 0, c - cells[0] * cells[1]), face(2, i, j, k + 1, k + 1 == cells[2], c + cells[0] * cells[1]);
+      }
+  std::vector<uint8_t> has_opening(count);
+  for (size_t c = 0; c < count; ++c)
+    if (opens[c]) has_opening[rooms.root(uint32_t(c))] = 1;
+  std::vector<int32_t> number(count, -1);
+  std::vector<int32_t> room(count, -1);
+  for (size_t c = 0; c < count; ++c) {
+    const size_t root = rooms.root(uint32_t(c));
+    if (!wet[c] || has_opening[root]) continue;
+    if (number[root] < 0) number[root] = int32_t(closed_++);
+    room[c] = number[root];
+  }
+  if (closed_ > 0) room_ = std::move(room);
+}
+
+// Takes the mean of each closed room away.
+template <class T>
+void PressureSolver<T>::balance(Lattice<T>& v, bool must) const {
+  if (closed_ == 0) return;
+  std::vector<double> sum(closed_), size(closed_), count(closed_);
+  for (size_t c = 0; c < room_.size(); ++c)
+    if (const int32_t r = room_[c]; r >= 0)
+      sum[size_t(r)] += double(v.values[c]), size[size_t(r)] += std::abs(double(v.values[c])), ++count[size_t(r)];
+  for (size_t r = 0; r < closed_; ++r)
+    if (must && std::abs(sum[r]) > 1e-4 * size[r] && std::abs(sum[r]) > 1e-6 * count[r])
+      fail_data(fmt::format("{:.3g} cells' worth flow into a closed room every step and cannot flow out", sum[r]), "the pressure",
+                "open a side of the box, or balance what flows in and out");
+  for (size_t c = 0; c < room_.size(); ++c)
+    if (const int32_t r = room_[c]; r >= 0) v.values[c] -= T(sum[size_t(r)] / count[size_t(r)]);
+}
+
+template <class T>
+SolveReport PressureSolver<T>::solve(Lattice<T>& b, Lattice<T>& p, double tolerance, const Context& context, int most) {
+  balance(b, true);
+  SolveReport report;
+  const double size = largest(b, context);
+  if (!(size > 0)) {
+    if (size != size || std::isnan(dot(b, b, context))) fail_data("the flow holds values that are not numbers", "the pressure");
+    std::fill(p.values.begin(), p.values.end(), T(0));
+    return report;
+  }
+  if (!std::isfinite(size)) fail_data("the flow grew beyond all numbers", "the pressure", "take smaller time steps");
+  // Conjugate gradients (Hestenes, Stiefel 1952): r the residual, z = M r, s the direction.
+  multigrid_.apply(p, z_, context);
+  each(r_, context, [&](size_t i) { return b.values[i] - z_.values[i]; });
+  double rz = 0;
+  for (report.iterations = 0;; ++report.iterations) {
+    report.residual = largest(r_, context) / size;
+    if (report.residual <= tolerance || report.iterations == most) break;
+    multigrid_.precondition(r_, z_, context);
+    const double now = dot(r_, z_, context);
+    const T beta = report.iterations == 0 ? T(0) : T(now / rz);
+    rz = now;
+    each(s_, context, [&](size_t i) { return z_.values[i] + beta * s_.values[i]; });
+    multigrid_.apply(s_, z_, context);
+    const double curvature = dot(s_, z_, context);
+    if (!(curvature > 0)) break;  // nothing is left but rounding
+    const T alpha = T(rz / curvature);
+    each(p, context, [&](size_t i) { return p.values[i] + alpha * s_.values[i]; });
+    each(r_, context, [&](size_t i) { return r_.values[i] - alpha * z_.values[i]; });
+  }
+  balance(p, false);
+  return report;
+}
+
+template class PressureSolver<float>;
+template class PressureSolver<double>;
+
+}  // namespace sg::fluid

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pressure that makes a flow free of divergence: conjugate gradients with multigrid before them.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "simulate/fluid/multigrid.h"
+
+namespace sg::fluid {
+
+struct SolveReport {
+  int iterations = 0;
+  double residual = 0;  ///< the largest |b - A p| as a share of the largest |b|
+};
+
+/// Solves A p = b for the A of multigrid.h. Every room without an opening determines its pressure up to a constant: there the mean of b is
+/// taken away, and that of p is 0. Sums are the same for any number of threads.
+template <class T>
+class PressureSolver {
+ public:
+  PressureSolver(std::array<size_t, 3> cells, Faces<T> open, const OpenSides& sides);
+
+  /// From the values of p on, until the residual is at most `tolerance`, or `most` iterations are done. Throws Error(data) where b adds up
+  /// to something in a closed room: what flows in cannot flow out; and where no progress is made.
+  SolveReport solve(Lattice<T>& b, Lattice<T>& p, double tolerance, const Context& context, int most = 200);
+  /// Rooms that have no opening.
+  size_t closed_rooms() const { return closed_; }
+
+ private:
+  void balance(Lattice<T>& v, bool must) const;
+
+  Multigrid<T> multigrid_;
+  std::vector<int32_t> room_;  // of each cell, from 0 on; -1: dry, or a room with an opening
+  size_t closed_ = 0;
+  Lattice<T> r_, z_, s_;
+};
+
+}  // namespace sg::fluid
