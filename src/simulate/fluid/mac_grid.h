@@ -54,9 +54,9 @@ Faces<T> make_faces(const MacGrid& g, T value = 0) {
 /// A place between the numbers of a lattice, held at its border.
 template <class T>
 struct Spot {
-  size_t at = 0;           ///< of the corner with the smallest indices
+  size_t at = 0;                  ///< of the corner with the smallest indices
   size_t dx = 0, dy = 0, dz = 0;  ///< to its neighbours; 0 along axes of one place
-  T x = 0, y = 0, z = 0;   ///< shares of the neighbours
+  T x = 0, y = 0, z = 0;          ///< shares of the neighbours
 
   Spot(const std::array<size_t, 3>& n, T px, T py, T pz) {
     const auto split = [](size_t count, T p, T& share) {

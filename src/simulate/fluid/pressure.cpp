@@ -14,12 +14,12 @@ namespace sg::fluid {
 
 namespace {
 
-constexpr size_t grain = 1 << 15;
+constexpr size_t value_grain = 1 << 15;
 
 template <class T>
 double dot(const Lattice<T>& a, const Lattice<T>& b, const Context& context) {
   return parallel_reduce(
-      a.values.size(), grain, 0.0,
+      a.values.size(), value_grain, 0.0,
       [&](size_t begin, size_t end) {
         double s = 0;
         for (size_t i = begin; i < end; ++i) s += double(a.values[i]) * double(b.values[i]);
@@ -31,7 +31,7 @@ double dot(const Lattice<T>& a, const Lattice<T>& b, const Context& context) {
 template <class T>
 double largest(const Lattice<T>& a, const Context& context) {
   return parallel_reduce(
-      a.values.size(), grain, 0.0,
+      a.values.size(), value_grain, 0.0,
       [&](size_t begin, size_t end) {
         T m = 0;
         for (size_t i = begin; i < end; ++i) m = std::max(m, std::abs(a.values[i]));
@@ -44,7 +44,7 @@ double largest(const Lattice<T>& a, const Context& context) {
 template <class T, class F>
 void each(Lattice<T>& to, const Context& context, F&& f) {
   parallel_for(
-      to.values.size(), grain,
+      to.values.size(), value_grain,
       [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) to.values[i] = f(i);
       },
@@ -119,6 +119,10 @@ SolveReport PressureSolver<T>::solve(Lattice<T>& b, Lattice<T>& p, double tolera
   // Conjugate gradients (Hestenes, Stiefel 1952): r the residual, z = M r, s the direction.
   multigrid_.apply(p, z_, context);
   each(r_, context, [&](size_t i) { return b.values[i] - z_.values[i]; });
+  if (!(largest(r_, context) < size)) {  // worse than nothing to begin with
+    std::fill(p.values.begin(), p.values.end(), T(0));
+    r_.values = b.values;
+  }
   double rz = 0;
   for (report.iterations = 0;; ++report.iterations) {
     report.residual = largest(r_, context) / size;

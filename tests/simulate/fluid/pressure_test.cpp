@@ -15,7 +15,7 @@ using namespace sg::fluid;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr OpenSides closed{}, all_open{true, true, true, true, true, true}, top_open{false, false, false, false, false, true};
 
 MacGrid grid_of(std::array<size_t, 3> cells) { return {cells, 1, {}}; }
@@ -114,7 +114,6 @@ TEST_CASE("fluid pressure: the number of iterations hardly grows with the grid")
         INFO("n " << n << ", radius " << radius << ", open sides " << int(sides[0]) + int(sides[5]));
         CHECK(report.residual <= 1e-5);
         CHECK(report.iterations < 15);
-        
       }
 }
 

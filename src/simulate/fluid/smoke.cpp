@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulate/fluid/smoke.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "simulate/fluid/forces.h"
+
+namespace sg::fluid {
+
+namespace {
+
+constexpr double most_steps = 1000;  // of a frame
+
+OpenSides sides_of(const SmokeParams& p, const Vec3& up) {
+  OpenSides sides{};
+  if (p.open) {
+    if (*p.open != BoxSide::none) sides[size_t(*p.open)] = true;
+    return sides;
+  }
+  size_t axis = 0;
+  for (size_t a = 1; a < 3; ++a)
+    if (std::abs(up[int(a)]) > std::abs(up[int(axis)])) axis = a;
+  sides[2 * axis + (up[int(axis)] > 0)] = true;
+  return sides;
+}
+
+Vec3 up_of(const SmokeParams& p, const MacGrid& g) {
+  if (!p.up) return g.flat() ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
+  const double l = length(*p.up);
+  if (!(l > 0) || !std::isfinite(l) || (g.flat() && std::abs(p.up->z) >= l))
+    fail_usage("up has no direction in the flow", "smoke up", "give a vector such as 0,0,1");
+  return *p.up * (1 / l);
+}
+
+// The share of a face that is outside of the balls, from the distance of its middle: exact for the flat walls that large balls are.
+template <class T>
+Faces<T> open_shares(const MacGrid& g, const std::vector<Ball>& solids) {
+  Faces<T> open = make_faces<T>(g, 1);
+  for (int a = 0; a < 3; ++a) {
+    const auto s = MacGrid::shift(a);
+    Lattice<T>& l = open[size_t(a)];
+    for (size_t k = 0; k < l.n[2]; ++k)
+      for (size_t j = 0; j < l.n[1]; ++j)
+        for (size_t i = 0; i < l.n[0]; ++i) {
+          Vec3 p = g.origin + g.h * Vec3(double(i) + s[0], double(j) + s[1], double(k) + s[2]);
+          double share = a < g.axes();
+          for (const Ball& b : solids) {
+            if (g.flat()) p.z = b.middle.z;
+            share = std::min(share, std::clamp((length(p - b.middle) - b.radius) / g.h + 0.5, 0.0, 1.0));
+          }
+          l(i, j, k) = share < 0.01 ? T(0) : T(share);  // slits that carry nothing make the pressure hard to find
+        }
+  }
+  return open;
+}
+
+}  // namespace
+
+template <class T>
+Smoke<T>::Smoke(const SmokeParams& p, const Context& context)
+    : params_(p),
+      grid_(smoke_grid(p, context)),
+      up_(up_of(p, grid_)),
+      projection_(grid_, open_shares<T>(grid_, balls_of(p.obstacle, grid_, "obstacle")), sides_of(p, up_)),
+      velocity_(make_faces<T>(grid_)),
+      next_velocity_(velocity_),
+      density_(grid_.cells),
+      temperature_(grid_.cells),
+      pressure_(grid_.cells),
+      next_(grid_.cells) {
+  std::vector<double> numbers = p.source;
+  if (numbers.empty()) {
+    const Vec3 size = grid_.h * Vec3(double(grid_.cells[0]), double(grid_.cells[1]), grid_.flat() ? 0 : double(grid_.cells[2]));
+    const double radius = 0.12 * std::min({size.x, size.y, grid_.flat() ? size.x : size.z});
+    Vec3 middle = grid_.origin + 0.5 * size;
+    // Above the ground by its own radius and a little.
+    for (int a = 0; a < 3; ++a) middle[a] -= up_[a] * (0.5 * std::abs(size[a]) - 1.5 * radius);
+    numbers = {middle.x, middle.y, middle.z, radius};
+  }
+  sources_ = balls_of(numbers, grid_, "source");
+  give_off();
+}
+
+template <class T>
+void Smoke<T>::give_off() {
+  for (const Ball& b : sources_) {
+    std::array<size_t, 3> lo{0, 0, 0}, hi = grid_.cells;
+    for (int a = 0; a < grid_.axes(); ++a) {
+      const double n = double(grid_.cells[size_t(a)]), c = (b.middle[a] - grid_.origin[a]) / grid_.h, r = b.radius / grid_.h + 1;
+      lo[size_t(a)] = size_t(std::clamp(std::floor(c - r), 0.0, n)), hi[size_t(a)] = size_t(std::clamp(std::ceil(c + r), 0.0, n));
+    }
+    const auto share = [&](Vec3 p) {
+      if (grid_.flat()) p.z = b.middle.z;
+      return T(std::clamp((b.radius - length(p - b.middle)) / grid_.h + 0.5, 0.0, 1.0));
+    };
+    for (size_t k = lo[2]; k < hi[2]; ++k)
+      for (size_t j = lo[1]; j < hi[1]; ++j)
+        for (size_t i = lo[0]; i < hi[0]; ++i) {
+          const Vec3 at{double(i), double(j), double(k)};
+          const T c = share(grid_.origin + grid_.h * (at + Vec3(0.5, 0.5, 0.5)));
+          // Cells at the rim of a source have their share of its values, however often that is said.
+          const T heat = T(params_.temperature) * c;
+          density_(i, j, k) = std::max(density_(i, j, k), T(params_.density) * c);
+          temperature_(i, j, k) = heat > 0 ? std::max(temperature_(i, j, k), heat) : std::min(temperature_(i, j, k), heat);
+          if (params_.jet == Vec3(0, 0, 0)) continue;
+          for (int a = 0; a < grid_.axes(); ++a) {  // the lower face across each axis
+            const auto s = MacGrid::shift(a);
+            const T f = share(grid_.origin + grid_.h * (at + Vec3(s[0], s[1], s[2])));
+            velocity_[size_t(a)](i, j, k) += f * (T(params_.jet[a]) - velocity_[size_t(a)](i, j, k));
+          }
+        }
+  }
+}
+
+template <class T>
+double Smoke<T>::fastest(const Context& context) const {
+  double most = 0;
+  for (const Lattice<T>& l : velocity_)
+    most = std::max(most, parallel_reduce(
+                              l.values.size(), size_t(1) << 15, 0.0,
+                              [&](size_t begin, size_t end) {
+                                double m = 0;
+                                for (size_t i = begin; i < end; ++i) {
+                                  const double v = std::abs(double(l.values[i]));
+                                  m = v <= m ? m : v;  // NaN stays
+                                }
+                                return m;
+                              },
+                              [](double x, double y) { return y <= x ? x : y; }, &context));
+  return most;
+}
+
+template <class T>
+void Smoke<T>::step(double dt, const Context& context) {
+  const Carrier<T> carrier{grid_, velocity_, dt, params_.advection, params_.trace, true};
+  const auto carry = [&](int axis, Lattice<T>& f, Lattice<T>& to) {
+    if (scratch_.n != f.n) scratch_ = Lattice<T>(f.n);
+    advect(carrier, axis, f, to, scratch_, context);
+  };
+  for (int a = 0; a < grid_.axes(); ++a) carry(a, velocity_[size_t(a)], next_velocity_[size_t(a)]);
+  for (Lattice<T>* f : {&density_, &temperature_}) carry(-1, *f, next_), std::swap(*f, next_);
+  std::swap(velocity_, next_velocity_);
+  const T fade = T(std::exp(-params_.fading * dt)), cool = T(std::exp(-params_.cooling * dt));
+  if (fade != 1)
+    for (T& v : density_.values) v *= fade;
+  if (cool != 1)
+    for (T& v : temperature_.values) v *= cool;
+  give_off();
+  add_buoyancy(grid_, density_, temperature_, up_, params_.weight, params_.lift, dt, velocity_, context);
+  confine_vortices(grid_, params_.swirl, dt, velocity_, context);
+  diffuse_velocity(grid_, projection_.open(), params_.viscosity, dt, velocity_, context);
+  projection_.apply(velocity_, pressure_, params_.tolerance, context);
+}
+
+template <class T>
+void Smoke<T>::advance(const Context& context) {
+  const double push = std::abs(params_.lift * params_.temperature) + std::abs(params_.weight * params_.density);
+  double left = params_.frame;
+  for (int taken = 0; left > 1e-9 * params_.frame; ++taken) {
+    const double speed = fastest(context);
+    // In equal steps, none of which takes the fastest air, or what the forces make of air at rest, through more than cfl cells.
+    const double cells = left * std::max(speed, std::sqrt(push * grid_.h)) / (params_.cfl * grid_.h),
+                 steps = std::max(1.0, std::ceil(cells));
+    if (!(steps + taken <= most_steps))
+      fail_data(fmt::format("the flow grew to a speed of {:.3g} in frame {} (time {:.6g})", speed, frame_ + 1,
+                            double(frame_ + 1) * params_.frame),
+                "smoke",
+                params_.advection == Advection::explicit_euler ? "explicit advection is unstable: take another one"
+                                                               : "weaker forces or shorter frames keep it slower");
+    const double dt = left / steps;
+    step(dt, context);
+    left = steps > 1 ? left - dt : 0;
+  }
+  ++frame_;
+}
+
+template <class T>
+DatasetPtr Smoke<T>::dataset(const Context& context) const {
+  const auto& n = grid_.cells;
+  const size_t count = n[0] * n[1] * n[2];
+  UniformGrid mesh;
+  mesh.dims = n;
+  mesh.spacing = Vec3(grid_.h, grid_.h, grid_.h);
+  mesh.origin = grid_.origin + 0.5 * grid_.h * Vec3(1, 1, grid_.flat() ? 0 : 1);
+  DatasetParts parts;
+  parts.mesh = mesh;
+  parts.time = double(frame_) * params_.frame;
+  const auto add = [&](const char* name, const Lattice<T>& l) {
+    T* to = nullptr;
+    Array values = Array::make<T>(count, 1, &to);
+    std::copy(l.values.begin(), l.values.end(), to);
+    parts.fields.add({name, Association::point, std::move(values), "", Role::scalars});
+  };
+  add("density", density_), add("temperature", temperature_);
+  T* to = nullptr;
+  Array velocity = Array::make<T>(count, 3, &to);
+  const auto& u = velocity_;
+  parallel_for(
+      n[1] * n[2], 16,
+      [&](size_t begin, size_t end) {
+        for (size_t row = begin; row < end; ++row)
+          for (size_t i = 0; i < n[0]; ++i) {
+            const size_t j = row % n[1], k = row / n[1];
+            T* const v = to + 3 * (i + row * n[0]);
+            v[0] = (u[0](i, j, k) + u[0](i + 1, j, k)) / 2, v[1] = (u[1](i, j, k) + u[1](i, j + 1, k)) / 2;
+            v[2] = grid_.flat() ? T(0) : (u[2](i, j, k) + u[2](i, j, k + 1)) / 2;
+          }
+      },
+      &context);
+  parts.fields.add({"velocity", Association::point, std::move(velocity), "", Role::vectors});
+  add("pressure", pressure_);
+  return make_dataset(std::move(parts));
+}
+
+template class Smoke<float>;
+template class Smoke<double>;
+
+}  // namespace sg::fluid

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// What can be said of a smoke simulation.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/schema/schema.h"
+#include "simulate/analytic_grid.h"
+#include "simulate/fluid/advect.h"
+
+namespace sg {
+
+enum class BoxSide { x0, x1, y0, y1, z0, z1, none };
+constexpr auto enum_words(BoxSide) {
+  using enum BoxSide;
+  return std::array{Word{"x0", x0}, Word{"x1", x1}, Word{"y0", y0}, Word{"y1", y1}, Word{"z0", z0}, Word{"z1", z1}, Word{"none", none}};
+}
+
+struct SmokeParams {
+  int size = 64;
+  std::vector<double> bounds;
+  FieldType type = FieldType::f32;
+  double time = 0, frame = 0.04, cfl = 2;
+  fluid::Advection advection = fluid::Advection::maccormack;
+  fluid::BackTrace trace = fluid::BackTrace::rk2;
+  std::vector<double> source, obstacle;
+  double density = 1, temperature = 1;
+  Vec3 jet{0, 0, 0};
+  std::optional<Vec3> up;
+  double lift = 1, weight = 0.1, swirl = 0, viscosity = 0, cooling = 0, fading = 0;
+  std::optional<BoxSide> open;
+  double tolerance = 1e-5;
+};
+void describe(Schema& s, SmokeParams& p);
+
+namespace fluid {
+
+/// The grid that the parameters ask for: cubes over the bounds, whose upper ends give way to whole numbers of them. Flat (one cell along z)
+/// where the bounds have no extent along z. Throws Error(usage) for boxes without extent, and for more cells than memory could hold.
+MacGrid smoke_grid(const SmokeParams& p, const Context& context);
+
+/// Balls as x,y,z,radius of each. Throws Error(usage) for a wrong count, radii that are not positive, and balls outside of the box.
+struct Ball {
+  Vec3 middle;
+  double radius;
+};
+std::vector<Ball> balls_of(const std::vector<double>& numbers, const MacGrid& g, const char* word);
+
+}  // namespace fluid
+}  // namespace sg
