@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Numbers of selections.
-#include "serve/renderer/measures.h"
+#include "serve/renderer/questions/measures.h"
 
 #include <cmath>
 

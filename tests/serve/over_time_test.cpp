@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // A field over time at a place, and the cell under the pointer.
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <thread>
+#include <vector>
+
 #include "base/file/file.h"
+#include "serve/renderer/local_renderer.h"
+#include "serve/renderer/wish.h"
 #include "serve/renderer/worker/worker_renderer.h"
 #include "serve/serve.h"
 #include "serve/support/looking.h"
@@ -34,6 +42,19 @@ std::string series_text(const std::string& folder) {
          "  twice: {calc: {expr: 2*v, name: w}}\nshow:\n  - {volume: , of: flow}\n";
 }
 
+// Takes its time for each time, and counts them.
+class Slow : public LocalRenderer {
+ public:
+  explicit Slow(std::atomic<int>& times) : LocalRenderer(64 << 20, {}), times_(times) {}
+  Json::Members answer(const Json& question, Context& context) override {
+    if (wish_of(question) == Wish::over_time) ++times_, std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    return LocalRenderer::answer(question, context);
+  }
+
+ private:
+  std::atomic<int>& times_;
+};
+
 }  // namespace
 
 TEST_CASE("measures and over_time: a process of its own gives the same answers") {
@@ -59,14 +80,14 @@ TEST_CASE("over_time: the values of a series at a place, in order, the picture l
   const auto session = test::opened(series_text(folder));
   Window window(*session);
   CHECK(window.next("state")["times"].size() == 4);
-  for (const double x : {0.0, 0.25, 2.0}) {
+  for (const double x : {0.0, 0.25, 2.0, 2.0005}) {  // the last but for the rounding of a picture's depth
     window.say("{'do':'over_time','n':3,'step':'flow','field':'v','at':[" + std::to_string(x) + ",1,1]}");
     const Json curve = window.next("over_time");
     CHECK(curve["n"].whole() == 3);
     REQUIRE(curve["times"].size() == 4);
     for (size_t k = 0; k < 4; ++k) {
       CHECK(curve["times"][k].number() == 0.5 * double(k));
-      CHECK(curve["values"][k].number() == Approx(x + 5.0 * double(k)));
+      CHECK(curve["values"][k].number() == Approx(std::min(x, 2.0) + 5.0 * double(k)));
     }
   }
   window.say("{'do':'over_time','n':4,'step':'flow','field':'flow','at':[1,1,1]}");
@@ -85,20 +106,23 @@ TEST_CASE("over_time: the values of a series at a place, in order, the picture l
 }
 
 TEST_CASE("over_time: other questions are answered in between, and a window that leaves ends it") {
-  const std::string folder = series_folder();
-  const auto session = test::opened(series_text(folder));
+  std::atomic<int> times{0};
+  const auto session = Session::open(std::make_unique<Slow>(times), test::parsed(series_text(series_folder())), "flow");
   Window window(*session);
   window.next("state");
   window.say("{'do':'over_time','n':3,'step':'flow','field':'v','at':[1,1,1]}");
   window.say("{'do':'rows','n':4,'step':'flow','on':'point','from':0,'count':1}");
   CHECK(window.next("rows")["n"].whole() == 4);  // came before the curve, or next() would have left that out
   CHECK(window.next("over_time")["n"].whole() == 3);
+  CHECK(times == 4);
   {
     Window other(*session);
     other.say("{'do':'over_time','n':3,'step':'flow','field':'v','at':[1,1,1]}");
+    while (times == 4) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   window.say("{'do':'rows','n':5,'step':'flow','on':'point','from':0,'count':1}");
   CHECK(window.next("rows")["n"].whole() == 5);
+  CHECK(times == 5);
 }
 
 TEST_CASE("over_time: without times there is nothing to plot") {
@@ -107,6 +131,20 @@ TEST_CASE("over_time: without times there is nothing to plot") {
   window.next("state");
   window.say("{'do':'over_time','n':3,'step':'head','field':'distance','at':[0,0,0]}");
   CHECK(window.next("refused")["errors"][0]["text"].text().find("changes with time") != std::string::npos);
+}
+
+TEST_CASE("probe: of those that wait the last counts, and those to be kept") {
+  std::atomic<int> times{0};
+  const auto session = Session::open(std::make_unique<Slow>(times), test::parsed(series_text(series_folder())), "flow");
+  Window window(*session);
+  window.next("state");
+  window.say("{'do':'over_time','n':1,'step':'flow','field':'v','at':[1,1,1]}");  // they wait behind it
+  for (int n = 2; n <= 9; ++n)
+    window.say("{'do':'probe','n':" + std::to_string(n) + ",'view':0,'at':[1,1]" + (n == 3 || n == 5 ? ",'keep':true}" : "}"));
+  std::vector<uint64_t> answered;
+  while (answered.empty() || answered.back() < 9) answered.push_back(window.next("probe")["n"].whole());
+  CHECK(std::count(answered.begin(), answered.end(), 3) == 1);
+  CHECK(std::count(answered.begin(), answered.end(), 5) == 1);
 }
 
 TEST_CASE("probe: the cell under the pointer, and what it has") {

@@ -12,9 +12,9 @@
 #include "image/enlarge.h"
 #include "pipeline/catalog/catalog.h"
 #include "render/render.h"
-#include "serve/renderer/over_time.h"
 #include "serve/renderer/quality.h"
-#include "serve/renderer/questions.h"
+#include "serve/renderer/questions/over_time.h"
+#include "serve/renderer/questions/questions.h"
 #include "serve/renderer/tell.h"
 #include "serve/renderer/wish.h"
 

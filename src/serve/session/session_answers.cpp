@@ -44,7 +44,7 @@ Json for_renderer(Wish wish, int client, const Json& question) {
   Json::Members members = question.members();
   if (wish == Wish::probe) {
     members.emplace_back("view", renderer_view(client, question["view"]));
-  } else if (wish == Wish::measures && question["among"].contains("view")) {
+  } else if (wish == Wish::measures && !question["among"]["view"].is_null()) {
     Json::Members among = question["among"].members();
     among.emplace_back("view", renderer_view(client, question["among"]["view"]));
     members.emplace_back("among", Json(std::move(among)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "serve/renderer/place_values.h"
+#include "serve/renderer/questions/place_values.h"
 
 #include <fmt/core.h>
 

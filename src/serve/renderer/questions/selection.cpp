@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "serve/renderer/selection.h"
+#include "serve/renderer/questions/selection.h"
 
 #include <fmt/core.h>
 
@@ -19,7 +19,7 @@
 #include "filter/mesh/select/cell_centers.h"
 #include "filter/mesh/slice/implicit_function.h"
 #include "filter/mesh/slice/lasso_region.h"
-#include "serve/renderer/place_values.h"
+#include "serve/renderer/questions/place_values.h"
 #include "serve/renderer/tell.h"
 
 namespace sg::serve {

@@ -11,8 +11,9 @@
 namespace sg::serve {
 
 /// "value" (of several components the magnitude; null outside) and "unit" of a step of a pipeline at a place: only what the step needs is
-/// computed. Inside of solids as their cells have it; on surfaces, curves and clouds the nearest place within a hundredth of the data's
-/// size. Throws Error(usage) for steps and fields that are not there, and as running the step does.
+/// computed. Inside of solids as their cells have it; on surfaces, curves and clouds, and where rounding has
+/// moved the place out of a solid, as the nearest point within a hundredth of the data's size. Throws Error(usage) for steps and fields
+/// that are not there, and as running the step does.
 Json::Members answer_at_a_time(const Json& question, const PipelineFile& file, const std::shared_ptr<Cache>& cache, Context& context);
 
 }  // namespace sg::serve

@@ -2,7 +2,7 @@
 // What a window asks about the data: values at a place of the picture, rows of a table, values along a line, proposals for a look.
 #pragma once
 #include "pipeline/picture/prepare.h"
-#include "serve/renderer/selection.h"
+#include "serve/renderer/questions/selection.h"
 #include "serve/renderer/tell.h"
 
 namespace sg::serve {

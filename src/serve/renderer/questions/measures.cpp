@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "serve/renderer/measures.h"
+#include "serve/renderer/questions/measures.h"
 
 #include <fmt/core.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "serve/renderer/questions.h"
+#include "serve/renderer/questions/questions.h"
 
 #include <fmt/core.h>
 
@@ -12,10 +12,10 @@
 #include "data/cells/point_positions.h"
 #include "filter/probe/probe.h"
 #include "scene/choose/histogram.h"
-#include "serve/renderer/measures.h"
-#include "serve/renderer/place_values.h"
-#include "serve/renderer/probed_cell.h"
-#include "serve/renderer/transfer_questions.h"
+#include "serve/renderer/questions/measures.h"
+#include "serve/renderer/questions/place_values.h"
+#include "serve/renderer/questions/probed_cell.h"
+#include "serve/renderer/questions/transfer_questions.h"
 #include "serve/renderer/wish.h"
 
 namespace sg::serve {

@@ -2,7 +2,7 @@
 // Numbers of a part of the data: statistics and integrals of fields.
 #pragma once
 #include "base/text/json.h"
-#include "serve/renderer/selection.h"
+#include "serve/renderer/questions/selection.h"
 
 namespace sg::serve {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "serve/renderer/probed_cell.h"
+#include "serve/renderer/questions/probed_cell.h"
 
 #include <algorithm>
 #include <vector>
