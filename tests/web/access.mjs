@@ -17,7 +17,7 @@ export async function accessibility(test, o, browser, page, address) {
       await other.goto(address);
       await settled(other);
       assert.equal(await other.evaluate(() => document.documentElement.dataset.theme), colorScheme);
-      for (const name of ["steps", "look", "color", "table", "plot", "file"]) {
+      for (const name of ["steps", "look", "color", "table", "plot", "numbers", "file"]) {
         await other.click(`#tab-${name}`);
         await other.waitForTimeout(300);
         await noSeriousFindings(other, name);

@@ -37,6 +37,13 @@ export function dataFile(o) {
   return file;
 }
 
+/** The square [-1,1]^2 in the plane z = 0, in 32 by 32 cells. */
+export function flatFile(o) {
+  const file = join(scratch, "square.vtp");
+  if (!existsSync(file)) execFileSync(o.program, ["convert", "--source", "sphere size=33 radius=0.7692307692307693", "-f", "slice axis=z position=0", "-o", file], { stdio: "ignore" });
+  return file;
+}
+
 /** A series of three files, as a pattern. */
 export function seriesFile(o) {
   if (o.series) return o.series;

@@ -5,6 +5,7 @@ import { readFileSync } from "node:fs";
 import { basename, dirname } from "node:path";
 import { gzipSync } from "node:zlib";
 import { accessibility, phone } from "./access.mjs";
+import { measuring, overTime } from "./measuring.mjs";
 import { andSettle, cleanUp, dataFile, dragOn, launch, middleOf, openPage, options, seen, serve, seriesFile, settled, shot } from "./browser.mjs";
 
 const o = options();
@@ -384,6 +385,8 @@ if (!o.url && !o.mock) {
   });
 }
 
+if (!o.url && !o.mock) await measuring(test, o, browser);
+
 if (!o.url) {
   const series = await serve(o, seriesFile(o), { MOCK_TIMES: "1" });
   const played = await openPage(browser, series.url);
@@ -403,6 +406,7 @@ if (!o.url) {
     await shot(o, played, "times");
     assert.deepEqual(played.faults, []);
   });
+  await overTime(test, o, played);
 }
 
 await browser.close();

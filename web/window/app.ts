@@ -5,7 +5,10 @@ import type { Catalog } from "./catalog";
 import type { Drag } from "./input/pointer";
 import { Commands } from "./input/commands";
 import type { Camera, State } from "./protocol";
+import { Rulers } from "./measure/rulers";
 import { Lines } from "./questions/lines";
+import { OverTime } from "./questions/over_time";
+import { Selections } from "./questions/selections";
 import { Probe } from "./questions/probe";
 import { Histograms } from "./questions/histograms";
 import { Company } from "./session/company";
@@ -15,8 +18,8 @@ import { levelDrag } from "./view/window_level";
 import { follow, type Link } from "./view/link";
 import { View } from "./view/view";
 
-export type Tab = "steps" | "look" | "color" | "table" | "plot" | "file";
-export type Tool = "turn" | "pan" | "zoom" | "window" | "line";
+export type Tab = "steps" | "look" | "color" | "table" | "plot" | "numbers" | "file";
+export type Tool = "turn" | "pan" | "zoom" | "window" | "line" | "measure" | "lasso" | "rectangle";
 export type Dialog = "help" | "add" | "save" | "legend" | null;
 
 export class App {
@@ -24,6 +27,9 @@ export class App {
   readonly views: View[] = [];
   readonly probe: Probe;
   readonly lines: Lines;
+  readonly overTime: OverTime;
+  readonly selections: Selections;
+  readonly rulers: Rulers;
   readonly histograms: Histograms;
   readonly player: Player;
   readonly commands: Commands;
@@ -59,6 +65,9 @@ export class App {
     this.company = new Company(this);
     this.probe = new Probe(this);
     this.lines = new Lines(this);
+    this.overTime = new OverTime(this);
+    this.selections = new Selections(this);
+    this.rulers = new Rulers(this);
     this.histograms = new Histograms(this);
     this.player = new Player(this);
     this.commands = new Commands(this);
@@ -162,7 +171,9 @@ export class App {
       },
       click: (view, at, button) => {
         this.active = view.index;
-        if (button === "left") void this.probe.click(view, at);
+        if (button !== "left") return;
+        if (this.tool === "measure") void this.rulers.click(view, at);
+        else void this.probe.click(view, at);
       },
       hover: (view, at) => {
         this.probe.hover(view, at);
@@ -185,6 +196,7 @@ export class App {
     this.active = view.index;
     if (this.tool === "window") return levelDrag(this, view, drag, phase);
     if (this.tool === "line") return this.lines.drag(view, drag, phase);
+    if (this.tool === "lasso" || this.tool === "rectangle") return this.selections.drag(view, drag, phase, this.tool);
     return false;
   }
 

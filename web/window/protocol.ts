@@ -75,6 +75,7 @@ export interface State {
   times: number[];
   time: number | null;
   bounds: [number, number, number, number, number, number] | null;
+  stretch?: Vec3; // of the data in the picture, along each axis
   length_unit?: string;
   camera: Camera | null;
   notes: string[];
@@ -133,6 +134,47 @@ export interface LineAnswer {
   values: (number | null)[];
 }
 
+/** A step that makes the same selection. */
+export interface SelectionStep {
+  operation: string;
+  set: Words;
+}
+
+export interface MeasuredField {
+  name: string;
+  on: string;
+  component: number; // -1: the magnitude, or the only one
+  unit: string;
+  count: number;
+  missing: number;
+  min: number | null;
+  max: number | null;
+  mean: number | null;
+  deviation: number | null;
+  median: number | null;
+  integral: number | null;
+}
+
+export interface MeasuresAnswer {
+  is: "measures";
+  n: number;
+  points: number;
+  cells: number;
+  measure: number | null;
+  dimension: number | null;
+  length_unit: string;
+  fields: MeasuredField[];
+  steps: SelectionStep[];
+}
+
+export interface OverTimeAnswer {
+  is: "over_time";
+  n: number;
+  unit?: string;
+  times: number[];
+  values: (number | null)[];
+}
+
 export interface Proposal {
   words: Words;
   reason: string;
@@ -166,6 +208,8 @@ export type ServerMessage =
   | ProbeAnswer
   | RowsAnswer
   | LineAnswer
+  | MeasuresAnswer
+  | OverTimeAnswer
   | PlaneAnswer
   | HistogramAnswer
   | { is: "saved"; n: number; url: string; name: string }

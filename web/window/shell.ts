@@ -9,6 +9,7 @@ import { filePanel } from "./panels/file";
 import { helpDialog } from "./panels/help";
 import { legendDialog } from "./panels/legend";
 import { lookPanel } from "./panels/look";
+import { numbersPanel } from "./panels/numbers";
 import { plotPanel } from "./panels/plot";
 import { saveDialog } from "./panels/save";
 import { stepsPanel } from "./panels/steps";
@@ -21,7 +22,7 @@ import { colorPanel } from "./transfer/panel";
 import { overlay } from "./view/overlay";
 import { plain } from "./words";
 
-const tabs: [Tab, string][] = [["steps", "Pipeline"], ["look", "Look"], ["color", "Colour"], ["table", "Table"], ["plot", "Plot"], ["file", "Session"]];
+const tabs: [Tab, string][] = [["steps", "Pipeline"], ["look", "Look"], ["color", "Colour"], ["table", "Table"], ["plot", "Plot"], ["numbers", "Numbers"], ["file", "Session"]];
 
 export function draw(app: App, root: HTMLElement): void {
   render(shell(app), root);
@@ -74,6 +75,7 @@ function panel(app: App): TemplateResult {
     color: () => colorPanel(app),
     table: () => tablePanel(app),
     plot: () => plotPanel(app),
+    numbers: () => numbersPanel(app),
     file: () => filePanel(app),
   };
   const move = (e: KeyboardEvent): void => {
@@ -126,4 +128,7 @@ const toolHint = (tool: Tool): string =>
     zoom: "Drag up or down to zoom",
     window: "Drag across for the window, up and down for the level",
     line: "Drag from one end of the line to the other",
+    measure: "Click places: two have a distance, three an angle, more an area; drag to turn",
+    rectangle: "Drag a rectangle to see the numbers in it",
+    lasso: "Draw around what is to be measured",
   })[tool];

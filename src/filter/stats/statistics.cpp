@@ -33,9 +33,8 @@ struct Numbers {
   size_t missing = 0, infinite = 0;
 };
 
-Numbers numbers_of(const Array& a, int component, const Array& ghost) {
-  Numbers r;
-  r.finite.reserve(a.count());
+void add_numbers(Numbers& r, const Array& a, int component, const Array& ghost) {
+  r.finite.reserve(r.finite.size() + a.count());
   dispatch(a, [&](const auto& view) {
     for (size_t i = 0; i < view.count; ++i) {
       if (left_out(ghost, i)) continue;
@@ -58,6 +57,17 @@ Numbers numbers_of(const Array& a, int component, const Array& ghost) {
       else r.finite.push_back(x);
     }
   });
+}
+
+// A field, in each of the parts that have it.
+struct FieldOfParts {
+  std::vector<std::pair<DatasetPtr, Field>> parts;
+  const Field& first() const { return parts[0].second; }
+};
+
+Numbers numbers_of(const FieldOfParts& f, int component) {
+  Numbers r;
+  for (const auto& [part, field] : f.parts) add_numbers(r, field.array, component, ghosts_of(part, field));
   return r;
 }
 
@@ -158,8 +168,9 @@ struct Rows {
 };
 constexpr const char* number_names[9] = {"min", "quartile1", "median", "quartile3", "max", "mean", "deviation", "sum", "sum_of_squares"};
 
-void add_row(Rows& rows, const DatasetPtr& in, const Field& f, int component, const Context& ctx) {
-  Numbers numbers = numbers_of(f.array, component, ghosts_of(in, f));
+void add_row(Rows& rows, const FieldOfParts& parts, int component, const Context& ctx) {
+  const Field& f = parts.first();
+  Numbers numbers = numbers_of(parts, component);
   std::vector<double>& v = numbers.finite;
   if (rows.fields.empty() || rows.fields.back() != f.name || rows.association.back() != int32_t(f.association)) {
     if (std::find(rows.fields.begin(), rows.fields.end(), f.name) == rows.fields.end()) rows.fields.push_back(f.name);
@@ -195,19 +206,36 @@ void add_row(Rows& rows, const DatasetPtr& in, const Field& f, int component, co
 
 }  // namespace
 
-TablePtr statistics(const DatasetPtr& in, const StatisticsParams& p, Context& ctx) {
-  std::vector<Field> fields;
-  for (const std::string& name : p.fields) fields.push_back(in->fields().require(name));
+TablePtr statistics(const DatasetPtr& in, const StatisticsParams& p, Context& ctx) { return statistics_of_all({&in, 1}, p, ctx); }
+
+TablePtr statistics_of_all(std::span<const DatasetPtr> parts, const StatisticsParams& p, Context& ctx) {
+  std::vector<FieldOfParts> fields;
+  const auto add = [&](const DatasetPtr& part, const Field& f) {
+    const auto same = std::find_if(fields.begin(), fields.end(), [&](const FieldOfParts& other) {
+      const Field& o = other.first();
+      return other.parts.back().first != part && o.name == f.name && o.association == f.association && o.components() == f.components();
+    });
+    if (same == fields.end()) fields.push_back({{{part, f}}});
+    else same->parts.emplace_back(part, f);
+  };
+  for (const std::string& name : p.fields) {
+    bool found = false;
+    for (const DatasetPtr& part : parts)
+      if (const Field* f = part->fields().find(name)) add(part, *f), found = true;
+    if (!found && !parts.empty()) (void)parts[0]->fields().require(name);  // lists what there is
+  }
   if (p.fields.empty())
-    for (const Field& f : in->fields())
-      if (f.association != Association::whole) fields.push_back(f);
+    for (const DatasetPtr& part : parts)
+      for (const Field& f : part->fields())
+        if (f.association != Association::whole) add(part, f);
   Rows rows;
   std::string infinite;
-  for (const Field& f : fields) {
+  for (const FieldOfParts& field : fields) {
+    const Field& f = field.first();
     ctx.check();
     int64_t n = 0;
-    for (int c = 0; c < f.components(); ++c) add_row(rows, in, f, c, ctx), n += rows.infinite.back();
-    if (f.components() > 1) add_row(rows, in, f, -1, ctx);
+    for (int c = 0; c < f.components(); ++c) add_row(rows, field, c, ctx), n += rows.infinite.back();
+    if (f.components() > 1) add_row(rows, field, -1, ctx);
     if (n > 0) infinite += fmt::format("{}'{}' ({})", infinite.empty() ? "" : ", ", f.name, n);
   }
   if (!infinite.empty()) ctx.warn(fmt::format("statistics: infinite values are counted separately: {}", infinite));
@@ -228,7 +256,7 @@ TablePtr histogram(const DatasetPtr& in, const HistogramParams& p, Context& ctx)
   if (p.component >= f->components())
     fail_usage(fmt::format("asks for component {} of {}", p.component, f->components()), "histogram component", "components count from 0");
   const int component = f->components() == 1 ? 0 : p.component;
-  const Numbers numbers = numbers_of(f->array, component, ghosts_of(in, *f));
+  const Numbers numbers = numbers_of({{{in, *f}}}, component);
   const std::vector<double>& v = numbers.finite;
   if (numbers.infinite > 0) ctx.warn(fmt::format("histogram: {} infinite values of '{}' are not in any bin", numbers.infinite, f->name));
   double lo = HUGE_VAL, hi = -HUGE_VAL;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Statistics of fields, as tables.
 #pragma once
+#include <span>
+
 #include "base/context.h"
 #include "base/schema/schema.h"
 #include "data/dataset.h"
@@ -18,6 +20,8 @@ inline void describe(Schema& s, StatisticsParams& p) { s("fields", p.fields, "Fi
 /// are left out. Quartiles by linear interpolation between order statistics (Hyndman and Fan 1996, type 7). Sums are exact to the last
 /// places for any number of threads (fixed chunks, each summed with Neumaier's compensation). O(n) memory for the order statistics.
 TablePtr statistics(const DatasetPtr& in, const StatisticsParams& p, Context& ctx);
+/// One table of all parts: fields of the same name, place and number of components are one.
+TablePtr statistics_of_all(std::span<const DatasetPtr> parts, const StatisticsParams& p, Context& ctx);
 
 struct HistogramParams {
   FieldName field;

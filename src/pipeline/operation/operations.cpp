@@ -28,7 +28,7 @@ void ask_of_shape(const ImplicitParams& p, Request& up) {
 
 // A plane whose place is not stated goes through the middle of the data.
 bool chooses_plane(const ImplicitParams& p) {
-  if (!p.sphere.empty() || !p.cylinder.empty() || !p.box.empty() || !p.quadric.empty() || !p.function.empty()) return false;
+  if (names_shape(p)) return false;
   if (p.planes != CutPlanes::none || p.axis == CutAxis::none) return !p.origin;
   return !p.position && p.positions.empty();
 }

@@ -46,16 +46,12 @@ bool does(const PipelineFile::Step& step) {
   return op && op->is<P>();
 }
 
-bool is_plane(const ImplicitParams& p) {
-  return p.sphere.empty() && p.cylinder.empty() && p.box.empty() && p.quadric.empty() && p.function.empty();
-}
-
 // Out of what is kept, across the plane that cut it open; nothing for other clips.
 std::optional<Vec3> cut_normal(const PipelineFile::Step& step) {
   if (!does<ClipParams>(step) || step.from.size() > 1) return {};
   const ParamSet set = make_params(*known_operation(step.operation), step.words);
   const ClipParams& p = set.as<ClipParams>();
-  if (!is_plane(p) || !p.field.empty() || p.value || p.keep == ClipSide::both) return {};
+  if (names_shape(p) || !p.field.empty() || p.value || p.keep == ClipSide::both) return {};
   Vec3 n = p.normal;
   if (p.axis != CutAxis::none) n = Vec3(), n[axis_number(p.axis)] = 1;
   return p.keep == ClipSide::inside ? n : -n;
@@ -127,7 +123,7 @@ void show_planes_as_measured(PipelineFile& file) {
     const auto chain = steps_behind(file, shown_step(file, i));
     if (chain.empty() || !does<SliceParams>(*chain.front()) || chain.front()->from.size() > 1) continue;
     const ParamSet set = make_params(*known_operation(chain.front()->operation), chain.front()->words);
-    if (is_plane(set.as<SliceParams>())) s.words.emplace_back("lit=false");
+    if (!names_shape(set.as<SliceParams>())) s.words.emplace_back("lit=false");
   }
 }
 

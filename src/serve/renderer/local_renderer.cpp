@@ -7,12 +7,14 @@
 
 #include "base/error.h"
 #include "base/file/file.h"
+#include "base/text/utf8.h"
 #include "image/codec.h"
 #include "image/enlarge.h"
 #include "pipeline/catalog/catalog.h"
 #include "render/render.h"
 #include "serve/renderer/quality.h"
-#include "serve/renderer/questions.h"
+#include "serve/renderer/questions/over_time.h"
+#include "serve/renderer/questions/questions.h"
 #include "serve/renderer/tell.h"
 #include "serve/renderer/wish.h"
 
@@ -57,7 +59,9 @@ StatedPicture stated_for(const DrawRequest& request, const PreparedPicture& prep
 }  // namespace
 
 LocalRenderer::LocalRenderer(uint64_t cache_bytes, std::vector<std::string> coloring)
-    : cache_(std::make_shared<Cache>(cache_bytes)), coloring_(std::move(coloring)) {}
+    : cache_(std::make_shared<Cache>(cache_bytes)),
+      other_times_(std::make_shared<Cache>(cache_bytes / 8)),
+      coloring_(std::move(coloring)) {}
 
 std::shared_ptr<const LocalRenderer::Loaded> LocalRenderer::loaded() const {
   const std::lock_guard lock(mutex_);
@@ -200,18 +204,33 @@ std::string LocalRenderer::save(const DrawRequest& request, const std::string& n
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+std::shared_ptr<const LocalRenderer::Planes> LocalRenderer::planes_of(int view) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = planes_.find(view);
+  return found == planes_.end() ? nullptr : found->second;
+}
+
 Json::Members LocalRenderer::answer(const Json& question, Context& context) {
-  const auto now = loaded();
-  if (wish_of(question) != Wish::probe) return answer_about_steps(question, now->file, now->prepared, cache_, context);
-  std::shared_ptr<const Planes> planes;
-  {
-    const std::lock_guard lock(mutex_);
-    const auto found = planes_.find(int(question["view"].number()));
-    if (found == planes_.end()) return nothing_there();
-    planes = found->second;
+  const auto wish = wish_of(question);
+  if (wish == Wish::over_time) {
+    const PipelineFile file =
+        parse_pipeline(bytes_of_text(question["pipeline"].text()), bytes_of_text(question["origin"].text()), picture_vocabulary());
+    return answer_at_a_time(question, file, other_times_, context);
   }
-  return probe_picture({planes->seen, planes->projection, planes->area, planes->width}, question["at"][0].number(),
-                       question["at"][1].number(), now->file, now->prepared, cache_, context);
+  const auto now = loaded();
+  if (wish == Wish::probe) {
+    const auto planes = planes_of(int(question["view"].number()));
+    if (!planes) return nothing_there();
+    return probe_picture({planes->seen, planes->projection, planes->area, planes->width}, question["at"][0].number(),
+                         question["at"][1].number(), now->file, now->prepared, cache_, context);
+  }
+  DrawnArea area;
+  const auto planes = planes_of(int(question["among"]["view"].number()));
+  if (planes) {
+    const Shown& shown = now->prepared.shown[0];
+    area = {planes->projection, planes->area.x, planes->area.y, shown.stretch, shown.box};
+  }
+  return answer_about_steps(question, now->file, now->prepared, cache_, planes ? &area : nullptr, context);
 }
 
 }  // namespace sg::serve

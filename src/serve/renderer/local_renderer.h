@@ -35,13 +35,14 @@ class LocalRenderer : public Renderer {
     int width;
   };
   std::shared_ptr<const Loaded> loaded() const;
+  std::shared_ptr<const Planes> planes_of(int view) const;
   DrawnView draw_moving(const PreparedPicture& prepared, const StatedPicture& stated, const DrawRequest& request, double& coarse,
                         Context& context);
 
-  std::shared_ptr<Cache> cache_;
-  std::vector<std::string> coloring_;  ///< until a pipeline has it
-  std::map<int, double> coarse_;       ///< of the next moving picture of each view; for the thread that draws
-  mutable std::mutex mutex_;           ///< for what follows
+  std::shared_ptr<Cache> cache_, other_times_;  ///< of what is loaded; of questions over time, which would drive that out
+  std::vector<std::string> coloring_;           ///< until a pipeline has it
+  std::map<int, double> coarse_;                ///< of the next moving picture of each view; for the thread that draws
+  mutable std::mutex mutex_;                    ///< for what follows
   std::shared_ptr<const Loaded> loaded_;
   std::map<int, std::shared_ptr<const Planes>> planes_;
   StepSeconds seconds_;

@@ -154,12 +154,13 @@ Json words_json(const std::vector<std::string>& words) {
   return Json(std::move(members));
 }
 
-Data result_of(const PipelineFile& file, const std::string& step, const std::shared_ptr<Cache>& cache, Context& context) {
+Data result_of(const PipelineFile& file, const std::string& step, const std::shared_ptr<Cache>& cache, Context& context,
+               const Request& request) {
   GraphOptions options;
   options.cache = cache;
   const PipelineGraph built = build_graph(file, options);
   for (const auto& [name, node] : built.nodes)
-    if (name == step) return built.graph.evaluate(node, {}, context);
+    if (name == step) return built.graph.evaluate(node, request, context);
   fail_usage(fmt::format("there is no step '{}'", step));
 }
 
@@ -177,6 +178,7 @@ Json::Members tell_state(const PipelineFile& file, const PreparedPicture& prepar
   members.emplace_back("picture", picture_json(file));
   const Box3& b = shown.box;
   members.emplace_back("bounds", b.empty() ? Json() : numbers({b.lo.x, b.hi.x, b.lo.y, b.hi.y, b.lo.z, b.hi.z}));
+  members.emplace_back("stretch", numbers({shown.stretch.x, shown.stretch.y, shown.stretch.z}));
   members.emplace_back("length_unit", text(shown.length_unit));
   if (!in_panels(prepared.stated.picture))
     members.emplace_back("camera", camera_json(view_camera(panel_of(prepared, prepared.stated).camera)));

@@ -7,6 +7,7 @@
 
 #include "base/text/json.h"
 #include "pipeline/graph/cache.h"
+#include "pipeline/graph/request.h"
 #include "pipeline/picture/prepare.h"
 
 namespace sg::serve {
@@ -30,7 +31,9 @@ Json numbers(std::initializer_list<double> values);
 /// A word without a value is a switch that is on.
 Json words_json(const std::vector<std::string>& words);
 
-/// The result of a step, from the cache where it is there. Throws as running it does; Error(usage) for an unknown name.
-Data result_of(const PipelineFile& file, const std::string& step, const std::shared_ptr<Cache>& cache, Context& context);
+/// The result of a step, or what is requested of it, from the cache where it is there. Throws as running it does; Error(usage) for an
+/// unknown name.
+Data result_of(const PipelineFile& file, const std::string& step, const std::shared_ptr<Cache>& cache, Context& context,
+               const Request& request = {});
 
 }  // namespace sg::serve

@@ -71,6 +71,7 @@ void Session::leave(int id) {
   work_.notify_one();
   clients_.erase(it);
   std::erase_if(questions_, [&](const Question& q) { return q.client == id; });
+  if (asking_ && asking_client_ == id) asking_->cancel();
   tell_people();
 }
 

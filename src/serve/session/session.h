@@ -20,6 +20,7 @@
 #include "serve/session/client.h"
 #include "serve/session/edits.h"
 #include "serve/session/history.h"
+#include "serve/session/time_curve.h"
 
 namespace sg::serve {
 
@@ -45,6 +46,7 @@ class Session : public std::enable_shared_from_this<Session> {
   struct Question {
     int client;
     Json message;
+    std::shared_ptr<TimeCurve> curve = {};  ///< of a question over time, once it has begun
   };
 
   Session(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title);
@@ -63,6 +65,8 @@ class Session : public std::enable_shared_from_this<Session> {
   std::pair<Client*, WantedView*> next_view(bool coarse_only);
   void draw(std::unique_lock<std::mutex>& lock, Client& client, WantedView& view);
   void answer(std::unique_lock<std::mutex>& lock, const Question& question);
+  void answer_next_time(std::unique_lock<std::mutex>& lock, Question question);
+  Context& begin_answer(int client);
   void restart_views();
   void interrupt(int view);
   void send(int client, const Json::Members& message);
@@ -94,6 +98,7 @@ class Session : public std::enable_shared_from_this<Session> {
   std::optional<size_t> time_;  ///< index of the step that is shown; none: what the reader gives
   std::string state_;           ///< the last message "state", without what depends on the window
   std::unique_ptr<Context> running_, asking_;
+  int asking_client_ = 0;  ///< whose question is answered
   int running_view_ = -1;  ///< of the renderer; -1: something else runs
   std::deque<std::pair<std::string, Saved>> saved_;
 

@@ -2,7 +2,12 @@
 // The thread that answers.
 #include "serve/session/session.h"
 
+#include <fmt/core.h>
+
+#include <chrono>
+
 #include "base/error.h"
+#include "base/text/utf8.h"
 #include "serve/guard/token.h"
 #include "serve/renderer/tell.h"
 #include "serve/renderer/wish.h"
@@ -23,19 +28,89 @@ void Session::ask_thread() {
   }
 }
 
+namespace {
+
+constexpr auto curve_pause = std::chrono::milliseconds(200);  // between two messages of how far it is
+
+// The number that the renderer gives a view, which knows those of all windows.
+Json renderer_view(int client, const Json& view) {
+  const double number = view.number();
+  if (!(number >= 0 && number < most_views)) fail_usage(fmt::format("a window has views 0 to {}", most_views - 1));
+  return Json(uint64_t(client * most_views + int(number)));
+}
+
+// The question as the renderer understands it.
+Json for_renderer(Wish wish, int client, const Json& question) {
+  Json::Members members = question.members();
+  if (wish == Wish::probe) {
+    members.emplace_back("view", renderer_view(client, question["view"]));
+  } else if (wish == Wish::measures && !question["among"]["view"].is_null()) {
+    Json::Members among = question["among"].members();
+    among.emplace_back("view", renderer_view(client, question["among"]["view"]));
+    members.emplace_back("among", Json(std::move(among)));
+  }
+  return Json(std::move(members));
+}
+
+}  // namespace
+
+Context& Session::begin_answer(int client) {
+  asking_ = std::make_unique<Context>(), asking_client_ = client;
+  return *asking_;
+}
+
+// One time more of a field over time; the question then waits behind the others.
+void Session::answer_next_time(std::unique_lock<std::mutex>& lock, Question question) {
+  const uint64_t n = question.message["n"].whole();
+  if (!question.curve) {
+    if (!loaded_ || !film_ || film_->times.empty()) return refuse(question.client, n, {{"", "", "nothing here changes with time"}});
+    if (film_->times.size() > most_times)
+      return refuse(question.client, n,
+                    {{"", "", fmt::format("there are {} times, and {} can be asked for", film_->times.size(), most_times)}});
+    question.curve = std::make_shared<TimeCurve>(TimeCurve{good_, *film_, {}, ""});
+  }
+  TimeCurve& curve = *question.curve;
+  Context& context = begin_answer(question.client);
+  lock.unlock();
+  Json::Members reply, members = question.message.members();
+  std::string problem;
+  try {
+    members.emplace_back("pipeline", text(emit_pipeline(at_time(curve.file, curve.film, curve.values.size()))));
+    members.emplace_back("origin", text(curve.file.origin));
+    reply = renderer_->answer(Json(std::move(members)), context);
+  } catch (const std::exception& e) {
+    problem = e.what();
+  }
+  lock.lock();
+  asking_.reset();
+  if (!clients_.contains(question.client)) return;
+  if (!problem.empty()) return refuse(question.client, n, {{"", "", problem}});
+  const Json told(std::move(reply));
+  curve.values.push_back(told["value"]), curve.unit = bytes_of_text(told["unit"].text());
+  const size_t known = curve.values.size(), all = curve.film.times.size();
+  const auto now = std::chrono::steady_clock::now();
+  if (known == all || now - curve.told > curve_pause) {
+    curve.told = now;
+    send(question.client, {{"is", text("progress")}, {"share", number(double(known) / double(all))}, {"doing", text("over time")}});
+  }
+  if (known < all) return void(questions_.push_back(std::move(question)));
+  std::vector<Json> times;
+  for (const double t : curve.film.times) times.push_back(number(t));
+  send(question.client, {{"is", text(std::string(word_of(Wish::over_time)))},
+                         {"n", Json(n)},
+                         {"unit", text(curve.unit)},
+                         {"times", Json(std::move(times))},
+                         {"values", Json(curve.values)}});
+}
+
 void Session::answer(std::unique_lock<std::mutex>& lock, const Question& question) {
   const Json& m = question.message;
   const Wish wish = wish_of(m).value_or(Wish::probe);
   const auto it = clients_.find(question.client);
   if (it == clients_.end()) return;
-  Json asked = m;
-  if (wish == Wish::probe) {  // the renderer knows the views of all windows
-    Json::Members members = m.members();
-    members.emplace_back("view", Json(uint64_t(question.client * most_views + int(m["view"].number()))));
-    asked = Json(std::move(members));
-  }
+  if (wish == Wish::over_time) return answer_next_time(lock, question);
   DrawRequest picture;
-  asking_ = std::make_unique<Context>();
+  Context& context = begin_answer(question.client);
   lock.unlock();
   Json::Members reply;
   std::string problem;
@@ -48,9 +123,9 @@ void Session::answer(std::unique_lock<std::mutex>& lock, const Question& questio
       picture.camera = stated_camera(m);
       std::string stem = title_.substr(0, title_.find('.'));
       const std::string name = (stem.empty() ? "picture" : stem) + ".png";
-      saved = Saved{name, "image/png", std::make_shared<const std::string>(renderer_->save(picture, name, *asking_))};
+      saved = Saved{name, "image/png", std::make_shared<const std::string>(renderer_->save(picture, name, context))};
     } else {
-      reply = renderer_->answer(asked, *asking_);
+      reply = renderer_->answer(for_renderer(wish, question.client, m), context);
     }
   } catch (const std::exception& e) {
     problem = e.what();

@@ -64,7 +64,9 @@ void Session::take_message(int id, std::string_view words) {
     } else {
       // Of what is asked while the mouse moves only the last counts.
       if (*wish == Wish::probe)
-        std::erase_if(questions_, [&](const Question& q) { return q.client == id && wish_of(q.message) == Wish::probe; });
+        std::erase_if(questions_, [&](const Question& q) {
+          return q.client == id && wish_of(q.message) == Wish::probe && !q.message["keep"].boolean();
+        });
       if (questions_.size() >= most_questions) fail_usage("there are more questions than can be answered");
       questions_.push_back({id, message});
       questions_wait_.notify_one();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // From the world to CSS pixels of a view and back, as the renderer does it.
-import type { Camera, Vec3 } from "../protocol";
+import type { Camera, State, Vec3 } from "../protocol";
 import { frameOf, heightAtTarget } from "./camera";
 import { add, dot, scale, sub } from "./vector";
 
@@ -17,6 +17,12 @@ export function toPixel(camera: Camera, size: Size, point: Vec3): [number, numbe
   const perPixel = pixelSize(camera, size, depth);
   if (!(perPixel > 0)) return null;
   return [size.width / 2 + dot(d, f.right) / perPixel, size.height / 2 - dot(d, f.up) / perPixel];
+}
+
+/** The same of a place of the data, which the picture may show stretched. */
+export function placeInView(state: State | null, camera: Camera, size: Size, place: Vec3): [number, number] | null {
+  const s = state?.stretch ?? [1, 1, 1];
+  return toPixel(camera, size, [place[0] * s[0], place[1] * s[1], place[2] * s[2]]);
 }
 
 /** World length of a CSS pixel at a depth. */

@@ -20,6 +20,7 @@ export class Commands {
       app.changed();
       return true;
     }
+    if (action.startsWith("measure-")) return this.measure(action.slice(8));
     const actions: Record<string, () => void> = {
       projection: () => app.projection(),
       reset: () => app.reset(),
@@ -43,6 +44,15 @@ export class Commands {
     if (act) act();
     else return app.view.act(action);
     return true;
+  }
+
+  /** False where there is nothing to do: the key then keeps its usual meaning. */
+  private measure(what: string): boolean {
+    const { rulers, selections, tool, view } = this.app;
+    if (what === "clear" && tool !== "measure") return selections.clearOutline();
+    if (tool !== "measure") return false;
+    if (what === "middle") void rulers.clickMiddle(view);
+    return what === "middle" || (what === "back" ? rulers.back() : rulers.clear());
   }
 
   private openDialog(which: App["dialog"]): void {

@@ -33,6 +33,25 @@ export function answer(m, pipeline) {
       const distance = Array.from({ length: n }, (_, i) => (i / (n - 1)) * Math.hypot(...m.to.map((t, k) => t - m.from[k])));
       return { is: "line", unit: field.unit, distance, values: distance.map((_, i) => (i < n / 12 ? null : a + (b - a) * (0.5 + 0.4 * Math.sin(i / 14) * Math.exp(-i / 150)))) };
     }
+    case "measures": {
+      const part = m.among?.lasso || m.among?.box || m.among?.value ? 0.25 : 1;
+      const steps = [];
+      if (m.among?.box) steps.push({ operation: "extract", set: { box: m.among.box.join(","), by_center: "true" } });
+      if (m.among?.lasso) steps.push({ operation: "extract", set: { lasso: "0,0,0,1,0,0,0,1,0", by_center: "true" } });
+      if (m.among?.value) steps.push({ operation: "threshold", set: { field: m.among.value.field, min: String(m.among.value.range[0]), max: String(m.among.value.range[1]), mean: "true" } });
+      return {
+        is: "measures",
+        points: Math.round(110592 * part),
+        cells: Math.round(103823 * part),
+        measure: 8000 * part,
+        dimension: 3,
+        length_unit: "mm",
+        fields: info.fields.map((f) => ({ name: f.name, on: "point", component: -1, unit: f.unit ?? "", count: Math.round(110592 * part), missing: 0, min: f.range[0], max: f.range[1], mean: (f.range[0] + f.range[1]) / 2, deviation: (f.range[1] - f.range[0]) / 6, median: (f.range[0] + f.range[1]) / 2, integral: 8000 * part * ((f.range[0] + f.range[1]) / 2) })),
+        steps,
+      };
+    }
+    case "over_time":
+      return { is: "over_time", unit: field.unit, times: info.times, values: info.times.map((t, i) => a + (b - a) * (0.5 + 0.4 * Math.sin(i))) };
     case "proposals":
       return {
         is: "proposals",

@@ -5,12 +5,13 @@ import { keys } from "../input/keys";
 import { dialog } from "./dialog";
 
 const mouse: [string, string][] = [
-  ["Drag", "the tool: turn, move, zoom, window and level, line"],
+  ["Drag", "the tool: turn, move, zoom, window and level, line, rectangle, outline"],
   ["Shift + drag, middle button", "move"],
   ["Ctrl + drag, right button, wheel", "zoom"],
   ["Two fingers", "move, zoom and roll"],
   ["Rest on the picture", "the value there"],
   ["Click", "keep that value: it is marked in the curve, and controls offer it"],
+  ["Click with the tool “Measure”", "a place of a measurement"],
   ["Double click on a curve", "add or take away a point; Alt: without snapping, Shift: upwards only"],
 ];
 

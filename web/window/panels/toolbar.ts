@@ -5,7 +5,7 @@ import { html, nothing, type TemplateResult } from "lit";
 import type { App, Tool } from "../app";
 import { namedViews, upIsY } from "../camera/camera";
 
-const tools: [Tool, string, string][] = [["turn", "turn", "Turn"], ["pan", "pan", "Move"], ["zoom", "zoom", "Zoom"], ["window", "window", "Window and level"], ["line", "line", "Plot over a line"]];
+const tools: [Tool, string, string][] = [["turn", "turn", "Turn"], ["pan", "pan", "Move"], ["zoom", "zoom", "Zoom"], ["window", "window", "Window and level"], ["line", "line", "Plot over a line"], ["measure", "measure", "Measure"], ["rectangle", "rectangle", "Numbers in a rectangle"], ["lasso", "lasso", "Numbers in an outline"]];
 const directions: Record<string, string> = { "1": "front", "2": "back", "3": "left", "4": "right", "5": "top", "6": "bottom", "7": "corner" };
 
 export function toolbar(app: App): TemplateResult {

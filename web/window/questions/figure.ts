@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A curve as a figure for papers: a self-contained SVG, black on white.
-import type { LineAnswer } from "../protocol";
+import type { Curve } from "./curve";
 import { roundValues } from "../transfer/opacity";
 import { plain } from "../words";
 
@@ -8,9 +8,9 @@ const size = { w: 720, h: 440, left: 76, right: 20, top: 20, bottom: 56 };
 
 const escaped = (s: string): string => s.replace(/[&<>]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;" })[c]!);
 
-export function figure(a: LineAnswer, xLabel: string, yLabel: string): string {
+export function figure(a: Curve, xLabel: string, yLabel: string): string {
   const values = a.values.filter((v): v is number => v !== null && Number.isFinite(v));
-  const xs: [number, number] = [a.distance[0] ?? 0, a.distance[a.distance.length - 1] ?? 1];
+  const xs: [number, number] = [a.x[0] ?? 0, a.x[a.x.length - 1] ?? 1];
   let ys: [number, number] = values.length > 0 ? [Math.min(...values), Math.max(...values)] : [0, 1];
   if (!(ys[1] > ys[0])) ys = [ys[0] - 0.5, ys[0] + 0.5];
   const x = (v: number): number => size.left + ((v - xs[0]) / (xs[1] - xs[0] || 1)) * (size.w - size.left - size.right);
@@ -21,7 +21,7 @@ export function figure(a: LineAnswer, xLabel: string, yLabel: string): string {
   a.values.forEach((v, i) => {
     if (v === null || !Number.isFinite(v)) pen = false;
     else {
-      path += `${pen ? "L" : "M"}${x(a.distance[i]).toFixed(2)} ${y(v).toFixed(2)}`;
+      path += `${pen ? "L" : "M"}${x(a.x[i]).toFixed(2)} ${y(v).toFixed(2)}`;
       pen = true;
     }
   });

@@ -33,10 +33,10 @@ export class Probe {
     this.timer = setTimeout(() => void this.askNext(), 90);
   }
 
-  /** Asks about a place in a view, in CSS pixels. */
-  async at(view: View, at: [number, number]): Promise<ProbeAnswer | null> {
+  /** Asks about a place in a view, in CSS pixels; `keep`: the answer is wanted even when another place is asked about meanwhile. */
+  async at(view: View, at: [number, number], keep = true): Promise<ProbeAnswer | null> {
     try {
-      return await this.app.session.ask<ProbeAnswer>({ do: "probe", view: view.index, at: view.toPicture(at) });
+      return await this.app.session.ask<ProbeAnswer>({ do: "probe", view: view.index, at: view.toPicture(at), ...(keep ? { keep } : {}) });
     } catch {
       return null;
     }
@@ -61,7 +61,7 @@ export class Probe {
     const { view, at } = this.next;
     this.next = null;
     this.asking = true;
-    const answer = await this.at(view, at);
+    const answer = await this.at(view, at, false);
     this.asking = false;
     this.current = answer ? { at, view: view.index, answer } : null;
     this.app.changed();

@@ -109,8 +109,8 @@ export class Session {
     await this.connection.ask({ do: "pipeline", text });
   }
 
-  ask<T extends ServerMessage>(request: { do: string } & Record<string, unknown>): Promise<T> {
-    return this.connection.ask<T>(request);
+  ask<T extends ServerMessage>(request: { do: string } & Record<string, unknown>, seconds?: number): Promise<T> {
+    return this.connection.ask<T>(request, seconds);
   }
 
   /** Asks, and tells the person where the answer is no. */

@@ -27,7 +27,7 @@ export function planeHandles(app: App, view: View): SVGTemplateResult | typeof n
   return drawn.length > 0 ? svg`${drawn}` : nothing;
 }
 
-const WORDS = ["origin", "normal", "axis", "position", "planes", "sphere", "cylinder", "box", "quadric", "function", "field", "value", "positions"];
+const WORDS = ["origin", "normal", "axis", "position", "planes", "sphere", "cylinder", "box", "lasso", "quadric", "function", "field", "value", "positions"];
 
 /** The plane of a step as it is asked for now: what was dragged a moment ago counts, drawn or not. */
 function planeNow(app: App, step: Step): Plane | null {

@@ -13,7 +13,7 @@ export interface Plane {
 }
 
 const axes: Record<string, Vec3> = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
-const otherShapes = ["sphere", "cylinder", "box", "quadric", "function", "field", "value", "positions"];
+const otherShapes = ["sphere", "cylinder", "box", "lasso", "quadric", "function", "field", "value", "positions"];
 
 export const middleOf = (b: Bounds): Vec3 => [(b[0] + b[1]) / 2, (b[2] + b[3]) / 2, (b[4] + b[5]) / 2];
 

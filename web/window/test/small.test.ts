@@ -63,7 +63,7 @@ describe("numbers and words", () => {
 
   it("become tables and figures", () => {
     expect(csv(["a", "b,c"], [[1, null], ['x"y', 2]])).toBe('a,"b,c"\r\n1,\r\n"x""y",2\r\n');
-    const f = figure({ is: "line", n: 1, distance: [0, 1, 2, 3], values: [1, null, 2, 3] }, "d <m>", "v");
+    const f = figure({ x: [0, 1, 2, 3], values: [1, null, 2, 3] }, "d <m>", "v");
     expect(f).toContain("d &lt;m&gt;");
     expect(f.match(/d="M[^"]*M/)).not.toBe(null); // a gap
   });

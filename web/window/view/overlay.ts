@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What lies over the picture of a view: handles of planes, the line that is measured, the place that was clicked, others' cursors.
+// What lies over the picture of a view: handles of planes, the line that is plotted, measurements, outlines, the place that was clicked,
+// others' cursors.
 import { html, nothing, svg, type TemplateResult } from "lit";
 import type { App } from "../app";
 import { legendHandle } from "../panels/legend";
-import { toPixel } from "../camera/projection";
+import { placeInView } from "../camera/projection";
+import { measurements, selectionOutline } from "../measure/draw";
 import { planeHandles } from "../slices/handles";
 import type { View } from "./view";
 
@@ -11,8 +13,8 @@ export function overlay(app: App, view: View): TemplateResult {
   const { width, height } = view.size;
   const { x, y } = view.area;
   return html`<svg class="overlay" viewBox="0 0 ${Math.max(width, 1)} ${Math.max(height, 1)}">
-      <g transform="translate(${x} ${y})">${planeHandles(app, view)} ${line(app, view)} ${pin(app, view)}</g>
-      ${ruler(app, view)} ${cursors(app, view)}
+      <g transform="translate(${x} ${y})">${planeHandles(app, view)} ${line(app, view)} ${pin(app, view)} ${measurements(app, view)}</g>
+      ${ruler(app, view)} ${selectionOutline(app, view)} ${cursors(app, view)}
     </svg>
     ${view.index === 0 ? legendHandle(app, view) : nothing}`;
 }
@@ -27,7 +29,7 @@ function ruler(app: App, view: View): unknown {
 function line(app: App, view: View): unknown {
   const { from, to, ruler } = app.lines;
   if (ruler || app.tab !== "plot" || !app.panelOpen || !from || !to || !view.camera) return nothing;
-  return segment(toPixel(view.camera, view.area, from), toPixel(view.camera, view.area, to));
+  return segment(placeInView(app.state, view.camera, view.area, from), placeInView(app.state, view.camera, view.area, to));
 }
 
 function segment(a: [number, number] | null, b: [number, number] | null): unknown {
@@ -39,7 +41,7 @@ function segment(a: [number, number] | null, b: [number, number] | null): unknow
 /** The clicked place goes with the camera, as it is a place of the data. */
 function pin(app: App, view: View): unknown {
   const answer = app.probe.pinned?.answer;
-  const p = answer?.position && view.camera ? toPixel(view.camera, view.area, answer.position) : null;
+  const p = answer?.position && view.camera ? placeInView(app.state, view.camera, view.area, answer.position) : null;
   return p ? svg`<g class="pin"><circle cx=${p[0]} cy=${p[1]} r="7" /><circle cx=${p[0]} cy=${p[1]} r="1.5" /></g>` : nothing;
 }
 

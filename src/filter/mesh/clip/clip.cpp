@@ -177,8 +177,7 @@ Data clip(const DatasetPtr& in, const DatasetPtr& surface, const ClipParams& p, 
   const bool flat = in->as<SurfaceMesh>() != nullptr;
   const DatasetPtr mesh = prepared(in, p.tolerance, "clip", ctx);
   if (!p.field.empty() || p.value) {
-    const bool shape = surface || p.origin || p.position || p.axis != CutAxis::none || !p.sphere.empty() || !p.cylinder.empty() ||
-                       !p.box.empty() || !p.quadric.empty() || !p.function.empty();
+    const bool shape = surface || p.origin || p.position || p.axis != CutAxis::none || names_shape(p);
     if (shape) fail_usage("both a shape and a field are given", "clip", "give only one of them");
     const Field* field = nullptr;
     Job job{mesh, numbers_of(*mesh, p.field, p.component, "clip", &field), {}, {}, ctx};

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/text/text.h"
 #include "data/cells/cell_reader.h"
+#include "filter/mesh/select/cell_centers.h"
 #include "filter/mesh/select/extract.h"
 
 namespace sg {
@@ -41,13 +42,15 @@ std::vector<uint8_t> chosen(const DatasetPtr& in, const ExtractParams& p, size_t
 }
 
 bool has_region(const ImplicitParams& p) {
-  return p.origin || p.normal != ImplicitParams().normal || p.position || p.axis != CutAxis::none || !p.sphere.empty() ||
-         !p.cylinder.empty() || !p.box.empty() || !p.quadric.empty() || !p.function.empty();
+  return p.origin || p.normal != ImplicitParams().normal || p.position || p.axis != CutAxis::none || names_shape(p);
 }
 
 // Cells (or points of a cloud) in the region.
 void keep_region(const DatasetPtr& in, const ExtractParams& p, std::vector<uint8_t>& yes, Context& ctx) {
   const ImplicitFunction f = implicit_function(p.region, in, nullptr, "extract", ctx);
+  if (p.by_center && f.evaluate)
+    return keep_centers(
+        in, [&](Vec3 x) { return f(x) <= 0; }, yes, ctx);
   CellReader reader(in);
   if (in->as<AmrGrid>()) {
     if (!f.evaluate) fail_usage("a function of fields cannot be evaluated at AMR points", "extract function", "use only x, y, z");
@@ -64,7 +67,12 @@ void keep_region(const DatasetPtr& in, const ExtractParams& p, std::vector<uint8
   for (size_t c = 0; c < yes.size(); ++c) {
     reader.open(c);
     size_t inside = 0;
-    for (const int64_t id : reader.ids()) inside += v[size_t(id)] <= 0;
+    double sum = 0;
+    for (const int64_t id : reader.ids()) inside += v[size_t(id)] <= 0, sum += v[size_t(id)];
+    if (p.by_center) {  // a function of fields is known at points alone
+      yes[c] = yes[c] && !reader.ids().empty() && sum <= 0;
+      continue;
+    }
     yes[c] = yes[c] && (p.all_points ? inside == reader.ids().size() : inside > 0) && !reader.ids().empty();
   }
 }

@@ -18,6 +18,7 @@ struct ExtractParams {
   bool invert = false;
   ImplicitParams region = {};
   bool all_points = true;
+  bool by_center = false;
   std::vector<std::string> types = {};
   std::vector<int64_t> levels = {};
   std::vector<std::string> blocks = {};
@@ -31,6 +32,8 @@ inline void describe(Schema& s, ExtractParams& p) {
   s("invert", p.invert, "Keep the others instead.");
   describe_implicit(s, p.region);
   s("all_points", p.all_points, "With a region: select a cell only if all its points lie in it (behind the plane), not just one.");
+  s("by_center", p.by_center,
+    "With a region: select a cell if its centre, the mean of its points, lies in it; all_points does not count then.");
   s("types", p.types, "Cell types to select, e.g. Tetra,Hexahedron.");
   s("levels", p.levels, "Levels of an AMR grid to select; 0 is the coarsest.").at_least(0);
   s("blocks", p.blocks, "Parts of a collection to select, by name, path, the end of a path or number.");

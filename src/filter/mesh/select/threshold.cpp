@@ -11,6 +11,7 @@
 #include "data/field_ops.h"
 #include "data/fields/label_names.h"
 #include "data/lattice.h"
+#include "filter/field/sampling/point_cell.h"
 #include "filter/mesh/clip/corner_bits.h"
 #include "filter/mesh/select/extract.h"
 #include "filter/mesh/select/lattice_cells.h"
@@ -226,7 +227,7 @@ DatasetPtr threshold(const DatasetPtr& in, const ThresholdParams& p, Context& ct
   if (p.min && p.max && *p.min > *p.max)
     fail_usage(fmt::format("min {} is above max {}", short_number(*p.min), short_number(*p.max)), "threshold",
                "swap them, or use invert=true");
-  const std::vector<const Field*> fields = chosen_fields(*in, p);
+  std::vector<const Field*> fields = chosen_fields(*in, p);
   const Field& field = *fields[0];
   const Ranges ranges = p.names.empty() ? ranges_of(p) : labels_of_names(*in, field, p, ctx);
   auto tell = [&](const DatasetPtr& out) {
@@ -236,16 +237,23 @@ DatasetPtr threshold(const DatasetPtr& in, const ThresholdParams& p, Context& ct
     return out;
   };
   const bool cloud = in->as<PointCloud>() != nullptr;
+  std::vector<DatasetPtr> means;  // that hold the fields
+  for (const Field*& f : fields)
+    if (p.mean && !cloud && f->association == Association::point) {
+      const std::string name = f->name;
+      means.push_back(point_to_cell(in, {{name}}, ctx));
+      f = &means.back()->fields().require(name, Association::cell);
+    }
   const std::vector<uint8_t> states = cloud ? std::vector<uint8_t>() : cell_states(*in);
   const auto d = lattice_dims(in->mesh());
   if (is_lattice(in->mesh()) && d[0] > 1 && d[1] > 1 && d[2] > 1 && fields.size() == 1 && states.empty() &&
-      field.association == Association::point && in->point_count() <= size_t(INT32_MAX))
+      fields[0]->association == Association::point && in->point_count() <= size_t(INT32_MAX))
     return tell(extract_lattice_cells(
         in, lattice_cells_by_points(BitRows(d), p.all_points, p.invert, lattice_points_in_range(BitRows(d), field, p, ranges)),
         "threshold"));
-  std::vector<uint8_t> keep = in_range(field, p, ranges);
+  std::vector<uint8_t> keep = in_range(*fields[0], p, ranges);
   ctx.check();
-  if (!cloud && field.association == Association::point) keep = cells_by_points(*in, p.all_points, keep);
+  if (!cloud && fields[0]->association == Association::point) keep = cells_by_points(*in, p.all_points, keep);
   for (size_t f = 1; f < fields.size(); ++f) {
     std::vector<uint8_t> also = in_range(*fields[f], p, ranges);
     if (!cloud && fields[f]->association == Association::point) also = cells_by_points(*in, p.all_points, also);

@@ -16,6 +16,7 @@ struct ThresholdParams {
   std::vector<double> ranges = {};
   std::vector<std::string> names = {};
   std::vector<std::string> fields = {};
+  bool mean = false;
 };
 
 inline void describe(Schema& s, ThresholdParams& p) {
@@ -28,6 +29,7 @@ inline void describe(Schema& s, ThresholdParams& p) {
   s("ranges", p.ranges, "Several ranges instead of min and max: lo,hi,lo,hi,...; values in any of them are kept.").unit("@field");
   s("names", p.names, "Names of labels to keep instead of numbers, as info lists them; upper and lower case are the same.");
   s("fields", p.fields, "Several fields instead of one, of points, cells or both: a cell is kept if it passes for each of them.");
+  s("mean", p.mean, "With a point field: compare the mean of a cell's points, as point_to_cell gives it; all_points does not count then.");
 }
 
 /// Keeps the cells (of a PointCloud: the points) whose value lies in [min, max], or in one of several ranges, or is a label of one of the

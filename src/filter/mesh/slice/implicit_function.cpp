@@ -11,6 +11,7 @@
 #include "data/lattice.h"
 #include "data/ranks/over_all.h"
 #include "filter/field/calc/calc.h"
+#include "filter/mesh/slice/lasso_region.h"
 #include "filter/mesh/surface.h"
 #include "filter/mesh/surface_builder.h"
 #include "index/cell_locator.h"
@@ -168,7 +169,8 @@ Vec3 ImplicitFunction::gradient(Vec3 p, double step) const {
 ImplicitFunction implicit_function(const ImplicitParams& p, const DatasetPtr& in, const DatasetPtr& surface, std::string_view who,
                                    Context& ctx) {
   std::vector<std::string> given;
-  for (const auto& [name, list] : {std::pair{"sphere", &p.sphere}, {"cylinder", &p.cylinder}, {"box", &p.box}, {"quadric", &p.quadric}})
+  for (const auto& [name, list] :
+       {std::pair{"sphere", &p.sphere}, {"cylinder", &p.cylinder}, {"box", &p.box}, {"lasso", &p.lasso}, {"quadric", &p.quadric}})
     if (!list->empty()) given.push_back(name);
   if (!p.function.empty()) given.push_back("function");
   if (surface) given.push_back("a second mesh");
@@ -206,6 +208,11 @@ ImplicitFunction implicit_function(const ImplicitParams& p, const DatasetPtr& in
       }
       return deepest > 0 ? length(out) : deepest;
     });
+  }
+  if (!p.lasso.empty() || p.lasso_eye) {
+    if (p.lasso.empty()) fail_usage("lasso_eye needs a lasso", std::string(who), "give the corners of the outline, too");
+    const auto region = std::make_shared<const LassoRegion>(p.lasso, p.lasso_eye, who);
+    return by_point("a lasso", [region](Vec3 x) { return region->distance(x); });
   }
   if (!p.quadric.empty()) {
     need(p.quadric, 10, who, "quadric", "give ten numbers: xx,yy,zz,xy,yz,xz,x,y,z,1");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Regions and surfaces by a formula: planes, spheres, boxes, quadrics, another mesh, any expression. Declared once for all operations that
-// cut along them.
+// Regions and surfaces by a formula: planes, spheres, boxes, outlines, quadrics, another mesh, any expression. Declared once for all
+// operations that cut along them.
 #pragma once
 #include <functional>
 #include <span>
@@ -32,13 +32,20 @@ struct ImplicitParams {
   Vec3 normal{0, 0, 1};
   CutAxis axis = CutAxis::none;
   std::optional<double> position = {};
-  std::vector<double> sphere = {}, cylinder = {}, box = {}, quadric = {};
+  std::vector<double> sphere = {}, cylinder = {}, box = {}, lasso = {}, quadric = {};
+  std::optional<Vec3> lasso_eye = {};
   std::string function = {};
   // Several planes at once: slice only.
   CutPlanes planes = CutPlanes::none;
   std::vector<double> positions = {};
   double tolerance = 1e-3;  // slice and clip
 };
+
+/// Whether the words name something else than a plane.
+inline bool names_shape(const ImplicitParams& p) {
+  return !p.sphere.empty() || !p.cylinder.empty() || !p.box.empty() || !p.lasso.empty() || p.lasso_eye || !p.quadric.empty() ||
+         !p.function.empty();
+}
 
 inline void describe_curved_tolerance(Schema& s, double& tolerance) {
   s("tolerance", tolerance,
@@ -56,12 +63,16 @@ inline void describe_implicit(Schema& s, ImplicitParams& p) {
   s("sphere", p.sphere, "Sphere instead of the plane: x,y,z of its centre, and its radius.");
   s("cylinder", p.cylinder, "Infinite cylinder: x,y,z of a point on its axis, the direction of the axis, and the radius.");
   s("box", p.box, "Box: x0,x1,y0,y1,z0,z1.");
+  s("lasso", p.lasso,
+    "What lies behind an outline: x,y,z of each corner of a polygon, which is swept along its normal, without end on both sides.");
+  s("lasso_eye", p.lasso_eye, "With lasso: the outline is seen from this point, and what lies behind the point is outside.");
   s("quadric", p.quadric, "Quadric a0 x^2 + a1 y^2 + a2 z^2 + a3 xy + a4 yz + a5 xz + a6 x + a7 y + a8 z + a9 = 0, as ten numbers.");
   s("function", p.function, "Surface where an expression of x, y, z (or point fields) is zero, e.g. x^2+y^2-1; see calc.");
 }
 
-/// A function of place that is negative inside: behind a plane, in a sphere, cylinder, box or closed mesh, where an expression is negative.
-/// Distances from planes, spheres, cylinders, boxes and meshes; other functions as they are.
+/// A function of place that is negative inside: behind a plane or an outline, in a sphere, cylinder, box or closed mesh, where an
+/// expression is negative. Distances from planes, spheres, cylinders, boxes, outlines (lasso_region.h) and meshes; other functions as they
+/// are.
 struct ImplicitFunction {
   std::function<void(std::span<const Vec3> at, std::span<double> out)> evaluate;  ///< safe from several threads
   Array known;          ///< an expression of fields: its f64 values at the points of the mesh; evaluate is empty then

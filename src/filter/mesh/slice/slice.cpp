@@ -360,7 +360,7 @@ DatasetPtr straight_near(const DatasetPtr& in, const SlicePlane& plane, double t
 DatasetPtr slice_one(const DatasetPtr& in, const DatasetPtr& surface, const ImplicitParams& p, Context& ctx) {
   const bool curved = has_curved_cells(*in);
   if (curved) ctx.info("slice: curved cells are linearised first");
-  if (surface || !p.function.empty() || !p.sphere.empty() || !p.cylinder.empty() || !p.quadric.empty())
+  if (surface || (names_shape(p) && p.box.empty()))
     return slice_shape(curved ? tessellate(in, {.tolerance = p.tolerance, .max_level = 7}, ctx) : in, p, surface, ctx);
   const ImplicitFunction f = implicit_function(p, in, nullptr, "slice", ctx);
   const auto along = [&](const SlicePlane& plane) {

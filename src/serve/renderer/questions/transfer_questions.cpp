@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "serve/renderer/transfer_questions.h"
+#include "serve/renderer/questions/transfer_questions.h"
 
 #include <algorithm>
 

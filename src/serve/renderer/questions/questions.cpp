@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "serve/renderer/questions.h"
+#include "serve/renderer/questions/questions.h"
 
 #include <fmt/core.h>
 
@@ -12,7 +12,10 @@
 #include "data/cells/point_positions.h"
 #include "filter/probe/probe.h"
 #include "scene/choose/histogram.h"
-#include "serve/renderer/transfer_questions.h"
+#include "serve/renderer/questions/measures.h"
+#include "serve/renderer/questions/place_values.h"
+#include "serve/renderer/questions/probed_cell.h"
+#include "serve/renderer/questions/transfer_questions.h"
 #include "serve/renderer/wish.h"
 
 namespace sg::serve {
@@ -22,54 +25,6 @@ namespace {
 constexpr int64_t most_rows = 500, most_line_points = 4096;
 
 Json vector_json(Vec3 v) { return numbers({v.x, v.y, v.z}); }
-
-Vec3 vector_of(const Json& list, std::string_view word) {
-  Vec3 v;
-  for (int a = 0; a < 3; ++a) {
-    v[a] = list[size_t(a)].number();
-    if (!list[size_t(a)].is_number()) fail_usage(fmt::format("'{}' is not a place", word), "question", "it has three numbers");
-  }
-  return v;
-}
-
-// "1150", "(0.1, 0, 2)".
-std::string value_text(const Array& a, size_t i) {
-  if (a.components() == 1) return short_number(a.get(i));
-  std::string s = "(";
-  for (int c = 0; c < std::min(a.components(), 9); ++c) s += (c ? ", " : "") + short_number(a.get(i, c));
-  return s + ")";
-}
-
-// The point of the mesh that lies nearest.
-size_t nearest_point(const Dataset& d, Vec3 at) {
-  const Array points = point_positions(d.mesh());
-  size_t best = 0;
-  double least = HUGE_VAL;
-  for (size_t i = 0; i < points.count(); ++i)
-    if (const double l = length(Vec3{points.get(i, 0), points.get(i, 1), points.get(i, 2)} - at); l < least) least = l, best = i;
-  return best;
-}
-
-// The fields at a place, by the shape functions of the cell there; on surfaces, which have none about a place, those of the nearest point.
-std::vector<Json> values_at(const DatasetPtr& d, Vec3 at, Context& context) {
-  ProbeAtParams p;
-  p.points = {at.x, at.y, at.z};
-  std::vector<Json> values;
-  const auto add = [&](const Field& f, size_t i) {
-    values.emplace_back(Json::Members{{"name", text(f.name)}, {"value", text(value_text(f.array, i))}, {"unit", text(f.unit)}});
-  };
-  const DatasetPtr there = probe_at(d, p, context);
-  const Field* valid = there->fields().find("valid", Association::point);
-  if (valid && valid->array.get(0) != 0) {
-    for (const Field& f : there->fields())
-      if (f.name != "valid" && f.association == Association::point) add(f, 0);
-  } else if (d->point_count() > 0) {
-    const size_t i = nearest_point(*d, at);
-    for (const Field& f : d->fields())
-      if (f.association == Association::point) add(f, i);
-  }
-  return values;
-}
 
 Json::Members answer_rows(const Json& q, const Data& data) {
   const bool cells = q["on"].text() == association_name(Association::cell);
@@ -116,7 +71,7 @@ Json::Members answer_line(const Json& q, const Data& data, Context& context) {
     if (!d) d = part;
   });
   if (!d) fail_usage("there are no values along a line of a table", "line");
-  const Vec3 from = vector_of(q["from"], "from"), to = vector_of(q["to"], "to");
+  const Vec3 from = place_of(q["from"], "from"), to = place_of(q["to"], "to");
   const int64_t count = std::clamp<int64_t>(int64_t(q["count"].number()), 2, most_line_points);
   ProbeAtParams p;
   std::vector<Json> distances, values;
@@ -176,6 +131,7 @@ Json::Members probe_picture(const DrawnPlanes& drawn, double x, double y, const 
   const uint32_t show = i < drawn.seen.show.size() ? drawn.seen.show[i] : 0;
   Json::Members answer{{"position", vector_json(at)}, {"show", show > 0 ? Json(uint64_t(show - 1)) : Json()}};
   std::vector<Json> values;
+  std::optional<size_t> cell;
   if (show > 0 && show <= file.show.size()) {
     DatasetPtr nearest;
     for_each_dataset(result_of(file, shown_step(file, show - 1), cache, context), [&](const std::string&, const DatasetPtr& d) {
@@ -185,15 +141,15 @@ Json::Members probe_picture(const DrawnPlanes& drawn, double x, double y, const 
       for (int a = 0; a < 3; ++a) inside = inside && at[a] >= b.lo[a] - hair && at[a] <= b.hi[a] + hair;
       if (inside && !nearest) nearest = d;
     });
-    if (nearest) values = values_at(nearest, at, context);
+    if (nearest) cell = probed_cell(nearest, at, context), values = values_at(nearest, at, cell, context);
   }
   answer.emplace_back("values", Json(std::move(values)));
-  answer.emplace_back("cell", Json());
+  answer.emplace_back("cell", cell ? Json(uint64_t(*cell)) : Json());
   return answer;
 }
 
 Json::Members answer_about_steps(const Json& question, const PipelineFile& file, const PreparedPicture& prepared,
-                                 const std::shared_ptr<Cache>& cache, Context& context) {
+                                 const std::shared_ptr<Cache>& cache, const DrawnArea* area, Context& context) {
   const auto wish = wish_of(question);
   if (wish == Wish::proposals) return answer_proposals(question, prepared, context);
   if (wish == Wish::plane) return answer_plane(question, prepared, context);
@@ -201,6 +157,8 @@ Json::Members answer_about_steps(const Json& question, const PipelineFile& file,
   if (wish == Wish::rows) return answer_rows(question, data);
   if (wish == Wish::line) return answer_line(question, data, context);
   if (wish == Wish::histogram) return answer_histogram(question, data, context);
+  if (wish == Wish::measures)
+    return measures_of(data, selection_from(question["among"], area), bytes_of_text(question["field"].text()), context);
   fail_usage("that is no question", "question", "docs/protocol.md has them");
 }
 

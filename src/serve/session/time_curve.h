@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// A field over time at one place, as far as it is known.
+#pragma once
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "base/text/json.h"
+#include "pipeline/film/film_times.h"
+
+namespace sg::serve {
+
+/// It is asked for time by time, so that other questions are answered in between; edits meanwhile do not change it.
+struct TimeCurve {
+  PipelineFile file;
+  FilmTimes film;
+  std::vector<Json> values;  ///< of the first times
+  std::string unit;
+  std::chrono::steady_clock::time_point told;  ///< how far it is
+};
+
+}  // namespace sg::serve
