@@ -155,3 +155,31 @@ TEST_CASE("legend: panels fit whatever the picture's size, and labels have none"
   labels.labels = {1, 2, 3};
   CHECK(draw(labels).layout.panel.width == 0);
 }
+
+TEST_CASE("legend: ellipses and strokes are outlined as they are") {
+  TransferDetail detail;
+  detail.second = SecondAxis::gradient;
+  detail.second_lo = 0, detail.second_hi = 10;
+  detail.widgets = {{TransferWidget::Shape::ellipse, 60, 90, 2, 8, 0.7, {1, 0, 0}}, painted({{20, 2}, {30, 8}}, 8, 1, 0.7, {1, 0, 0})};
+  for (const int height : {720, 2160}) {
+    const Drawn d = draw(volume({{{0, 0}}}, detail), height * 16 / 9, height);
+    const LegendLayout& l = d.layout;
+    const auto pixel = [&](double value, double second) {
+      return d.image.at(int(l.panel.x + second / 10 * (l.panel.width - 1)),
+                        int(std::lround(l.bar.y + (1 - value / 100) * (l.bar.height - 1))));
+    };
+    INFO(height);
+    CHECK(pixel(75, 5)[0] > 250);
+    CHECK(pixel(75, 5)[1] < 10);
+    CHECK(pixel(75, 2)[0] < 140);  // the outlines
+    CHECK(pixel(90, 5)[0] < 140);
+    CHECK(pixel(20 - 8, 2)[0] < 140);
+    CHECK(pixel(30 + 8, 8)[0] < 140);
+    CHECK(pixel(25, 5)[1] < 10);  // on the stroke's line
+    // The corners of the boxes round them are empty.
+    CHECK(is_ground(pixel(62, 2.4)));
+    CHECK(is_ground(pixel(88, 7.6)));
+    CHECK(is_ground(pixel(14, 8)));
+    CHECK(is_ground(pixel(36, 2)));
+  }
+}
