@@ -185,6 +185,8 @@ await test("an ellipse is drawn and moved by keys, strokes are painted by pointe
     for (let i = 0; i < 100 && !pattern.test(await words()); i++) await page.waitForTimeout(50);
     assert.match(await words(), pattern, why);
   };
+  const opens = page.locator("section:has(h2:text('Value and gradient')) button").first();
+  if ((await opens.getAttribute("aria-expanded")) !== "true") await opens.click();
   await andSettle(page, () => page.click("text=+ ellipse"));
   await until(/widgets=.*ellipse @/);
   const shape = page.locator(".widget path").first();

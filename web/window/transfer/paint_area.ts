@@ -21,10 +21,10 @@ export interface PaintContext {
   size: Point; // of the drawing
   axis: string; // what the second axis is called
   color: string;
-  last: Widget | undefined;
   changed: () => void;
-  /** A stroke: a new one, or, if `again`, in the place of the last widget. */
-  put: (w: Widget, again: boolean, live: boolean) => void;
+  /** The widgets as they are now: keys come faster than the window is drawn anew. */
+  list: () => Widget[];
+  set: (list: Widget[], live: boolean) => void;
 }
 
 const opacity = 0.6;
@@ -40,19 +40,19 @@ export function paintArea(c: PaintContext): SVGTemplateResult {
     const path = [place(0, 0)];
     lift();
     p.at = path[0];
-    // The window is drawn anew while the brush moves: what comes before the stroke is what was there when it began.
+    const before = c.list();
     beginDrag(e, () => ({
       move: (dx, dy, done) => {
         p.at = place(dx, dy);
         path.push(p.at);
-        c.put(stroke(path, radius, c.range, opacity, c.color), false, !done);
+        c.set([...before, stroke(path, radius, c.range, opacity, c.color)], !done);
       },
-      click: () => c.put(stroke(path, radius, c.range, opacity, c.color), false, false),
+      click: () => c.set([...before, stroke(path, radius, c.range, opacity, c.color)], false),
     }));
   };
   const keyed = (e: KeyboardEvent): void => {
     const by = ({ ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] } as Record<string, Point>)[e.key];
-    if (e.key === "Enter" || e.key === " ") c.put(stroke([p.at], radius, c.range, opacity, c.color), false, false);
+    if (e.key === "Enter" || e.key === " ") c.set([...c.list(), stroke([p.at], radius, c.range, opacity, c.color)], false);
     else if (by) {
       const from = p.at;
       p.at = [0, 1].map((k) => Math.max(0, Math.min(1, from[k] + by[k] * step))) as Point;
@@ -66,7 +66,7 @@ export function paintArea(c: PaintContext): SVGTemplateResult {
   const lift = (): void => {
     if (!p.open) return;
     p.open = false;
-    if (c.last?.line) c.put(c.last, true, false);
+    c.set(c.list(), false);
   };
   const value = plain(c.range[0] + p.at[0] * (c.range[1] - c.range[0]));
   return svg`<rect class="paint-area" x="0" y="0" width=${c.size[0]} height=${c.size[1]} tabindex="0" role="button"
@@ -78,8 +78,10 @@ export function paintArea(c: PaintContext): SVGTemplateResult {
 function paintOn(c: PaintContext, radius: Point, from: Point): void {
   const p = c.painting;
   const next = stroke([from, p.at], radius, c.range, opacity, c.color);
-  const old = p.open ? c.last : undefined;
+  const list = c.list();
+  const old = p.open ? list[list.length - 1] : undefined;
   p.open = true;
-  if (!old?.line || !old.radius) return c.put(next, false, true);
-  c.put(paint(simplified([...old.line, ...next.line!.slice(-1)], old.radius), old.radius, old.opacity, old.color), true, true);
+  if (!old?.line || !old.radius) return c.set([...list, next], true);
+  const line = simplified([...old.line, ...next.line!.slice(-1)], old.radius);
+  c.set([...list.slice(0, -1), paint(line, old.radius, old.opacity, old.color)], true);
 }

@@ -20,9 +20,9 @@ type Set = (next: Widget[], live?: boolean) => void;
 
 export function planeEditor(c: Curve): TemplateResult {
   const at = `show/${c.index}`;
-  const text = c.app.session.word(at, "widgets") ?? "";
   const counts = c.app.histograms.plane(c.index);
-  const read = parseWidgets(text, c.range, counts?.second ?? null);
+  const now = (): Widget[] | null => parseWidgets(c.app.session.word(at, "widgets") ?? "", c.range, counts?.second ?? null);
+  const read = now();
   const list = read ?? [];
   const problem = c.app.session.edits.problem(at, "widgets");
   // Widgets take the place of a curve: the two exclude each other. All edits of a drag set the same words, so that they are one step.
@@ -37,6 +37,11 @@ export function planeEditor(c: Curve): TemplateResult {
     if (ui.chosen === i) return;
     ui.chosen = i;
     c.app.changed();
+  };
+  // What is painted is chosen.
+  const drawn: Set = (next, live) => {
+    ui.chosen = next.length - 1;
+    set(next, live);
   };
   const axis = (c.app.session.word(at, "second") ?? "gradient").replaceAll("_", " ");
   const w = list[ui.chosen];
@@ -55,22 +60,20 @@ export function planeEditor(c: Curve): TemplateResult {
               size: [width, height],
               chosen: i === ui.chosen,
               choose: () => choose(i),
+              now: () => now()?.[i] ?? x,
               put: (next, live) => set(list.map((y, k) => (k === i ? next : y)), live),
               remove: () => set(list.filter((_, k) => k !== i)),
             },
             x,
           ),
         )}
-        ${ui.painting.on ? paintArea({ painting: ui.painting, range: c.range, size: [width, height], axis, color: color(), changed: () => c.app.changed(), put: (s, old, live) => {
-          ui.chosen = list.length - (old ? 1 : 0);
-          set([...(old ? list.slice(0, -1) : list), s], live);
-        }, last: list[list.length - 1] }) : nothing}
+        ${ui.painting.on ? paintArea({ painting: ui.painting, range: c.range, size: [width, height], axis, color: color(), changed: () => c.app.changed(), list: () => now() ?? [], set: drawn }) : nothing}
       </svg>
     </div>
     ${problem ? html`<p class="problem" role="alert">${problem}</p>` : nothing}
     ${read ? nothing : html`<p class="quiet">The widgets are written in a way that is not drawn here; new ones take their place.</p>`}
     <p class="quiet axis-names"><span>${plain(c.range[0])}</span><span>value → · ${axis} ↑</span><span>${plain(c.range[1])}</span></p>
-    <div class="row">
+    <div class="row wrap">
       ${boxes.map((shape) => html`<button class="small" @click=${() => add(shape)}>+ ${shape}</button>`)}
       <button class="small" aria-pressed=${ui.painting.on ? "true" : "false"} @click=${painting}>paint</button>
       ${list.length > 0 ? html`<button class="small" @click=${() => set([])}>Remove all</button>` : nothing}

@@ -11,6 +11,8 @@ export interface ShapeContext {
   size: [number, number]; // of the drawing
   chosen: boolean;
   choose: () => void;
+  /** The widget as it is now: keys come faster than the window is drawn anew. */
+  now: () => Widget;
   put: (next: Widget, live: boolean) => void;
   remove: () => void;
 }
@@ -28,7 +30,7 @@ export function widgetShape(c: ShapeContext, w: Widget): SVGTemplateResult {
   const keyed = (e: KeyboardEvent): void => {
     const by = ({ ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] } as Record<string, Point>)[e.key];
     if (e.key === "Delete" || e.key === "Backspace") c.remove();
-    else if (by) c.put(gripped(w, e.shiftKey ? (by[0] !== 0 ? "high" : "top") : "body", by[0] * 0.02, by[1] * 0.02, c.range), false);
+    else if (by) c.put(gripped(c.now(), e.shiftKey ? (by[0] !== 0 ? "high" : "top") : "body", by[0] * 0.02, by[1] * 0.02, c.range), false);
     else return;
     e.preventDefault();
   };
