@@ -125,11 +125,6 @@ class TransferFunction {
   /// second axis.
   bool misses(float lo, float hi, float apart) const;
   bool misses_second(float lo, float hi, float apart) const;
-  /// Whether a path that leaves the rectangle of its samples by no more than `far` over the value and `far_second` over the second axis
-  /// may meet more than that opacity of a widget whose border lies askew.
-  bool grazes(Vec2f lo, Vec2f hi, float far, float far_second, float opacity) const {
-    return widgets_.grazes(lo, hi, far, far_second, opacity);
-  }
   /// Where opacity jumps or begins to be more than zero, over the (stored) value and over the second axis; by how much at most.
   using Edge = FastCurve::Edge;
   const std::vector<Edge>& edges() const { return edges_; }

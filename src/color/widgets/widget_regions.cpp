@@ -96,13 +96,6 @@ bool WidgetRegions::misses_second(float lo, float hi, float apart) const {
                      [&](const Region& w) { return w.narrow_second < apart && w.second_lo <= hi && w.second_hi >= lo; });
 }
 
-bool WidgetRegions::grazes(Vec2f lo, Vec2f hi, float far, float far_second, float opacity) const {
-  return std::any_of(widgets_.begin(), widgets_.end(), [&](const Region& w) {
-    return w.stroke >= 0 && w.opacity * steepest_brush * (far / w.narrow + far_second / w.narrow_second) > opacity && w.lo < hi.x + far &&
-           w.hi > lo.x - far && w.second_lo < hi.y + far_second && w.second_hi > lo.y - far_second;
-  });
-}
-
 std::vector<OpacityEdge> WidgetRegions::edges() const {
   std::vector<OpacityEdge> all;
   for (const Region& w : widgets_) {

@@ -34,9 +34,6 @@ class WidgetRegions {
   /// Whether samples this far apart can miss a widget that reaches into [lo, hi].
   bool misses(float lo, float hi, float apart) const;
   bool misses_second(float lo, float hi, float apart) const;
-  /// Whether a path that leaves the rectangle of its samples by no more than `far` and `far_second` may meet more than that opacity of a
-  /// widget whose border lies askew, on which the edges tell nothing.
-  bool grazes(Vec2f lo, Vec2f hi, float far, float far_second, float opacity) const;
   std::vector<OpacityEdge> edges() const;
   std::vector<OpacityEdge> second_edges() const;
 

@@ -144,8 +144,7 @@ TEST_CASE("property: samples as near to each other as a widget is narrow do not 
   CHECK(tried > 500);
 }
 
-TEST_CASE("property: no widget is steeper behind its edges than they say, nor beside a path than what is said of such paths") {
-  size_t quiet = 0;
+TEST_CASE("property: no widget is steeper behind its edges than they say") {
   for (uint64_t seed : test::property_seeds(300)) {
     CAPTURE(seed);
     Random random(seed);
@@ -163,19 +162,8 @@ TEST_CASE("property: no widget is steeper behind its edges than they say, nor be
       for (const auto& [all, at] : {std::pair{&edges, value}, std::pair{&second_edges, second}})
         for (const OpacityEdge& e : *all)
           if (std::isfinite(e.steep)) CHECK(double(opacity) <= double(e.steep) * double(std::abs(at - e.at)) + off);
-      if (!w.brushed() || opacity > 0) continue;
-      // From a place that shows nothing to one beside it.
-      const double far = random.magnitude(1e-4, 1) * (w.hi - w.lo), far_second = random.magnitude(1e-4, 1) * (w.second_hi - w.second_lo);
-      const auto faint = float(random.magnitude(1e-4, 1));
-      if (regions.grazes({value, second}, {value, second}, float(far), float(far_second), faint)) continue;
-      ++quiet;
-      for (int i = 0; i < 10; ++i) {
-        const float beside = regions.at(value + float(far * random.in(-1, 1)), second + float(far_second * random.in(-1, 1)), {}, nullptr);
-        CHECK(double(beside) <= double(faint) + off);
-      }
     }
   }
-  CHECK(quiet > 100);
 }
 
 TEST_CASE("widgets: an ellipse is full in its middle, gone on its border, and even all round") {

@@ -61,14 +61,10 @@ bool overlooks(const Detail& detail, double length, const DetailPlace& a, const 
   const AxisSamples value{a.value, m.value, b.value, f.edges(), f, &TransferFunction::misses};
   const AxisSamples second{a.second, m.second, b.second, f.second_edges(), f, &TransferFunction::misses_second};
   const auto faint = float(overlooked_depth * detail.unit / length);
-  const auto [lo, hi] = std::minmax({a.value, m.value, b.value});
-  const auto [low, high] = std::minmax({a.second, m.second, b.second});
   // What begins over one axis may end over the other.
   const bool both = value.cross_edge() && second.cross_edge();
-  // Where samples show something, what is beside them shows in their differences.
-  const bool nothing = std::max({a.sample.opacity, m.sample.opacity, b.sample.opacity}) == 0;
-  const bool grazes = nothing && f.grazes({lo, low}, {hi, high}, value.beyond(), second.beyond(), faint);
-  if (!both && !grazes && !value.overlook(faint) && !second.overlook(faint)) return false;
+  if (!both && !value.overlook(faint) && !second.overlook(faint)) return false;
+  const auto [lo, hi] = std::minmax({a.value, m.value, b.value});
   return !f.clear(lo - value.beyond(), hi + value.beyond());
 }
 
