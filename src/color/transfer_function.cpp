@@ -148,7 +148,7 @@ Vec4f TransferFunction::Colors::at(float v) const {
 }
 
 TransferFunction::TransferFunction(const ColorScale& scale, const OpacityCurve& opacity, const TransferDetail& detail, double base)
-    : colors_(scale, base), curve_(opacity, base), factor_(detail.second_factor, 0) {
+    : colors_(scale, base), curve_(opacity, base), factor_(detail.second_factor, 0), widgets_(detail.widgets, base) {
   color_by_second_ = detail.color_by_second;
   if (color_by_second_) {
     if (detail.second == SecondAxis::none) fail_usage("colour follows the second axis, but there is no second axis", "transfer function");
@@ -157,19 +157,6 @@ TransferFunction::TransferFunction(const ColorScale& scale, const OpacityCurve& 
   const auto& factors = detail.second_factor.points;
   with_factor_ = detail.second != SecondAxis::none && !std::all_of(factors.begin(), factors.end(), [](Vec2 p) { return p.y == 1; });
   most_factor_ = with_factor_ ? factor_.most(-HUGE_VALF, HUGE_VALF) : 1;
-  for (const TransferWidget& w : detail.widgets) {
-    Widget f;
-    f.triangle = w.shape == TransferWidget::Shape::triangle;
-    f.lo = float(w.lo - base), f.hi = float(w.hi - base), f.middle = float(0.5 * (w.lo + w.hi) - base);
-    f.per_half = w.hi > w.lo ? float(2 / (w.hi - w.lo)) : 0;
-    f.second_lo = float(w.second_lo), f.second_hi = float(w.second_hi);
-    f.per_height = w.second_hi > w.second_lo ? float(1 / (w.second_hi - w.second_lo)) : 0;
-    f.opacity = float(w.opacity);
-    f.own_color = w.color.x >= 0 && w.color.y >= 0 && w.color.z >= 0;
-    const Vec4f c = srgb_to_linear(Vec4f{w.color.x, w.color.y, w.color.z, 1});
-    f.color = {c.x, c.y, c.z};
-    widgets_.push_back(f);
-  }
   drawn_lo_ = scale.clamp ? -HUGE_VALF : float(std::min(scale.lo, scale.hi) - base);
   drawn_hi_ = scale.clamp ? HUGE_VALF : float(std::max(scale.lo, scale.hi) - base);
   if (!scale.clamp) edges_ = {{drawn_lo_, HUGE_VALF}, {drawn_hi_, HUGE_VALF}};
@@ -178,55 +165,31 @@ TransferFunction::TransferFunction(const ColorScale& scale, const OpacityCurve& 
     const std::vector<Edge> more = curve_.edges();
     edges_.insert(edges_.end(), more.begin(), more.end());
     if (with_factor_) narrow_second_ = factor_.narrow(), second_edges_ = factor_.edges();
-  }
-  for (const Widget& w : widgets_) {
-    narrow_ = std::min(narrow_, 0.5f * (w.hi - w.lo));
-    if (w.second_hi > w.second_lo) narrow_second_ = std::min(narrow_second_, w.second_hi - w.second_lo);
-    for (const float at : {w.lo, w.hi}) edges_.push_back({at, w.triangle ? HUGE_VALF : w.opacity * w.per_half});
-    for (const float at : {w.second_lo, w.second_hi}) second_edges_.push_back({at, HUGE_VALF});
+  } else {
+    narrow_ = widgets_.narrow(), narrow_second_ = widgets_.narrow_second();
+    const std::vector<Edge> more = widgets_.edges();
+    edges_.insert(edges_.end(), more.begin(), more.end());
+    second_edges_ = widgets_.second_edges();
   }
 }
 
 bool TransferFunction::misses(float lo, float hi, float apart) const {
   if (!(apart > narrow_)) return false;
   if (widgets_.empty()) return curve_.shorter_line(lo, hi, apart);
-  return std::any_of(widgets_.begin(), widgets_.end(),
-                     [&](const Widget& w) { return 0.5f * (w.hi - w.lo) < apart && w.lo <= hi && w.hi >= lo; });
+  return widgets_.misses(lo, hi, apart);
 }
 
 bool TransferFunction::misses_second(float lo, float hi, float apart) const {
   if (!(apart > narrow_second_)) return false;
   if (widgets_.empty()) return factor_.shorter_line(lo, hi, apart);
-  return std::any_of(widgets_.begin(), widgets_.end(),
-                     [&](const Widget& w) { return w.second_hi - w.second_lo < apart && w.second_lo <= hi && w.second_hi >= lo; });
-}
-
-// The strongest decides the opacity; colours mix by opacity, so that they change smoothly where widgets overlap.
-float TransferFunction::of_widgets(float value, float second, const Vec4f& plain, float* color) const {
-  float most = 0, sum = 0;
-  Vec3f mixed{0, 0, 0};
-  for (const Widget& w : widgets_) {
-    if (!(second >= w.second_lo && second <= w.second_hi)) continue;
-    float from_middle = std::abs(value - w.middle) * w.per_half;
-    if (w.triangle) {
-      const float height = (second - w.second_lo) * w.per_height;  // width 0 at the base point, hi - lo at the top
-      if (!(from_middle < height)) continue;
-      from_middle /= height;
-    }
-    const float a = w.opacity * (1 - from_middle);
-    if (!(a > 0)) continue;
-    most = std::max(most, a), sum += a;
-    mixed = mixed + (w.own_color ? w.color : Vec3f{plain.x, plain.y, plain.z}) * a;
-  }
-  if (color && sum > 0) color[0] = mixed.x / sum, color[1] = mixed.y / sum, color[2] = mixed.z / sum;
-  return most;
+  return widgets_.misses_second(lo, hi, apart);
 }
 
 float TransferFunction::opacity_and_color(float value, float second, float color[4]) const {
   const Vec4f c = color_by_second_ ? second_colors_[0].at(second) : colors_.at(value);
   color[0] = c.x, color[1] = c.y, color[2] = c.z, color[3] = c.w;
   if (!(value >= drawn_lo_ && value <= drawn_hi_) || c.w == 0) return 0;
-  if (!widgets_.empty()) return of_widgets(value, second, c, color);
+  if (!widgets_.empty()) return widgets_.at(value, second, c, color);
   const float opacity = curve_.at(value);
   return with_factor_ ? opacity * factor_.at(second) : opacity;
 }
@@ -234,21 +197,15 @@ float TransferFunction::opacity_and_color(float value, float second, float color
 bool TransferFunction::clear(float lo, float hi) const {
   if (!(lo <= hi)) return false;
   lo = std::max(lo, drawn_lo_), hi = std::min(hi, drawn_hi_);
-  if (lo > hi || most_factor_ == 0) return true;
-  if (widgets_.empty()) return curve_.zero(lo, hi);
-  return std::all_of(widgets_.begin(), widgets_.end(), [&](const Widget& w) { return w.opacity == 0 || hi <= w.lo || lo >= w.hi; });
+  if (lo > hi) return true;
+  if (!widgets_.empty()) return widgets_.clear(lo, hi);  // whatever the factor
+  return most_factor_ == 0 || curve_.zero(lo, hi);
 }
 
 float TransferFunction::most_opacity(float lo, float hi) const {
   if (clear(lo, hi)) return 0;
   if (widgets_.empty()) return curve_.most(lo, hi) * most_factor_;
-  float most = 0;
-  for (const Widget& w : widgets_) {
-    const float off = std::max({w.lo > hi ? 1.0f : 0.0f, lo > w.middle ? (lo - w.middle) * w.per_half : 0.0f,
-                                hi < w.middle ? (w.middle - hi) * w.per_half : 0.0f});
-    most = std::max(most, w.opacity * std::max(0.0f, 1 - off));
-  }
-  return most;
+  return widgets_.most(lo, hi);
 }
 
 }  // namespace sg

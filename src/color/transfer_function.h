@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "color/color_scale.h"
+#include "color/widgets/transfer_widget.h"
+#include "color/widgets/widget_regions.h"
 
 namespace sg {
 
@@ -19,15 +21,6 @@ enum class SecondAxis {
   second_derivative,  ///< along the gradient: n . H n (Kindlmann, Durkin 1998)
   curvature,          ///< mean curvature of the level set, 1/length (Kindlmann et al. 2003)
   field,              ///< the value of another field at the same place
-};
-
-/// A region of the plane (value, second) that draws something, after Kniss, Kindlmann and Hansen 2001.
-struct TransferWidget {
-  enum class Shape { triangle, rectangle } shape = Shape::rectangle;
-  double lo = 0, hi = 1;                ///< over the value; a triangle's base point lies in the middle, at second_lo
-  double second_lo = 0, second_hi = 1;  ///< over the second axis
-  double opacity = 1;                   ///< in its middle; falls linearly to 0 at the sides lo and hi
-  Vec3f color{1, 1, 1};                 ///< sRGB; negative = that of the colour scale
 };
 
 /// Opacity = curve(value) * second_factor(second), or the largest of the widgets when there are any.
@@ -87,9 +80,7 @@ class FastCurve {
   /// Whether a line shorter than this reaches into [lo, hi].
   bool shorter_line(float lo, float hi, float length) const;
   /// Where it jumps, or begins to be more than zero.
-  struct Edge {
-    float at, steep;  ///< change per x where it begins; infinite where it jumps
-  };
+  using Edge = OpacityEdge;
   std::vector<Edge> edges() const;
 
  private:
@@ -119,7 +110,7 @@ class TransferFunction {
   }
   float opacity(float value, float second) const {
     if (!(value >= drawn_lo_ && value <= drawn_hi_)) return 0;
-    if (!widgets_.empty()) return of_widgets(value, second, {}, nullptr);
+    if (!widgets_.empty()) return widgets_.at(value, second, {}, nullptr);
     return with_factor_ ? curve_.at(value) * factor_.at(second) : curve_.at(value);
   }
   /// Whether opacity is 0 for every value in [lo, hi] (stored), whatever the second axis. Never wrongly true; false at times for
@@ -140,11 +131,6 @@ class TransferFunction {
   const std::vector<Edge>& second_edges() const { return second_edges_; }
 
  private:
-  struct Widget {
-    float lo, hi, middle, per_half, second_lo, second_hi, per_height, opacity;
-    bool triangle, own_color;
-    Vec3f color;  // linear light
-  };
   // From a value to its place in a table of colours.
   struct Colors {
     Colors(const ColorScale& scale, double base);
@@ -158,13 +144,12 @@ class TransferFunction {
     Vec4f below, above, nan;
   };
   float opacity_and_color(float value, float second, float color[4]) const;
-  float of_widgets(float value, float second, const Vec4f& plain, float* color) const;
 
   Colors colors_;
   FastCurve curve_, factor_;
   bool with_factor_ = false, color_by_second_ = false;
   std::vector<Colors> second_colors_;  // none or one
-  std::vector<Widget> widgets_;
+  WidgetRegions widgets_;
   float most_factor_ = 1, drawn_lo_, drawn_hi_, narrow_ = HUGE_VALF, narrow_second_ = HUGE_VALF;
   std::vector<Edge> edges_, second_edges_;
 };

@@ -15,23 +15,6 @@ namespace {
 const char* opacity_form = "write position:opacity pairs, e.g. 0:0,0.3:0.1,1:0.8, or @value:opacity, e.g. @-500:0,@200:0.4";
 const char* stops_form = "write position:colour pairs, e.g. 0:#000000,0.4:#aa3311,1:white, or @value:colour";
 
-// A place as a position on the axis; nothing for what is not a number.
-std::optional<double> place(std::string_view text, const ColorScale& axis) {
-  const bool absolute = text.starts_with('@');
-  const auto v = parse_double(trim(absolute ? text.substr(1) : text));
-  if (!v || !std::isfinite(*v)) return {};
-  if (!absolute) return *v;
-  if (axis.labels.empty()) return axis.kind == ScaleKind::log && !(*v > 0) ? NAN : axis.position(*v);
-  return (*v - axis.lo) / (axis.hi - axis.lo);  // labels: between them, too
-}
-// The value there, exactly the one written after an @.
-double value_of(std::string_view text, const ColorScale& axis) {
-  if (text.starts_with('@')) return *parse_double(trim(text.substr(1)));
-  const double t = *parse_double(text);
-  if (axis.kind == ScaleKind::linear || !axis.labels.empty()) return t == 1 ? axis.hi : axis.lo + t * (axis.hi - axis.lo);
-  return axis.value_at(t);
-}
-
 // Values written as positions would leave the curve empty without a word.
 void check_position(std::string_view where, double t, const std::string& word) {
   if (!where.starts_with('@') && !(t >= 0 && t <= 1))
@@ -55,6 +38,22 @@ void check_ascends(double before, double now, std::string_view part, const Color
 
 }  // namespace
 
+std::optional<double> place_position(std::string_view text, const ColorScale& axis) {
+  const bool absolute = text.starts_with('@');
+  const auto v = parse_double(trim(absolute ? text.substr(1) : text));
+  if (!v || !std::isfinite(*v)) return {};
+  if (!absolute) return *v;
+  if (axis.labels.empty()) return axis.kind == ScaleKind::log && !(*v > 0) ? NAN : axis.position(*v);
+  return (*v - axis.lo) / (axis.hi - axis.lo);  // labels: between them, too
+}
+
+double place_value(std::string_view text, const ColorScale& axis) {
+  if (text.starts_with('@')) return *parse_double(trim(text.substr(1)));
+  const double t = *parse_double(text);
+  if (axis.kind == ScaleKind::linear || !axis.labels.empty()) return t == 1 ? axis.hi : axis.lo + t * (axis.hi - axis.lo);
+  return axis.value_at(t);
+}
+
 OpacityCurve parse_opacity(const std::string& text, const ColorScale& axis, const std::string& word) {
   OpacityCurve curve;
   curve.points.clear();
@@ -67,7 +66,7 @@ OpacityCurve parse_opacity(const std::string& text, const ColorScale& axis, cons
     auto [where, how_much] = halves(part);
     const bool constant = parts.size() == 1 && part.find(':') == part.npos;
     if (constant) how_much = where, where = "0";
-    const auto t = place(where, axis);
+    const auto t = place_position(where, axis);
     const auto y = parse_double(how_much);
     if (!t || !y) fail_usage(fmt::format("'{}' is not a point of an opacity curve", part), word, opacity_form);
     if (!std::isfinite(*t))
@@ -77,7 +76,7 @@ OpacityCurve parse_opacity(const std::string& text, const ColorScale& axis, cons
     check_ascends(last, *t, part, axis, word);
     same = *t == last ? same + 1 : 0;
     if (same == 2) fail_usage(fmt::format("'{}' is the third point at one position", part), word, "two points at one position make a step");
-    const double x = value_of(where, axis);
+    const double x = place_value(where, axis);
     const bool is_value = where.starts_with('@');
     if (!curve.points.empty() && axis.kind != ScaleKind::linear && *t > last && !(is_value && last_is_value)) {
       // Between positions opacity is straight along the scale: bent over values.
@@ -118,7 +117,7 @@ void parse_color_stops(const std::string& text, ColorScale& scale, bool keep_ran
   std::string_view first, last;
   for (const std::string& part : parts) {
     const auto [where, what] = halves(part);
-    const auto t = place(where, scale);
+    const auto t = place_position(where, scale);
     if (!t || what.empty()) fail_usage(fmt::format("'{}' is not a colour at a position", part), "colors", stops_form);
     if (!std::isfinite(*t))
       fail_usage(fmt::format("'{}' cannot be placed on a log scale", where), "colors", "values on a log scale are above 0");
@@ -147,7 +146,7 @@ void parse_color_stops(const std::string& text, ColorScale& scale, bool keep_ran
     whole.push_back({1, nodes.back().position <= 1 ? nodes.back().color : at(1)});
     nodes = std::move(whole);
   } else {
-    const double lo = value_of(first, scale), hi = value_of(last, scale);
+    const double lo = place_value(first, scale), hi = place_value(last, scale);
     scale.lo = lo, scale.hi = hi;
   }
   set_nodes(map, nodes, NodeSpace::rgb);
@@ -187,53 +186,6 @@ std::string color_stops_text(const ColorScale& scale) {
     }
     i = to;
   }
-  return r;
-}
-
-std::vector<TransferWidget> parse_widgets(const std::string& text, const ColorScale& value, const ColorScale& second) {
-  const char* form =
-      "write 'triangle LO HI BASE TOP OPACITY COLOR' or 'rectangle LO HI LOW HIGH OPACITY COLOR', separated by ';'; LO and HI are "
-      "positions (or @values), the next two are on the second axis";
-  std::vector<TransferWidget> widgets;
-  for (const std::string_view part : split(text, ';')) {
-    const auto w = words(part);
-    if (w.empty()) continue;
-    TransferWidget r;
-    if (w[0] == "triangle") r.shape = TransferWidget::Shape::triangle;
-    else if (w[0] == "rectangle") r.shape = TransferWidget::Shape::rectangle;
-    else {
-      const std::vector<std::string> names{"triangle", "rectangle"};
-      fail_usage(fmt::format("unknown widget '{}'", w[0]), "widgets", unknown_name_hint(w[0], names));
-    }
-    if (w.size() < 5 || w.size() > 7) fail_usage(fmt::format("'{}' has {} numbers", part, w.size() - 1), "widgets", form);
-    double* ends[4] = {&r.lo, &r.hi, &r.second_lo, &r.second_hi};
-    for (size_t i = 0; i < 4; ++i) {
-      const ColorScale& axis = i < 2 ? value : second;
-      const auto t = place(w[i + 1], axis);
-      if (!t) fail_usage(fmt::format("'{}' in '{}' is not a position", w[i + 1], part), "widgets", form);
-      *ends[i] = value_of(w[i + 1], axis);
-    }
-    if (!(r.lo < r.hi) || !(r.second_lo < r.second_hi))
-      fail_usage(fmt::format("'{}' has zero width or height", part), "widgets", "write the lower end of each axis first");
-    if (w.size() > 5) {
-      const auto y = parse_double(w[5]);
-      if (!y || !(*y >= 0 && *y <= 1)) fail_usage(fmt::format("opacity {} is not between 0 and 1", w[5]), "widgets", form);
-      r.opacity = *y;
-    }
-    r.color = w.size() > 6 && w[6] != "map" ? parse_color(w[6], "widgets") : Vec3f{-1, -1, -1};
-    widgets.push_back(r);
-  }
-  if (widgets.empty()) fail_usage("there are no widgets", "widgets", form);
-  return widgets;
-}
-
-std::string widgets_text(const std::vector<TransferWidget>& widgets) {
-  std::string r;
-  for (const TransferWidget& w : widgets)
-    r += fmt::format("{}{} @{} @{} @{} @{} {} {}", r.empty() ? "" : "; ",
-                     w.shape == TransferWidget::Shape::triangle ? "triangle" : "rectangle", exact_number(w.lo), exact_number(w.hi),
-                     exact_number(w.second_lo), exact_number(w.second_hi), exact_number(w.opacity),
-                     w.color.x < 0 ? "map" : color_text(w.color));
   return r;
 }
 

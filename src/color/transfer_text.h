@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Transfer functions as text: points, colour stops and widgets, read and written.
+// Transfer functions as text: points and colour stops, read and written.
 //
 // A place on an axis is a position (0 = its low end, 1 = its high end, along the scale: 0.5 of 1..100 on a log scale is 10) or, with @
 // before it, a value of the field: "0.3:0.1" and "@-500:0". Places must ascend; two points at one position make a step.
 #pragma once
+#include <optional>
 #include <string>
-#include <vector>
+#include <string_view>
 
-#include "color/transfer_function.h"
+#include "color/color_scale.h"
 
 namespace sg {
+
+/// A place as a position on the axis: NaN for what a log scale cannot hold, nothing for what is not a number.
+std::optional<double> place_position(std::string_view text, const ColorScale& axis);
+/// The value at a place, exactly the one written after an @.
+double place_value(std::string_view text, const ColorScale& axis);
 
 /// "0:0,@200:0.1,1:0.8": opacities in [0,1]; a single number is a constant one. Between positions opacity is straight along the scale,
 /// between two @values over the values. `word` is the parameter's name for messages. Throws Error(usage).
@@ -22,10 +28,5 @@ std::string opacity_text(const OpacityCurve& curve);
 void parse_color_stops(const std::string& text, ColorScale& scale, bool keep_range);
 /// "@0:#000000,..." of a map, with as few stops as keep every colour of 8 bits; parse_color_stops() reads it back.
 std::string color_stops_text(const ColorScale& scale);
-
-/// "triangle LO HI BASE TOP [OPACITY [COLOR]]; rectangle LO HI LOW HIGH [OPACITY [COLOR]]": LO and HI are places on the value's axis, the
-/// next two on the second axis; COLOR "map" (the default) is that of the value. Throws Error(usage).
-std::vector<TransferWidget> parse_widgets(const std::string& text, const ColorScale& value, const ColorScale& second);
-std::string widgets_text(const std::vector<TransferWidget>& widgets);
 
 }  // namespace sg

@@ -27,6 +27,7 @@ TEST_CASE("transfer functions: a recipe with a preset, a second axis, widgets or
            "volume preset=ct_bone specular=0.5",
            "volume second=gradient 'second_opacity=0:0,0.3:1' 'opacity=0:0,@0.00002:0.3,1:0.8'",
            "volume 'widgets=triangle 0.1 0.4 0 1 0.7 tomato; rectangle @0.00001 @0.00009 0 0.5 0.3'",
+           "volume 'widgets=ellipse 0.1 0.4 0 1 0.7 tomato; paint 0.05:0.1 @0.00001,0.5 0.3,0.2 0.6,0.8 0.3'",
            "volume 'colors=0:#000000,0.4:#aa3311,1:white' transfer=boundaries",
            "volume 'clip=1,0,0,0; box -5,5,-5,5,-5,5'",
        }) {

@@ -116,31 +116,3 @@ TEST_CASE("colour stops: mistakes are named") {
   CHECK(contains(error("x:black"), "'x:black'"));
   CHECK(contains(error("0:black,0:white,0:red"), "third colour"));
 }
-
-TEST_CASE("widgets: places on both axes, and text reads back exactly") {
-  const ColorScale value = axis(-1000, 3000), second = axis(0, 500);
-  const auto w = parse_widgets("triangle 0.25 @400 0 1 0.6 tomato; rectangle @0 @100 0.1 @300;", value, second);
-  REQUIRE(w.size() == 2);
-  CHECK(w[0].shape == TransferWidget::Shape::triangle);
-  CHECK(w[0].lo == 0);
-  CHECK(w[0].hi == 400);
-  CHECK(w[0].second_hi == 500);
-  CHECK(w[0].opacity == 0.6);
-  CHECK(color_text(w[0].color) == "#ff6347");
-  CHECK(w[1].second_lo == 50);
-  CHECK(w[1].second_hi == 300);
-  CHECK(w[1].opacity == 1);
-  CHECK(w[1].color.x < 0);  // that of the map
-  const std::string text = widgets_text(w);
-  CHECK(widgets_text(parse_widgets(text, axis(0, 1), axis(0, 1))) == text);
-
-  const auto error = [&](const char* t) { return test::error_of([&] { parse_widgets(t, value, second); }); };
-  CHECK(contains(error("triangel 0 1 0 1"), "did you mean 'triangle'"));
-  CHECK(contains(error("triangle 0 1 0"), "3 numbers"));
-  CHECK(contains(error("rectangle 0.5 0.2 0 1"), "lower end"));
-  CHECK(contains(error("rectangle 0 1 0.5 0.5"), "zero width or height"));
-  CHECK(contains(error("rectangle 0 1 0 1 1.5"), "not between 0 and 1"));
-  CHECK(contains(error("rectangle 0 x 0 1"), "'x'"));
-  CHECK(contains(error(" ; "), "no widgets"));
-  CHECK(contains(error("rectangle 0 1 0 1 1 nocolour"), "not a colour"));
-}

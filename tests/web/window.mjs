@@ -179,6 +179,56 @@ await test("widgets over value and gradient are drawn, moved and undone", async 
   await andSettle(page, () => page.click("text=Remove all"));
 });
 
+await test("an ellipse is drawn and moved by keys, strokes are painted by pointer and keys, each one step of undo", async () => {
+  await tab("color");
+  const words = async () => (await page.locator("[aria-label=\"The command line's words\"]").textContent()) ?? "";
+  const until = async (pattern, why) => {
+    for (let i = 0; i < 100 && !pattern.test(await words()); i++) await page.waitForTimeout(50);
+    assert.match(await words(), pattern, why);
+  };
+  const opens = page.locator("section:has(h2:text('Value and gradient')) button").first();
+  if ((await opens.getAttribute("aria-expanded")) !== "true") await opens.click();
+  await andSettle(page, () => page.click("text=+ ellipse"));
+  await until(/widgets=.*ellipse @/);
+  const shape = page.locator(".widget path").first();
+  await shape.focus();
+  const before = await words();
+  await andSettle(page, () => page.keyboard.press("ArrowRight"));
+  await andSettle(page, () => page.keyboard.press("Shift+ArrowUp"));
+  assert.notEqual(await words(), before);
+  const ellipse = await words();
+  await andSettle(page, async () => dragOn(page, await middleOf(page.locator(".grip").nth(1)), [20, 0]));
+  assert.notEqual(await words(), ellipse, "a handle makes it wider");
+
+  await page.click("button:text-is('paint')");
+  const area = page.locator(".paint-area");
+  const box = await area.boundingBox();
+  const from = [box.x + 0.15 * box.width, box.y + 0.8 * box.height];
+  await andSettle(page, async () => dragOn(page, from, [0.3 * box.width, -0.4 * box.height]));
+  await until(/widgets=.*ellipse .*; paint @[-.\d]+:[.\d]+ (@[-.\de]+,[.\de]+ ){2,}0\.6/, "a stroke");
+  await andSettle(page, () => page.mouse.click(box.x + 0.8 * box.width, box.y + 0.5 * box.height));
+  await until(/paint .*paint @\S+ @\S+ 0\.6/, "a dab");
+  await area.focus();
+  const dabbed = await words();
+  await page.keyboard.down("Shift");
+  for (const key of ["ArrowLeft", "ArrowLeft", "ArrowUp", "ArrowUp"]) await page.keyboard.press(key);
+  await andSettle(page, () => page.keyboard.up("Shift"));
+  await until(/paint .*paint .*paint /, "a stroke by keys");
+  const painted = await words();
+  await shot(o, page, "painted");
+  await andSettle(page, () => page.click("button[aria-label=Undo]"));
+  for (let i = 0; i < 100 && (await words()) !== dabbed; i++) await page.waitForTimeout(50);
+  assert.equal(await words(), dabbed, "a stroke by keys is one step");
+  await andSettle(page, () => page.click("button[aria-label=Redo]"));
+  for (let i = 0; i < 100 && (await words()) !== painted; i++) await page.waitForTimeout(50);
+  assert.equal(await words(), painted);
+  for (let i = 0; i < 3; i++) await andSettle(page, () => page.click("button[aria-label=Undo]"));
+  assert.ok(!/paint /.test(await words()), "a stroke is one step");
+  await until(/widgets=.*ellipse/);
+  await page.click("button:text-is('paint')");
+  await andSettle(page, () => page.click("text=Remove all"));
+});
+
 await test("a contour is added by search, its value dragged, and a mistake stands at its control", async () => {
   await picture.focus();
   await found("isosurf", "contour");

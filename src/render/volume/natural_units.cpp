@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/parallel.h"
+#include "color/widgets/transfer_widget.h"
 #include "data/bricked.h"
 #include "data/memory/memo.h"
 #include "render/volume/prepare_cast.h"
@@ -184,7 +185,11 @@ void scale(VolumeItem& item, double value, double length) {
   const double second = second_factor(d.second, value, length, other);
   scale_colors(d.second_color, d.color_by_second ? second : 1), scale_places(d.second_factor, second);
   d.second_lo *= second, d.second_hi *= second;
-  for (TransferWidget& w : d.widgets) w.lo *= shown, w.hi *= shown, w.second_lo *= second, w.second_hi *= second;
+  for (TransferWidget& w : d.widgets) {
+    w.lo *= shown, w.hi *= shown, w.second_lo *= second, w.second_hi *= second;
+    w.radius *= shown, w.second_radius *= second;
+    for (Vec2& p : w.line) p.x *= shown, p.y *= second;
+  }
 }
 
 }  // namespace

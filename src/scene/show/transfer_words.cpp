@@ -6,6 +6,7 @@
 #include "base/text/text.h"
 #include "color/parse_color.h"
 #include "color/transfer_text.h"
+#include "color/widgets/widgets_text.h"
 #include "scene/show/volume.h"
 
 namespace sg {

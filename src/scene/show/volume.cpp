@@ -6,6 +6,8 @@
 #include "base/text/text.h"
 #include "color/parse_color.h"
 #include "color/transfer_text.h"
+#include "color/widgets/transfer_widget.h"
+#include "color/widgets/widgets_text.h"
 #include "data/fields/field_component.h"
 #include "data/lattice.h"
 #include "data/ranks/over_all.h"
@@ -108,18 +110,8 @@ void take_second_axis(const VolumeShow& p, const Fields& fields, const ColorScal
     detail.second_factor = parse_opacity("0:1,0.3:1,0.5:0.1,0.7:1,1:1", axis);  // ridges and valleys
   if (!p.widgets.empty()) {
     detail.widgets = parse_widgets(p.widgets, item.color, axis);
-    // The curve that bounds them, for everything that only knows values: largest opacity at each end and middle.
-    std::vector<double> knots;
-    for (const TransferWidget& w : detail.widgets) knots.insert(knots.end(), {w.lo, 0.5 * (w.lo + w.hi), w.hi});
-    std::sort(knots.begin(), knots.end());
-    knots.erase(std::unique(knots.begin(), knots.end()), knots.end());
-    item.opacity.points.clear();
-    for (const double x : knots) {
-      double most = 0;
-      for (const TransferWidget& w : detail.widgets)
-        most = std::max(most, w.opacity * (1 - std::abs(x - 0.5 * (w.lo + w.hi)) / (0.5 * (w.hi - w.lo))));
-      item.opacity.points.push_back({x, std::max(0.0, most)});
-    }
+    // For everything that only knows values.
+    item.opacity = bounding_curve(detail.widgets);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/text/text.h"
 #include "color/transfer_text.h"
+#include "color/widgets/widgets_text.h"
 #include "scene/show/volume.h"
 #include "scene/show/volume_presets.h"
 
@@ -46,7 +47,9 @@ void describe(Schema& s, VolumeShow& p) {
     "minus to plus the largest second derivative or curvature, or over the range of the field.");
   s("widgets", p.widgets,
     "Regions of the (value, second) plane to draw, instead of opacity: 'triangle LO HI BASE TOP OPACITY COLOR; rectangle LO HI LOW HIGH "
-    "OPACITY COLOR'. Positions as in opacity; second defaults to gradient.");
+    "OPACITY COLOR; ellipse LO HI LOW HIGH OPACITY COLOR; paint RADIUS:RADIUS VALUE,SECOND VALUE,SECOND OPACITY COLOR'. Positions as in "
+    "opacity; paint is a soft round brush drawn along a line of any number of points, its radii shares of the ranges of value and second, "
+    "or with @ lengths on them. second defaults to gradient.");
   s("unit", p.unit, "World length to which opacity refers; 0: a hundredth of the diagonal.").at_least(0);
   s("method", p.method, "Rendering algorithm; ray is the reference.");
   s("mode", p.mode, what_a_ray_collects());
@@ -68,14 +71,6 @@ bool mixes_places(const std::string& points) {
   for (const std::string_view part : split(points, ','))
     if (part.find(':') != part.npos) ++(part.starts_with('@') ? values : positions);
   return values > 0 && positions > 0;
-}
-bool mixes_ends(const std::string& widgets) {
-  for (const std::string_view part : split(widgets, ';')) {
-    const auto w = words(part);
-    for (size_t i = 1; i + 1 < std::min<size_t>(w.size(), 5); i += 2)
-      if (w[i].starts_with('@') != w[i + 1].starts_with('@')) return true;
-  }
-  return false;
 }
 
 }  // namespace

@@ -162,11 +162,12 @@ TEST_CASE("volume: what a refusal advises exists") {
   std::vector<DatasetPtr> meshes{with_fields(small_grid()), rectilinear_data, with_fields(tets()), with_fields(amr())};
   std::vector<std::vector<std::string>> asked;
   for (const auto& [method, value] : enum_words(VolumeMethod()))
-    for (const char* more : {"mode=composite", "mode=first_hit",      "mode=sum",       "clip=1,0,0,0",  "second=gradient", "second=v",
-                             "kernel=sinc",    "gradient=sobel",      "classify=table", "antialias=mip", "antialias=split", "shadows=1",
-                             "occlusion=1",    "style=hatch",         "ink=0.5",        "depth_cue=0.5", "step=1e-9",       "levels=nan",
-                             "preset=xray",    "transfer=boundaries", "opacity=0:2",    "colors=0:none", "widgets=disc",    "opacity_by=v",
-                             "component=5",    "transfer=none",       "clip=1",         "unit=inf"})
+    for (const char* more :
+         {"mode=composite",      "mode=first_hit",      "mode=sum",       "clip=1,0,0,0",  "second=gradient", "second=v",
+          "kernel=sinc",         "gradient=sobel",      "classify=table", "antialias=mip", "antialias=split", "shadows=1",
+          "occlusion=1",         "style=hatch",         "ink=0.5",        "depth_cue=0.5", "step=1e-9",       "levels=nan",
+          "preset=xray",         "transfer=boundaries", "opacity=0:2",    "colors=0:none", "widgets=disc",    "opacity_by=v",
+          "widgets=paint 1 0,0", "component=5",         "transfer=none",  "clip=1",        "unit=inf"})
       asked.push_back({fmt::format("method={}", method), more});
   asked.push_back({"shadows=1", "mode=maximum"});
   asked.push_back({"opacity_by=f", "color_by=c"});

@@ -122,6 +122,15 @@ const Way ways[] = {
      [](VolumeItem& v) {
        v.detail.second = SecondAxis::gradient, v.detail.second_factor.points = {{0.5, 0}, {2, 1}};
      }},
+    {"by widgets of all shapes",
+     [](VolumeItem& v) {
+       using Shape = TransferWidget::Shape;
+       v.detail.second = SecondAxis::gradient;
+       v.detail.widgets = {painted({{-0.5, 0.25}, {0.25, 1}, {0.5, 0.5}}, 0.25, 0.25, 0.75, {1, 0, 0}),
+                           {Shape::ellipse, -0.25, 0.75, 0.5, 1.5, 0.5, {-1, -1, -1}},
+                           {Shape::triangle, -0.75, -0.25, 0, 1, 0.5, {0, 0, 1}},
+                           {Shape::rectangle, 0.5, 1, 0, 1, 0.25, {0, 1, 0}}};
+     }},
     {"log colours", [](VolumeItem& v) { v.color.kind = ScaleKind::log, v.color.lo = 0.03125, v.color.hi = 1; }},
     {"splats", [](VolumeItem& v) { v.method = VolumeMethod::splat; }},
     {"slices", [](VolumeItem& v) { v.method = VolumeMethod::slices, v.shaded = true; }},
@@ -159,6 +168,11 @@ Frame picture(const std::string& kind, const Way& way, double value, double leng
   for (double& l : v.levels) l *= value;
   for (Vec2& p : v.detail.second_factor.points)
     if (v.detail.second == SecondAxis::gradient) p.x *= value / length;
+  for (TransferWidget& w : v.detail.widgets) {
+    w.lo *= value, w.hi *= value, w.second_lo *= value / length, w.second_hi *= value / length;
+    w.radius *= value, w.second_radius *= value / length;
+    for (Vec2& p : w.line) p.x *= value, p.y *= value / length;
+  }
   v.unit_distance *= length, v.sampling.step *= length;
   const Projection view = [&] {
     const bool parallel = v.method == VolumeMethod::fourier;

@@ -144,6 +144,7 @@ TEST_CASE("volume words: what cannot be is refused before any data is read, all 
   CHECK(contains(check_error({"opacity_by=a", "color_by=b"}), "give one of them"));
   CHECK(contains(check_error({"color_by=b", "second=gradient"}), "already is the second axis"));
   CHECK(contains(check_error({"widgets=triangle 0 1 0 1", "opacity=0:0,1:1"}), "leave out one"));
+  CHECK(contains(check_error({"widgets=paint 0.1 0.5,0.5"}), "radii of a brush"));
   CHECK(contains(check_error({"clip=1,0,0"}), "has 3 numbers"));
   CHECK(contains(check_error({"clip=0,0,0,1"}), "no direction"));
   CHECK(contains(check_error({"clip=box 0,0,0,1,0,1"}), "empty"));
@@ -157,6 +158,7 @@ TEST_CASE("volume words: what cannot be is refused before any data is read, all 
   // Which of a position and a value comes first, only the data can tell.
   CHECK_NOTHROW(show_params(find_show("volume"), {"opacity=0:0,@-500:0.1,1:1", "colors=0:black,@-500:white", "widgets="}));
   CHECK_NOTHROW(show_params(find_show("volume"), {"widgets=triangle 0 @-500 0 1"}));
+  CHECK_NOTHROW(show_params(find_show("volume"), {"widgets=paint 0.1:@1e-30 @1e-30,0.5 0.5,@7"}));
   const DatasetPtr d = two_fields();
   CHECK(contains(show_error(d, {"field=T", "opacity=0:0,@100:0.5,1:1"}), "'@100:0.5' lies below the previous point (100 after 200)"));
   CHECK(show(d, {"field=T", "opacity=0:0,@250:0.5,1:1"}).item.opacity.at(250) == 0.5);
@@ -217,6 +219,14 @@ TEST_CASE("volume words: second axes and their ranges") {
   const TransferFunction t(w.item.color, w.item.opacity, w.item.detail);
   for (int i = 0; i <= 60; ++i)
     for (int k = 0; k <= 10; ++k) CHECK(double(t.opacity(float(i) * 0.05f, float(k) * 0.4f)) <= w.item.opacity.at(i * 0.05) + 1e-6);
+  const Made soft = show(ball, {"widgets=ellipse 0.2 0.6 0 1 0.7 tomato; paint 0.1:@0.2 @2.5,0 @3,1 0.3"});
+  REQUIRE(soft.item.detail.widgets.size() == 2);
+  const TransferWidget& stroke = soft.item.detail.widgets[1];
+  CHECK(stroke.line[1].y == soft.item.detail.second_hi);
+  CHECK(stroke.radius == doctest::Approx(0.1 * (soft.item.color.hi - soft.item.color.lo)));
+  const TransferFunction s(soft.item.color, soft.item.opacity, soft.item.detail);
+  for (int i = 0; i <= 60; ++i)
+    for (int k = 0; k <= 10; ++k) CHECK(double(s.opacity(float(i) * 0.05f, float(k) * 0.4f)) <= soft.item.opacity.at(i * 0.05) + 1e-6);
 }
 
 TEST_CASE("volume words: one colour, colour stops, and the range they span") {
@@ -293,6 +303,7 @@ TEST_CASE("volume: the words of a look make the same look again") {
            {"field=r", "preset=mr"},
            {"field=r", "second=gradient", "second_opacity=0:0,0.3:1", "unit=0.125", "kernel=sinc", "shadows=0.5"},
            {"field=r", "widgets=triangle 0.2 0.6 0 1 0.7 tomato; rectangle 0.5 0.9 0 0.5 0.3"},
+           {"field=r", "widgets=ellipse 0.2 0.6 0 1 0.7 tomato; paint 0.05:0.1 0.5,0 0.9,0.5 @1,@0.2 0.3"},
            {"field=r", "scale=log", "range=0.1,2", "opacity=0:0,1:0.6", "below=tomato", "clamp=false"},
            {"field=r", "mode=isosurface", "levels=0.25,1"},
            {"field=r", "color_by=T", "opacity=0:0,1:0.5"},

@@ -4,7 +4,8 @@ import { countFalls } from "../transfer/colors";
 import { lightness, mapByName, maps } from "../transfer/maps";
 import { addPoint, movePoint, opacityAt, opacityText, parseOpacity, removePoint, roundValues, snap, type Point } from "../transfer/opacity";
 import { axisOf, share, valueAt } from "../transfer/scale";
-import { gripped, newWidget, parseWidgets, widgetsText } from "../transfer/widgets";
+import { distance, mostPoints, radiiOf, simplified, stroke } from "../transfer/brush";
+import { boxes, gripped, newWidget, paint, parseWidgets, widgetsText } from "../transfer/widgets";
 import { randomNumbers } from "./random";
 
 describe("opacity as text", () => {
@@ -74,6 +75,63 @@ describe("widgets", () => {
     expect(up.top).toBe(1);
     expect(up.low - list[0].low).toBeCloseTo(40, 9);
     expect(gripped(list[0], "low", 9, 0, range).low).toBe(list[0].high);
+  });
+
+  it("of all shapes come back from text, wherever they are moved", () => {
+    const random = randomNumbers(5);
+    const range: [number, number] = [-1000, 3000];
+    for (let k = 0; k < 200; k++) {
+      const path = Array.from({ length: 1 + Math.floor(random() * 20) }, (): [number, number] => [random(), random()]);
+      const drawn = [...boxes.map((b) => newWidget(b, range, "gold")), stroke(path, radiiOf(0.01 + 0.1 * random(), range, 0.5), range, 0.5, "map")];
+      expect(parseWidgets(widgetsText(drawn), range)).toEqual(drawn);
+      const moved = drawn.map((w) => gripped(w, "body", random() - 0.5, random() - 0.5, range));
+      expect(parseWidgets(widgetsText(moved), range)!.map((w) => w.shape)).toEqual(drawn.map((w) => w.shape));
+    }
+  });
+
+  it("read places and radii in either form, and refuse what is none", () => {
+    const one = parseWidgets("paint 0.05:@20 0.5,@100 @300,0.25 0.7 1,0,0", [-100, 300], [0, 200])!;
+    expect(one).toEqual([paint([[100, 0.5], [300, 0.25]], [20, 0.1], 0.7, "1,0,0")]);
+    expect([one[0].low, one[0].high, one[0].bottom, one[0].top]).toEqual([80, 320, 0.15, 0.6]);
+    expect(parseWidgets("paint 1:1 0,0", [0, 1])).toEqual([paint([[0, 0]], [1, 1], 1, "map")]);
+    expect(parseWidgets("ellipse 0 0.5 @0 @100", [0, 1], [0, 200])![0].top).toBe(0.5);
+    expect(parseWidgets("ellipse 0 0.5 @0 @100", [0, 1])).toBe(null); // the second axis is not known yet
+    for (const bad of ["paint", "paint 1 0,0", "paint 1:1", "paint 0:1 0,0", "paint 1:1:1 0,0", "paint 1:1 0,x", "paint 1:1 0,0 1 red 2", "ellipse 0 1 0", "ellipse 0 1 0 1 1 red 5"])
+      expect(parseWidgets(bad, [0, 1])).toBe(null);
+  });
+
+  it("keep the form of a stroke when keys change its brush", () => {
+    const w = paint([[0, 0.5], [10, 0.6]], [1, 0.1], 0.5, "gold");
+    const moved = gripped(w, "body", 0.1, 0.2, [0, 100]);
+    expect(moved.line).toEqual([[10, 0.7], [20, 0.8]]);
+    expect(gripped(w, "high", 0.02, 0, [0, 100]).radius).toEqual([2, 0.1]);
+    expect(gripped(w, "top", 0, -9, [0, 100]).radius).toEqual([1, 0.002]);
+  });
+});
+
+describe("the brush", () => {
+  it("keeps few points of a path, none of which lies farther off than a tenth of its radius", () => {
+    const random = randomNumbers(9);
+    for (let k = 0; k < 30; k++) {
+      const radius: [number, number] = [5 + 20 * random(), 0.01 + 0.1 * random()];
+      let at: [number, number] = [100 * random(), random()];
+      const path = Array.from({ length: 2 + Math.floor(random() * 400) }, (): [number, number] => (at = [at[0] + 4 * (random() - 0.4), at[1] + 0.02 * (random() - 0.5)]));
+      const kept = simplified(path, radius);
+      expect(kept.length).toBeLessThanOrEqual(Math.min(path.length, mostPoints));
+      expect(kept[0]).toEqual(path[0]);
+      expect(kept[kept.length - 1]).toEqual(path[path.length - 1]);
+      const off = path.map((p) => Math.min(...kept.slice(1).map((b, i) => distance(p, kept[i], b, radius))));
+      expect(Math.max(...off)).toBeLessThanOrEqual(0.1 + 1e-9);
+    }
+    expect(simplified([[0, 0], [0, 0]], [1, 1])).toEqual([[0, 0]]);
+    expect(simplified([[0, 0], [1, 1], [2, 2], [3, 3]], [1, 1])).toEqual([[0, 0], [3, 3]]);
+    const wild = Array.from({ length: 600 }, (_, i): [number, number] => [i % 2, i % 3]);
+    expect(simplified(wild, [0.01, 0.01]).length).toBeLessThanOrEqual(mostPoints);
+  });
+
+  it("is round as it is seen, and writes few digits", () => {
+    expect(radiiOf(0.05, [0, 4000], 0.5)).toEqual([200, 0.1]);
+    expect(widgetsText([stroke([[0.1234567, 0.7654321]], [200, 0.1], [-1000, 3000], 0.6, "gold")])).toBe("paint @200:0.1 @-506,0.765 0.6 gold");
   });
 });
 

@@ -6,6 +6,8 @@
 
 #include "base/text/text.h"
 #include "color/cie.h"
+#include "color/widgets/outline.h"
+#include "color/widgets/transfer_widget.h"
 
 namespace sg {
 
@@ -117,17 +119,15 @@ void draw_plane(Image& image, Overlay& overlay, const Legend& s, const LegendLay
       last = now;
     }
   }
-  const auto at = [&](double value, double other) { return d.place(s.position(value), (other - low) / (high - low)); };
+  const auto at = [&](Vec2 p) { return d.place(s.position(p.x), (p.y - low) / (high - low)); };
   const auto inside = [&](Vec2 p) {
     return Vec2{std::clamp(p.x, l.panel.x, l.panel.right()), std::clamp(p.y, l.panel.y, l.panel.bottom())};
   };
-  for (const TransferWidget& w : t.widgets) {
-    const Vec2 lo = at(w.lo, w.second_lo), hi = at(w.hi, w.second_lo);
-    std::vector<Vec2> corners{lo, hi, at(w.hi, w.second_hi), at(w.lo, w.second_hi)};
-    if (w.shape == TransferWidget::Shape::triangle) corners = {{0.5 * (lo.x + hi.x), 0.5 * (lo.y + hi.y)}, corners[2], corners[3]};
-    for (size_t i = 0; i < corners.size(); ++i)
-      overlay.colored_line(inside(corners[i]), inside(corners[(i + 1) % corners.size()]), thick, ink);
-  }
+  for (const TransferWidget& w : t.widgets)
+    for (std::vector<Vec2>& line : outline(w)) {
+      for (Vec2& p : line) p = inside(at(p));
+      overlay.colored_line(line, thick, ink);
+    }
 }
 
 TextStyle small_letters(const LegendLayout& l) {

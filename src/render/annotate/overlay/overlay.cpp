@@ -217,14 +217,14 @@ void Overlay::line(Vec2 from, Vec2 to, double width, double alpha) {
   pango().cairo_stroke(cr);
 }
 
-void Overlay::colored_line(Vec2 from, Vec2 to, double width, Vec3f color) {
+void Overlay::colored_line(const std::vector<Vec2>& points, double width, Vec3f color) {
   cairo_t* cr = parts_->cr.get();
   pango().cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
   for (const auto& [w, c, alpha] : {std::tuple{width + 2, rim(), 0.6}, std::tuple{width, color, 1.0}}) {
     use(cr, c, alpha);
     pango().cairo_set_line_width(cr, w);
-    pango().cairo_move_to(cr, from.x, from.y);
-    pango().cairo_line_to(cr, to.x, to.y);
+    pango().cairo_move_to(cr, points.front().x, points.front().y);
+    for (size_t i = 1; i < points.size(); ++i) pango().cairo_line_to(cr, points[i].x, points[i].y);
     pango().cairo_stroke(cr);
   }
   pango().cairo_set_line_cap(cr, CAIRO_LINE_CAP_BUTT);

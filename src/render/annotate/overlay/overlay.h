@@ -74,7 +74,9 @@ class Overlay {
   void line(Vec2 from, Vec2 to, double width, double alpha = 1);
   void frame(const Rect& rect, double alpha);
   void polygon(const std::vector<Vec2>& points, Vec3f color, bool outlined);
-  void colored_line(Vec2 from, Vec2 to, double width, Vec3f color);
+  void colored_line(Vec2 from, Vec2 to, double width, Vec3f color) { colored_line({from, to}, width, color); }
+  /// Through two points at least.
+  void colored_line(const std::vector<Vec2>& points, double width, Vec3f color);
   void colored_text(const std::string& text, double x, double y, const TextStyle& style, Vec3f color);
 
   /// Over the image (1 to 4 channels of the same size).

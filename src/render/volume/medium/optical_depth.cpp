@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "color/widgets/transfer_widget.h"
 #include "render/volume/medium/cubic.h"
 #include "render/volume/medium/detail.h"
 
@@ -147,7 +148,11 @@ std::string extinction_key(const VolumeItem& item, const Extinction& extinction)
   key += d.second_field + '|' + std::string(word_of(item.sampling.gradient)) + '|';
   append_numbers(key, {double(int(d.second)), extinction.detail->unit});
   for (const auto& p : d.second_factor.points) append_numbers(key, {p.x, p.y});
-  for (const TransferWidget& w : d.widgets) append_numbers(key, {double(int(w.shape)), w.lo, w.hi, w.second_lo, w.second_hi, w.opacity});
+  for (const TransferWidget& w : d.widgets) {
+    append_numbers(key, {double(int(w.shape)), w.lo, w.hi, w.second_lo, w.second_hi, w.opacity});
+    append_numbers(key, {double(w.line.size()), w.radius, w.second_radius});
+    for (const Vec2& p : w.line) append_numbers(key, {p.x, p.y});
+  }
   return key;
 }
 

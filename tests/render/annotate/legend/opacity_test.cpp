@@ -2,6 +2,8 @@
 // The panel of opacity beside a volume's colour bar.
 #include "render/annotate/legend/opacity.h"
 
+#include <algorithm>
+
 #include "color/cie.h"
 #include "render/annotate/annotate.h"
 #include "support/test.h"
@@ -154,4 +156,41 @@ TEST_CASE("legend: panels fit whatever the picture's size, and labels have none"
   Legend labels = volume({{{0, 0}, {100, 1}}});
   labels.labels = {1, 2, 3};
   CHECK(draw(labels).layout.panel.width == 0);
+}
+
+TEST_CASE("legend: ellipses and strokes are outlined as they are") {
+  TransferDetail detail;
+  detail.second = SecondAxis::gradient;
+  detail.second_lo = 0, detail.second_hi = 10;
+  detail.widgets = {{TransferWidget::Shape::ellipse, 60, 90, 2, 8, 0.7, {1, 0, 0}}, painted({{20, 2}, {30, 8}}, 8, 1, 0.7, {1, 0, 0})};
+  for (const int height : {720, 2160}) {
+    const Drawn d = draw(volume({{{0, 0}}}, detail), height * 16 / 9, height);
+    const LegendLayout& l = d.layout;
+    const auto pixel = [&](double value, double second) {
+      return d.image.at(int(l.panel.x + second / 10 * (l.panel.width - 1)),
+                        int(std::lround(l.bar.y + (1 - value / 100) * (l.bar.height - 1))));
+    };
+    // Of a thin line the pixel itself may be the one beside it.
+    const auto darkest = [&](double value, double second) {
+      const auto index = size_t(pixel(value, second) - d.image.at(0, 0)) / 3;
+      const int x = int(index) % d.image.width, y = int(index) / d.image.width;
+      int least = 255;
+      for (int j = -1; j <= 1; ++j)
+        for (int i = -1; i <= 1; ++i) least = std::min(least, int(d.image.at(x + i, y + j)[0]));
+      return least;
+    };
+    INFO(height);
+    CHECK(pixel(75, 5)[0] > 250);
+    CHECK(pixel(75, 5)[1] < 10);
+    CHECK(darkest(75, 2) < 120);  // the outlines
+    CHECK(darkest(90, 5) < 120);
+    CHECK(darkest(20 - 8, 2) < 120);
+    CHECK(darkest(30 + 8, 8) < 120);
+    CHECK(pixel(25, 5)[1] < 10);  // on the stroke's line
+    // The corners of the boxes round them are empty.
+    CHECK(is_ground(pixel(62, 2.4)));
+    CHECK(is_ground(pixel(88, 7.6)));
+    CHECK(is_ground(pixel(14, 8)));
+    CHECK(is_ground(pixel(36, 2)));
+  }
 }
