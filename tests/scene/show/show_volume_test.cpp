@@ -226,7 +226,8 @@ TEST_CASE("volume words: second axes and their ranges") {
   CHECK(stroke.radius == doctest::Approx(0.1 * (soft.item.color.hi - soft.item.color.lo)));
   const TransferFunction strokes(soft.item.color, soft.item.opacity, soft.item.detail);
   for (int i = 0; i <= 60; ++i)
-    for (int k = 0; k <= 10; ++k) CHECK(double(strokes.opacity(float(i) * 0.05f, float(k) * 0.4f)) <= soft.item.opacity.at(i * 0.05) + 1e-6);
+    for (int k = 0; k <= 10; ++k)
+      CHECK(double(strokes.opacity(float(i) * 0.05f, float(k) * 0.4f)) <= soft.item.opacity.at(i * 0.05) + 1e-6);
 }
 
 TEST_CASE("volume words: one colour, colour stops, and the range they span") {
