@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "base/parallel.h"
+#include "simulate/fluid/lattice_sums.h"
 
 namespace sg::fluid {
 
@@ -127,18 +128,6 @@ void friction(const Lattice<T>& moves, T r, const Lattice<T>& x, Lattice<T>& out
       &context);
 }
 
-template <class T>
-double sum_of_products(const Lattice<T>& a, const Lattice<T>& b, const Context& context) {
-  return parallel_reduce(
-      a.values.size(), size_t(1) << 15, 0.0,
-      [&](size_t begin, size_t end) {
-        double s = 0;
-        for (size_t i = begin; i < end; ++i) s += double(a.values[i]) * double(b.values[i]);
-        return s;
-      },
-      [](double x, double y) { return x + y; }, &context);
-}
-
 }  // namespace
 
 template <class T>
@@ -155,13 +144,13 @@ void diffuse_velocity(const MacGrid& g, const Faces<T>& open, double viscosity, 
     friction(open[size_t(axis)], r, x, q, context);
     for (size_t i = 0; i < q.values.size(); ++i) residual.values[i] -= q.values[i];
     Lattice<T> s = residual;
-    double rr = sum_of_products(residual, residual, context);
-    const double enough = tolerance * tolerance * sum_of_products(x, x, context);
+    double rr = dot(residual, residual, context);
+    const double enough = tolerance * tolerance * dot(x, x, context);
     for (int step = 0; step < 1000 && rr > enough; ++step) {
       friction(open[size_t(axis)], r, s, q, context);
-      const T alpha = T(rr / sum_of_products(s, q, context));
+      const T alpha = T(rr / dot(s, q, context));
       for (size_t i = 0; i < q.values.size(); ++i) x.values[i] += alpha * s.values[i], residual.values[i] -= alpha * q.values[i];
-      const double next = sum_of_products(residual, residual, context);
+      const double next = dot(residual, residual, context);
       const T beta = T(next / rr);
       rr = next;
       for (size_t i = 0; i < q.values.size(); ++i) s.values[i] = residual.values[i] + beta * s.values[i];

@@ -36,10 +36,24 @@ struct Rows {
   }
 };
 
-// Calls f(i, west, east) along a row: the values beside cell i, 0 outside.
-template <class T, class F>
-void along_row(const T* x, size_t n, size_t first, size_t step, F&& f) {
-  for (size_t i = first; i < n; i += step) f(i, i > 0 ? x[i - 1] : T(0), i + 1 < n ? x[i + 1] : T(0));
+// Calls f(cell, neighbours, diagonal) with the sums of Rows for all cells (Step 1) or those of one colour of the chessboard (Step 2).
+template <size_t Step, class T, class Level, class F>
+void each_cell(const Level& l, const Lattice<T>& x, size_t color, const Context& context, F&& f) {
+  const std::vector<T> zeros(l.n[0]);
+  parallel_for(
+      x.rows(), row_grain,
+      [&](size_t begin, size_t end) {
+        for (size_t row = begin; row < end; ++row) {
+          const Rows<T> rows(l.n, l.open, x, zeros.data(), row);
+          const size_t first = Step == 1 ? 0 : (color + row % l.n[1] + row / l.n[1]) % 2;
+          for (size_t i = first; i < l.n[0]; i += Step) {
+            T neighbours, diagonal;
+            rows.sums(l.coupling, i, i > 0 ? rows.here[i - 1] : T(0), i + 1 < l.n[0] ? rows.here[i + 1] : T(0), neighbours, diagonal);
+            f(i + row * l.n[0], neighbours, diagonal);
+          }
+        }
+      },
+      &context);
 }
 
 // The mean of the fine faces that make up each coarse one; those that are missing beyond an odd border count as solid.
@@ -123,63 +137,26 @@ Multigrid<T>::Multigrid(std::array<size_t, 3> cells, Faces<T> open, const OpenSi
 
 template <class T>
 void Multigrid<T>::apply(const Lattice<T>& x, Lattice<T>& out, const Context& context) const {
-  const Level& l = levels_.front();
-  const std::vector<T> zeros(l.n[0]);
-  parallel_for(
-      x.rows(), row_grain,
-      [&](size_t begin, size_t end) {
-        for (size_t row = begin; row < end; ++row) {
-          const Rows<T> rows(l.n, l.open, x, zeros.data(), row);
-          T* const to = out.row(row);
-          along_row(rows.here, l.n[0], 0, 1, [&](size_t i, T west, T east) {
-            T neighbours, diagonal;
-            rows.sums(l.coupling, i, west, east, neighbours, diagonal);
-            to[i] = diagonal * rows.here[i] - neighbours;
-          });
-        }
-      },
-      &context);
+  T* const to = out.values.data();
+  const T* const p = x.values.data();
+  each_cell<1>(levels_.front(), x, 0, context, [=](size_t cell, T neighbours, T diagonal) { to[cell] = diagonal * p[cell] - neighbours; });
 }
 
 template <class T>
 void Multigrid<T>::residual(const Level& l, const Lattice<T>& b, const Lattice<T>& x, Lattice<T>& r, const Context& context) const {
-  const std::vector<T> zeros(l.n[0]);
-  parallel_for(
-      x.rows(), row_grain,
-      [&](size_t begin, size_t end) {
-        for (size_t row = begin; row < end; ++row) {
-          const Rows<T> rows(l.n, l.open, x, zeros.data(), row);
-          const T* const from = b.row(row);
-          T* const to = r.row(row);
-          along_row(rows.here, l.n[0], 0, 1, [&](size_t i, T west, T east) {
-            T neighbours, diagonal;
-            rows.sums(l.coupling, i, west, east, neighbours, diagonal);
-            to[i] = diagonal > 0 ? from[i] - (diagonal * rows.here[i] - neighbours) : T(0);  // dry cells take no part
-          });
-        }
-      },
-      &context);
+  T* const to = r.values.data();
+  const T *const from = b.values.data(), *const p = x.values.data();
+  each_cell<1>(l, x, 0, context, [=](size_t cell, T neighbours, T diagonal) {  // dry cells take no part
+    to[cell] = diagonal > 0 ? from[cell] - (diagonal * p[cell] - neighbours) : T(0);
+  });
 }
 
 template <class T>
 void Multigrid<T>::smooth(const Level& l, const Lattice<T>& b, Lattice<T>& x, int color, const Context& context) const {
-  const std::vector<T> zeros(l.n[0]);
-  parallel_for(
-      x.rows(), row_grain,
-      [&](size_t begin, size_t end) {
-        for (size_t row = begin; row < end; ++row) {
-          const Rows<T> rows(l.n, l.open, x, zeros.data(), row);
-          const T* const from = b.row(row);
-          T* const to = x.row(row);
-          const size_t first = (size_t(color) + row % l.n[1] + row / l.n[1]) % 2;
-          along_row(rows.here, l.n[0], first, 2, [&](size_t i, T west, T east) {
-            T neighbours, diagonal;
-            rows.sums(l.coupling, i, west, east, neighbours, diagonal);
-            to[i] = diagonal > 0 ? (from[i] + neighbours) / diagonal : T(0);
-          });
-        }
-      },
-      &context);
+  T* const to = x.values.data();
+  const T* const from = b.values.data();
+  each_cell<2>(l, x, size_t(color), context,
+               [=](size_t cell, T neighbours, T diagonal) { to[cell] = diagonal > 0 ? (from[cell] + neighbours) / diagonal : T(0); });
 }
 
 template <class T>

@@ -7,44 +7,18 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/parallel.h"
 #include "base/union_find.h"
+#include "simulate/fluid/lattice_sums.h"
 
 namespace sg::fluid {
 
 namespace {
 
-constexpr size_t value_grain = 1 << 15;
-
-template <class T>
-double dot(const Lattice<T>& a, const Lattice<T>& b, const Context& context) {
-  return parallel_reduce(
-      a.values.size(), value_grain, 0.0,
-      [&](size_t begin, size_t end) {
-        double s = 0;
-        for (size_t i = begin; i < end; ++i) s += double(a.values[i]) * double(b.values[i]);
-        return s;
-      },
-      [](double x, double y) { return x + y; }, &context);
-}
-
-template <class T>
-double largest(const Lattice<T>& a, const Context& context) {
-  return parallel_reduce(
-      a.values.size(), value_grain, 0.0,
-      [&](size_t begin, size_t end) {
-        T m = 0;
-        for (size_t i = begin; i < end; ++i) m = std::max(m, std::abs(a.values[i]));
-        return double(m);
-      },
-      [](double x, double y) { return std::max(x, y); }, &context);
-}
-
 // to[i] = f(i)
 template <class T, class F>
 void each(Lattice<T>& to, const Context& context, F&& f) {
   parallel_for(
-      to.values.size(), value_grain,
+      to.values.size(), values_at_once,
       [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) to.values[i] = f(i);
       },
@@ -110,8 +84,8 @@ SolveReport PressureSolver<T>::solve(Lattice<T>& b, Lattice<T>& p, double tolera
   balance(b, true);
   SolveReport report;
   const double size = largest(b, context);
-  if (!(size > 0)) {
-    if (size != size || std::isnan(dot(b, b, context))) fail_data("the flow holds values that are not numbers", "the pressure");
+  if (std::isnan(size)) fail_data("the flow holds values that are not numbers", "the pressure");
+  if (size == 0) {
     std::fill(p.values.begin(), p.values.end(), T(0));
     return report;
   }

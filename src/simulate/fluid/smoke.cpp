@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "simulate/fluid/forces.h"
+#include "simulate/fluid/lattice_sums.h"
 
 namespace sg::fluid {
 
@@ -121,18 +122,11 @@ void Smoke<T>::give_off() {
 template <class T>
 double Smoke<T>::fastest(const Context& context) const {
   double most = 0;
-  for (const Lattice<T>& l : velocity_)
-    most = std::max(most, parallel_reduce(
-                              l.values.size(), size_t(1) << 15, 0.0,
-                              [&](size_t begin, size_t end) {
-                                double m = 0;
-                                for (size_t i = begin; i < end; ++i) {
-                                  const double v = std::abs(double(l.values[i]));
-                                  m = v <= m ? m : v;  // NaN stays
-                                }
-                                return m;
-                              },
-                              [](double x, double y) { return y <= x ? x : y; }, &context));
+  for (const Lattice<T>& l : velocity_) {
+    const double v = largest(l, context);
+    most = v <= most ? most : v;  // NaN stays
+    if (std::isnan(v)) break;
+  }
   return most;
 }
 

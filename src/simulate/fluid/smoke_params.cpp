@@ -56,7 +56,7 @@ MacGrid smoke_grid(const SmokeParams& p, const Context& context) {
     g.cells[size_t(a)] = a == 2 && extent.z == 0 ? 1 : size_t(std::max(2.0, std::round(extent[a] / g.h)));
     cells *= double(g.cells[size_t(a)]);
   }
-  const double bytes = cells * (p.type == FieldType::f64 ? 160 : 80);
+  const double bytes = cells * (p.type == FieldType::f64 ? 240 : 120);
   if (cells > 4e9 || (context.memory_limit && bytes > double(context.memory_limit)))
     fail_usage(fmt::format("{:.3g} cells take about {}, more than there is", cells, human_bytes(uint64_t(std::min(bytes, 1e18)))), "smoke",
                "ask for a smaller size");
