@@ -47,7 +47,7 @@ void stays_calm(const Operation& o, const std::string& what, const std::function
   if (!failure.empty()) FAIL_CHECK(fmt::format("{}: {}: {}", o.name, what, failure));
 }
 
-// Words before the hostile one: pictures and grids of default size take too long.
+// Words before the hostile one: pictures, grids and numbers of particles of default size take too long.
 std::vector<std::string> words_for(const Operation& o, const std::string& word) {
   std::vector<std::string> r;
   const ParamSet params = o.make_params();
@@ -58,6 +58,7 @@ std::vector<std::string> words_for(const Operation& o, const std::string& word) 
     if (takes && !word.starts_with(d->name + "=")) r.push_back(d->name + "=8");
   }
   if (o.name.ends_with("_surface") && params.schema.find("spacing") && !word.starts_with("spacing=")) r.push_back("spacing=0.1");
+  if (params.schema.find("most_points") && !word.starts_with("most_points=")) r.push_back("most_points=10000");
   if (!word.empty()) r.push_back(word);
   return r;
 }
