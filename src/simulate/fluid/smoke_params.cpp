@@ -15,8 +15,7 @@ void describe(Schema& s, SmokeParams& p) {
   s("size", p.size, "Cells along the longest side.").range(2, 4096);
   s("bounds", p.bounds, "Box of the air as x0,x1,y0,y1,z0,z1; default: 0,1,0,1,0,2. Equal z0 and z1: a flat flow in x and y.").items(6);
   s("type", p.type, "Number type of the computation.");
-  s("time", p.time, "When, from 0 on: the last whole frame before it is shown.").at_least(0);
-  s("frame", p.frame, "Time from frame to frame; each is computed from the one before.").positive();
+  describe(s, static_cast<FrameParams&>(p));
   s("cfl", p.cfl, "Cells that the fastest air passes in a step, at most: a frame takes as many steps as that needs.").positive();
   s("advection", p.advection,
     "How quantities are carried. explicit: forward in time with central differences, which blows up. semi_lagrangian: stable, but "

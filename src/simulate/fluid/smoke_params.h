@@ -8,6 +8,7 @@
 #include "base/schema/schema.h"
 #include "simulate/analytic_grid.h"
 #include "simulate/fluid/advect.h"
+#include "simulate/run/frames.h"
 
 namespace sg {
 
@@ -17,11 +18,11 @@ constexpr auto enum_words(BoxSide) {
   return std::array{Word{"x0", x0}, Word{"x1", x1}, Word{"y0", y0}, Word{"y1", y1}, Word{"z0", z0}, Word{"z1", z1}, Word{"none", none}};
 }
 
-struct SmokeParams {
+struct SmokeParams : FrameParams {
   int size = 64;
   std::vector<double> bounds;
   FieldType type = FieldType::f32;
-  double time = 0, frame = 0.04, cfl = 2;
+  double cfl = 2;
   fluid::Advection advection = fluid::Advection::maccormack;
   fluid::BackTrace trace = fluid::BackTrace::rk2;
   std::vector<double> source, obstacle;

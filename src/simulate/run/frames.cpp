@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulate/run/frames.h"
+
+#include <cmath>
+
+#include "base/error.h"
+
+namespace sg {
+
+void describe(Schema& s, FrameParams& p) {
+  s("time", p.time, "When, from 0 on: the last whole frame before it is shown.").unit("time").at_least(0);
+  s("frame", p.frame, "Time from frame to frame; each is computed from the one before.").unit("time").positive();
+}
+
+size_t frame_at(const FrameParams& p, const std::string& who) {
+  const double frames = std::floor(p.time / p.frame * (1 + 1e-12) + 1e-9);
+  if (!(frames <= 1e6)) fail_usage("that is more than a million frames away", who + " time", "ask for an earlier time or longer frames");
+  return size_t(frames);
+}
+
+}  // namespace sg
