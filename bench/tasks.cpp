@@ -180,6 +180,7 @@ std::vector<Task> tasks(const std::string& folder) {
   add_volume_cells_tasks(t);
   add_lic_tasks(t);
   add_lic2d_tasks(t);
+  add_smoke_tasks(t);
   t.push_back(gradients("grid", "uniform256"));
   t.push_back(gradients("tets", "tet1M"));
   t.push_back(writing(folder));

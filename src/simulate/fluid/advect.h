@@ -2,6 +2,7 @@
 // Quantities carried along by the flow of a staggered grid.
 #pragma once
 #include <array>
+#include <span>
 
 #include "base/context.h"
 #include "base/schema/enum_words.h"
@@ -41,10 +42,17 @@ struct Carrier {
   bool limit = true;
 };
 
-/// The field f, of the cells (axis -1) or of a component of the velocity (its axis), after the step. Outside of the box it has the value
-/// at its border. `out` is as large as f and not f; `scratch`, for maccormack and bfecc, likewise. With semi_lagrangian, and with `limit`,
-/// no value goes beyond those of f.
+/// A field on the way: `out` and `scratch` are as large as `f`, and other lattices.
 template <class T>
-void advect(const Carrier<T>& step, int axis, const Lattice<T>& f, Lattice<T>& out, Lattice<T>& scratch, const Context& context);
+struct Carried {
+  const Lattice<T>* f;
+  Lattice<T>* out;
+  Lattice<T>* scratch;
+};
+
+/// Fields of the cells (axis -1) or a component of the velocity (its axis) after the step, in `out`. Outside of the box they have their
+/// values at its border. With semi_lagrangian, and with `limit`, no value goes beyond those of f. `marks` is as large as they are.
+template <class T>
+void advect(const Carrier<T>& step, int axis, std::span<const Carried<T>> fields, Lattice<T>& marks, const Context& context);
 
 }  // namespace sg::fluid

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulate/fluid/forces.h"
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
+#include <vector>
 
 #include "base/parallel.h"
 #include "simulate/fluid/lattice_sums.h"
@@ -13,31 +15,46 @@ namespace {
 
 constexpr size_t force_rows = 16;
 
-// Calls f(face, cell, stride) for the faces across an axis that lie between two cells: its number, and that of the cell above it, which is
-// `stride` behind the one below.
+// Calls f(faces, cells, stride) for the rows of faces across an axis that lie between cells: the numbers of the first of `count` faces and
+// of the cell above it, which is `stride` behind the one below.
 template <class T, class F>
-void inner_faces(const MacGrid& g, int axis, const Lattice<T>& l, const Context& context, F&& f) {
+void inner_rows(const MacGrid& g, int axis, const Lattice<T>& l, const Context& context, F&& f) {
   const size_t a = size_t(axis), stride = a == 0 ? 1 : a == 1 ? g.cells[0] : g.cells[0] * g.cells[1];
   parallel_for(
       l.rows(), force_rows,
       [&](size_t begin, size_t end) {
-        for (size_t row = begin; row < end; ++row)
-          for (size_t i = 0; i < l.n[0]; ++i) {
-            const std::array<size_t, 3> at{i, row % l.n[1], row / l.n[1]};
-            if (at[a] == 0 || at[a] == g.cells[a]) continue;
-            f(i + row * l.n[0], at[0] + g.cells[0] * (at[1] + g.cells[1] * at[2]), stride);
-          }
+        for (size_t row = begin; row < end; ++row) {
+          const std::array<size_t, 3> at{0, row % l.n[1], row / l.n[1]};
+          if (a > 0 && (at[a] == 0 || at[a] == g.cells[a])) continue;
+          const size_t first = a == 0 ? 1 : 0;
+          f(first + row * l.n[0], first + g.cells[0] * (at[1] + g.cells[1] * at[2]), g.cells[0] - first, stride);
+        }
       },
       &context);
 }
 
-// Velocity in the middle of a cell; indices are held at the border.
+// The rows of cells about a row, held at the border, and the velocity in their middles.
 template <class T>
-Vec3T<T> middle_velocity(const MacGrid& g, const Faces<T>& u, long i, long j, long k) {
-  const auto hold = [&](long x, size_t a) { return size_t(std::min(std::max(x, 0l), long(g.cells[a]) - 1)); };
-  const size_t x = hold(i, 0), y = hold(j, 1), z = hold(k, 2);
-  return {(u[0](x, y, z) + u[0](x + 1, y, z)) / 2, (u[1](x, y, z) + u[1](x, y + 1, z)) / 2,
-          g.flat() ? T(0) : (u[2](x, y, z) + u[2](x, y, z + 1)) / 2};
+struct Middles {
+  const MacGrid& g;
+  const Faces<T>& u;
+
+  // Component a in the middle of cell i of row (j, k) held at the border.
+  void row(size_t a, long j, long k, T* to) const {
+    const size_t y = size_t(std::clamp(j, 0l, long(g.cells[1]) - 1)), z = size_t(std::clamp(k, 0l, long(g.cells[2]) - 1));
+    const Lattice<T>& l = u[a];
+    const T* const below = l.row(y + l.n[1] * z);
+    const T* const above = a == 0 ? below + 1 : l.row(a == 1 ? y + 1 + l.n[1] * z : y + l.n[1] * (z + 1));
+    for (size_t i = 0; i < g.cells[0]; ++i) to[i] = (below[i] + above[i]) / 2;
+  }
+};
+
+// to[i] += by * (f[i+1] - f[i-1]), held at the ends.
+template <class T>
+void add_difference(const T* f, size_t n, T by, T* to) {
+  if (n < 2) return;
+  to[0] += by * (f[1] - f[0]), to[n - 1] += by * (f[n - 1] - f[n - 2]);
+  for (size_t i = 1; i + 1 < n; ++i) to[i] += by * (f[i + 1] - f[i - 1]);
 }
 
 }  // namespace
@@ -48,71 +65,93 @@ void add_buoyancy(const MacGrid& g, const Lattice<T>& density, const Lattice<T>&
   for (int a = 0; a < g.axes(); ++a) {
     const T by_heat = T(dt * lift * up[a] / 2), by_weight = T(dt * weight * up[a] / 2);
     if (by_heat == 0 && by_weight == 0) continue;
-    T* const v = u[size_t(a)].values.data();
-    const T *heat = temperature.values.data(), *mass = density.values.data();
-    inner_faces(g, a, u[size_t(a)], context, [&](size_t face, size_t cell, size_t stride) {
-      v[face] += by_heat * (heat[cell] + heat[cell - stride]) - by_weight * (mass[cell] + mass[cell - stride]);
+    inner_rows(g, a, u[size_t(a)], context, [&](size_t faces, size_t cells, size_t count, size_t stride) {
+      T* const v = u[size_t(a)].values.data() + faces;
+      const T *heat = temperature.values.data() + cells, *mass = density.values.data() + cells;
+      const T *heat_below = heat - stride, *mass_below = mass - stride;
+      for (size_t i = 0; i < count; ++i) v[i] += by_heat * (heat[i] + heat_below[i]) - by_weight * (mass[i] + mass_below[i]);
     });
   }
 }
 
 template <class T>
-void confine_vortices(const MacGrid& g, double strength, double dt, Faces<T>& u, const Context& context) {
+void confine_vortices(const MacGrid& g, double strength, double dt, Faces<T>& u, Spare<T> spare, const Context& context) {
   if (strength == 0) return;
-  const size_t count = g.cells[0] * g.cells[1] * g.cells[2];
-  Plane<Vec3T<T>> vorticity(count);
-  Lattice<T> size(g.cells);
+  const size_t n = g.cells[0];
+  Lattice<T>* const w[3] = {&shaped(spare[0], g.cells), &shaped(spare[1], g.cells), &shaped(spare[2], g.cells)};
+  Lattice<T>& size = shaped(spare[3], g.cells);
   const T per = T(1 / (2 * g.h));
+  // The vorticity curl u of the middles, and its size.
   parallel_for(
       size.rows(), force_rows,
       [&](size_t begin, size_t end) {
-        for (size_t row = begin; row < end; ++row)
-          for (size_t x = 0; x < g.cells[0]; ++x) {
-            const long i = long(x), j = long(row % g.cells[1]), k = long(row / g.cells[1]);
-            const Vec3T<T> by_x = per * (middle_velocity(g, u, i + 1, j, k) - middle_velocity(g, u, i - 1, j, k)),
-                           by_y = per * (middle_velocity(g, u, i, j + 1, k) - middle_velocity(g, u, i, j - 1, k)),
-                           by_z = per * (middle_velocity(g, u, i, j, k + 1) - middle_velocity(g, u, i, j, k - 1));
-            const Vec3T<T> w{by_y.z - by_z.y, by_z.x - by_x.z, by_x.y - by_y.x};
-            vorticity[x + row * g.cells[0]] = w, size.row(row)[x] = length(w);
-          }
+        std::vector<T> line(2 * n);
+        T *const after = line.data(), *const before = after + n;
+        const Middles<T> middles{g, u};
+        for (size_t row = begin; row < end; ++row) {
+          const long j = long(row % g.cells[1]), k = long(row / g.cells[1]);
+          T* const to[3] = {w[0]->row(row), w[1]->row(row), w[2]->row(row)};
+          for (T* t : to) std::fill(t, t + n, T(0));
+          // to[c] += sign * d u_a / d x_b
+          const auto add = [&](size_t c, size_t a, size_t b, T sign) {
+            if (int(a) >= g.axes() || int(b) >= g.axes()) return;
+            if (b == 0) {
+              middles.row(a, j, k, after);
+              add_difference(after, n, sign * per, to[c]);
+              return;
+            }
+            middles.row(a, b == 1 ? j + 1 : j, b == 2 ? k + 1 : k, after), middles.row(a, b == 1 ? j - 1 : j, b == 2 ? k - 1 : k, before);
+            for (size_t i = 0; i < n; ++i) to[c][i] += sign * per * (after[i] - before[i]);
+          };
+          for (size_t c = 0; c < 3; ++c) add(c, (c + 2) % 3, (c + 1) % 3, 1), add(c, (c + 1) % 3, (c + 2) % 3, -1);
+          T* const s = size.row(row);
+          for (size_t i = 0; i < n; ++i) s[i] = std::sqrt(to[0][i] * to[0][i] + to[1][i] * to[1][i] + to[2][i] * to[2][i]);
+        }
       },
       &context);
-  Plane<Vec3T<T>> force(count);
+  // The force strength h N x curl u, N the direction in which vorticity grows, in place of the vorticity; its share of a face.
+  const T by = T(strength * g.h * dt / 2);
   parallel_for(
       size.rows(), force_rows,
       [&](size_t begin, size_t end) {
-        for (size_t row = begin; row < end; ++row)
-          for (size_t x = 0; x < g.cells[0]; ++x) {
-            const size_t at[3] = {x, row % g.cells[1], row / g.cells[1]}, cell = x + row * g.cells[0];
-            const size_t strides[3] = {1, g.cells[0], g.cells[0] * g.cells[1]};
-            Vec3T<T> to{};
-            for (int a = 0; a < 3; ++a) {
-              const size_t stride = strides[a];
-              to[a] = per *
-                      (size.values[at[a] + 1 < g.cells[size_t(a)] ? cell + stride : cell] - size.values[at[a] > 0 ? cell - stride : cell]);
-            }
-            const T steep = length(to);
-            force[cell] = steep > 0 ? T(strength * g.h * dt / 2) / steep * cross(to, vorticity[cell]) : Vec3T<T>{};
+        std::vector<T> slope(3 * n);
+        T* const to[3] = {slope.data(), slope.data() + n, slope.data() + 2 * n};
+        for (size_t row = begin; row < end; ++row) {
+          const size_t j = row % g.cells[1], k = row / g.cells[1], plane = g.cells[1];
+          std::fill(slope.begin(), slope.end(), T(0));
+          add_difference(size.row(row), n, per, to[0]);
+          const T *const north = size.row(j + 1 < g.cells[1] ? row + 1 : row), *const south = size.row(j > 0 ? row - 1 : row),
+                         *const top = size.row(k + 1 < g.cells[2] ? row + plane : row), *const bottom = size.row(k > 0 ? row - plane : row);
+          for (size_t i = 0; i < n; ++i) to[1][i] = per * (north[i] - south[i]), to[2][i] = per * (top[i] - bottom[i]);
+          T *const wx = w[0]->row(row), *const wy = w[1]->row(row), *const wz = w[2]->row(row);
+          for (size_t i = 0; i < n; ++i) {
+            const T x = to[0][i], y = to[1][i], z = to[2][i], steep = std::sqrt(x * x + y * y + z * z), f = steep > 0 ? by / steep : T(0);
+            const T a = wx[i], b = wy[i], c = wz[i];
+            wx[i] = f * (y * c - z * b), wy[i] = f * (z * a - x * c), wz[i] = f * (x * b - y * a);
           }
+        }
       },
       &context);
   for (int a = 0; a < g.axes(); ++a)
-    inner_faces(g, a, u[size_t(a)], context,
-                [&](size_t face, size_t cell, size_t stride) { u[size_t(a)].values[face] += force[cell][a] + force[cell - stride][a]; });
+    inner_rows(g, a, u[size_t(a)], context, [&](size_t faces, size_t cells, size_t count, size_t stride) {
+      T* const v = u[size_t(a)].values.data() + faces;
+      const T *force = w[a]->values.data() + cells, *below = force - stride;
+      for (size_t i = 0; i < count; ++i) v[i] += force[i] + below[i];
+    });
 }
 
 namespace {
 
 // out = (I - r lap) x over the faces that move; r = viscosity dt / h^2.
 template <class T>
-void friction(const Lattice<T>& moves, T r, const Lattice<T>& x, Lattice<T>& out, const Context& context) {
+void friction(const Lattice<T>* moves, T r, const Lattice<T>& x, Lattice<T>& out, const Context& context) {
   parallel_for(
       x.rows(), force_rows,
       [&](size_t begin, size_t end) {
         for (size_t row = begin; row < end; ++row)
           for (size_t i = 0; i < x.n[0]; ++i) {
             const size_t at[3] = {i, row % x.n[1], row / x.n[1]}, here = i + row * x.n[0];
-            if (!(moves.values[here] > 0)) {
+            if (moves && !(moves->values[here] > 0)) {
               out.values[here] = x.values[here];
               continue;
             }
@@ -131,23 +170,26 @@ void friction(const Lattice<T>& moves, T r, const Lattice<T>& x, Lattice<T>& out
 }  // namespace
 
 template <class T>
-void diffuse_velocity(const MacGrid& g, const Faces<T>& open, double viscosity, double dt, Faces<T>& u, const Context& context) {
+void diffuse_velocity(const MacGrid& g, const Walls<T>& walls, double viscosity, double dt, Faces<T>& u, Spare<T> spare,
+                      const Context& context) {
   if (viscosity == 0) return;
   const T r = T(viscosity * dt / (g.h * g.h));
   const double tolerance = std::is_same_v<T, float> ? 1e-6 : 1e-12;
   for (int axis = 0; axis < g.axes(); ++axis) {
     Lattice<T>& x = u[size_t(axis)];
-    for (size_t i = 0; i < x.values.size(); ++i)
-      if (!(open[size_t(axis)].values[i] > 0)) x.values[i] = 0;
-    Lattice<T> residual = x, q(x.n);
-    // The values before are a good beginning.
-    friction(open[size_t(axis)], r, x, q, context);
-    for (size_t i = 0; i < q.values.size(); ++i) residual.values[i] -= q.values[i];
-    Lattice<T> s = residual;
+    const Lattice<T>* const moves = walls.obstacles() ? &walls.open[size_t(axis)] : nullptr;
+    if (moves)
+      for (size_t i = 0; i < x.values.size(); ++i)
+        if (!(moves->values[i] > 0)) x.values[i] = 0;
+    Lattice<T>&residual = shaped(spare[0], x.n), &q = shaped(spare[1], x.n), &s = shaped(spare[2], x.n);
+    // Conjugate gradients; the values before are a good beginning.
+    friction(moves, r, x, q, context);
+    for (size_t i = 0; i < q.values.size(); ++i) residual.values[i] = x.values[i] - q.values[i];
+    s.values = residual.values;
     double rr = dot(residual, residual, context);
     const double enough = tolerance * tolerance * dot(x, x, context);
     for (int step = 0; step < 1000 && rr > enough; ++step) {
-      friction(open[size_t(axis)], r, s, q, context);
+      friction(moves, r, s, q, context);
       const T alpha = T(rr / dot(s, q, context));
       for (size_t i = 0; i < q.values.size(); ++i) x.values[i] += alpha * s.values[i], residual.values[i] -= alpha * q.values[i];
       const double next = dot(residual, residual, context);
@@ -162,9 +204,9 @@ template void add_buoyancy(const MacGrid&, const Lattice<float>&, const Lattice<
                            const Context&);
 template void add_buoyancy(const MacGrid&, const Lattice<double>&, const Lattice<double>&, Vec3, double, double, double, Faces<double>&,
                            const Context&);
-template void confine_vortices(const MacGrid&, double, double, Faces<float>&, const Context&);
-template void confine_vortices(const MacGrid&, double, double, Faces<double>&, const Context&);
-template void diffuse_velocity(const MacGrid&, const Faces<float>&, double, double, Faces<float>&, const Context&);
-template void diffuse_velocity(const MacGrid&, const Faces<double>&, double, double, Faces<double>&, const Context&);
+template void confine_vortices(const MacGrid&, double, double, Faces<float>&, Spare<float>, const Context&);
+template void confine_vortices(const MacGrid&, double, double, Faces<double>&, Spare<double>, const Context&);
+template void diffuse_velocity(const MacGrid&, const Walls<float>&, double, double, Faces<float>&, Spare<float>, const Context&);
+template void diffuse_velocity(const MacGrid&, const Walls<double>&, double, double, Faces<double>&, Spare<double>, const Context&);
 
 }  // namespace sg::fluid

@@ -2,7 +2,7 @@
 // What moves the air: buoyancy, vortices that are given back what the grid took from them, friction.
 #pragma once
 #include "base/context.h"
-#include "simulate/fluid/mac_grid.h"
+#include "simulate/fluid/walls.h"
 
 namespace sg::fluid {
 
@@ -13,14 +13,15 @@ void add_buoyancy(const MacGrid& g, const Lattice<T>& density, const Lattice<T>&
                   double dt, Faces<T>& u, const Context& context);
 
 /// Vorticity confinement, u += dt strength h (N x w) with N = grad |w| / |grad |w|| (Steinhoff, Underhill 1994; Fedkiw, Stam, Jensen 2001,
-/// equation 11).
+/// equation 11). `spare`: four lattices.
 template <class T>
-void confine_vortices(const MacGrid& g, double strength, double dt, Faces<T>& u, const Context& context);
+void confine_vortices(const MacGrid& g, double strength, double dt, Faces<T>& u, Spare<T> spare, const Context& context);
 
 /// One implicit step of du/dt = viscosity lap u for each component by itself, (I - dt viscosity lap) u = u before: stable at any dt.
 /// Sides of the box let what flows along them slip; solid faces have velocity 0 and hold what flows beside them. By conjugate gradients, to
-/// 1e-6 of the largest value (1e-12 in double precision).
+/// 1e-6 of the largest value (1e-12 in double precision). `spare`: three lattices.
 template <class T>
-void diffuse_velocity(const MacGrid& g, const Faces<T>& open, double viscosity, double dt, Faces<T>& u, const Context& context);
+void diffuse_velocity(const MacGrid& g, const Walls<T>& walls, double viscosity, double dt, Faces<T>& u, Spare<T> spare,
+                      const Context& context);
 
 }  // namespace sg::fluid

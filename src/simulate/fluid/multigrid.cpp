@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulate/fluid/multigrid.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "base/parallel.h"
@@ -13,52 +14,91 @@ constexpr size_t row_grain = 32;
 constexpr size_t coarsest = 64;  // cells that sweeps alone solve
 constexpr int coarsest_sweeps = 16;
 
-// The five rows about row (j, k) of cells and the open shares of its faces. Rows outside the box hold zeros.
+// Row (j, k) of cells, the rows about it and the open shares of its faces; outside of the box there are zeros.
 template <class T>
 struct Rows {
+  size_t n;
   const T *here, *south, *north, *below, *above;
-  const T *wx, *wy0, *wy1, *wz0, *wz1;
+  T x, y0, y1, z0, z1, west, east;                                                        // couplings; the last two at the ends
+  const T *wx = nullptr, *wy0 = nullptr, *wy1 = nullptr, *wz0 = nullptr, *wz1 = nullptr;  // shares; none in plain rows
 
-  Rows(const std::array<size_t, 3>& n, const Faces<T>& open, const Lattice<T>& x, const T* zeros, size_t row) {
-    const size_t j = row % n[1], k = row / n[1];
-    here = x.row(row);
-    south = j > 0 ? here - n[0] : zeros, north = j + 1 < n[1] ? here + n[0] : zeros;
-    below = k > 0 ? here - n[0] * n[1] : zeros, above = k + 1 < n[2] ? here + n[0] * n[1] : zeros;
-    wx = open[0].row(row);
-    wy0 = open[1].row(j + (n[1] + 1) * k), wy1 = wy0 + n[0];
-    wz0 = open[2].row(row), wz1 = wz0 + n[0] * n[1];
+  Rows(const std::array<size_t, 3>& cells, const std::array<T, 3>& coupling, const Walls<T>& walls, bool plain, const Lattice<T>& v,
+       const T* zeros, size_t row)
+      : n(cells[0]) {
+    const size_t j = row % cells[1], k = row / cells[1];
+    here = v.row(row);
+    south = j > 0 ? here - n : zeros, north = j + 1 < cells[1] ? here + n : zeros;
+    below = k > 0 ? here - n * cells[1] : zeros, above = k + 1 < cells[2] ? here + n * cells[1] : zeros;
+    // Half the distance to open sides.
+    const auto at_side = [&](size_t axis, size_t side, bool there) {
+      return there ? coupling[axis] * T(walls.sides[2 * axis + side] ? 2 : 0) : coupling[axis];
+    };
+    x = coupling[0], west = at_side(0, 0, true), east = at_side(0, 1, true);
+    y0 = at_side(1, 0, j == 0), y1 = at_side(1, 1, j + 1 == cells[1]);
+    z0 = at_side(2, 0, k == 0), z1 = at_side(2, 1, k + 1 == cells[2]);
+    if (!walls.obstacles()) return;
+    const auto& w = walls.open;
+    const size_t y = j + (cells[1] + 1) * k;
+    if (plain) {  // alike along the row
+      y0 *= w[1].row(y)[0], y1 *= w[1].row(y + 1)[0], z0 *= w[2].row(row)[0], z1 *= w[2].row(row + cells[1])[0];
+      west *= w[0].row(row)[0], east *= w[0].row(row)[n];
+      return;
+    }
+    wx = w[0].row(row), wy0 = w[1].row(y), wy1 = w[1].row(y + 1), wz0 = w[2].row(row), wz1 = w[2].row(row + cells[1]);
   }
+
   // Sums over the faces of cell i, of c w p of the neighbours and of c w.
-  void sums(const std::array<T, 3>& c, size_t i, T west, T east, T& neighbours, T& diagonal) const {
-    neighbours = c[0] * (wx[i] * west + wx[i + 1] * east) + c[1] * (wy0[i] * south[i] + wy1[i] * north[i]) +
-                 c[2] * (wz0[i] * below[i] + wz1[i] * above[i]);
-    diagonal = c[0] * (wx[i] + wx[i + 1]) + c[1] * (wy0[i] + wy1[i]) + c[2] * (wz0[i] + wz1[i]);
+  void sums_at(size_t i, T& neighbours, T& diagonal) const {
+    const auto share = [&](const T* w, size_t at) { return w ? w[at] : T(1); };
+    const T cw = (i > 0 ? x : west) * share(wx, i), ce = (i + 1 < n ? x : east) * share(wx, i + 1), cs = y0 * share(wy0, i),
+            cn = y1 * share(wy1, i), cb = z0 * share(wz0, i), ca = z1 * share(wz1, i);
+    const T pw = i > 0 ? here[i - 1] : T(0), pe = i + 1 < n ? here[i + 1] : T(0);
+    neighbours = (cw * pw + ce * pe) + (cs * south[i] + cn * north[i]) + (cb * below[i] + ca * above[i]);
+    diagonal = (cw + ce) + (cs + cn) + (cb + ca);
+  }
+  T plain_sum(size_t i) const {  // of the neighbours of a cell that is not at an end
+    return x * (here[i - 1] + here[i + 1]) + (y0 * south[i] + y1 * north[i]) + (z0 * below[i] + z1 * above[i]);
+  }
+  T plain_diagonal() const { return (x + x) + (y0 + y1) + (z0 + z1); }
+
+  // Of all cells.
+  void sums(T* neighbours, T* diagonal) const {
+    sums_at(0, neighbours[0], diagonal[0]);
+    if (n > 1) sums_at(n - 1, neighbours[n - 1], diagonal[n - 1]);
+    if (wx) {
+      for (size_t i = 1; i + 1 < n; ++i) {
+        const T cw = x * wx[i], ce = x * wx[i + 1], cs = y0 * wy0[i], cn = y1 * wy1[i], cb = z0 * wz0[i], ca = z1 * wz1[i];
+        neighbours[i] = (cw * here[i - 1] + ce * here[i + 1]) + (cs * south[i] + cn * north[i]) + (cb * below[i] + ca * above[i]);
+        diagonal[i] = (cw + ce) + (cs + cn) + (cb + ca);
+      }
+      return;
+    }
+    for (size_t i = 1; i + 1 < n; ++i) neighbours[i] = plain_sum(i);
+    std::fill(diagonal + 1, diagonal + std::max<size_t>(n, 2) - 1, plain_diagonal());
+  }
+
+  // Every second cell from `first` on as its neighbours want it; `to` is the row itself.
+  void relax(const T* b, T* to, size_t first) const {
+    const auto relax_at = [&](size_t i) {
+      T neighbours, diagonal;
+      sums_at(i, neighbours, diagonal);
+      to[i] = diagonal > 0 ? (b[i] + neighbours) / diagonal : T(0);  // dry cells take no part
+    };
+    if (wx || plain_diagonal() <= 0) {
+      for (size_t i = first; i < n; i += 2) relax_at(i);
+      return;
+    }
+    const T inverse = 1 / plain_diagonal();
+    size_t i = first;
+    if (i == 0) relax_at(0), i = 2;
+    for (; i + 1 < n; i += 2) to[i] = (b[i] + plain_sum(i)) * inverse;
+    if (i < n) relax_at(i);
   }
 };
 
-// Calls f(cell, neighbours, diagonal) with the sums of Rows for all cells (Step 1) or those of one colour of the chessboard (Step 2).
-template <size_t Step, class T, class Level, class F>
-void each_cell(const Level& l, const Lattice<T>& x, size_t color, const Context& context, F&& f) {
-  const std::vector<T> zeros(l.n[0]);
-  parallel_for(
-      x.rows(), row_grain,
-      [&](size_t begin, size_t end) {
-        for (size_t row = begin; row < end; ++row) {
-          const Rows<T> rows(l.n, l.open, x, zeros.data(), row);
-          const size_t first = Step == 1 ? 0 : (color + row % l.n[1] + row / l.n[1]) % 2;
-          for (size_t i = first; i < l.n[0]; i += Step) {
-            T neighbours, diagonal;
-            rows.sums(l.coupling, i, i > 0 ? rows.here[i - 1] : T(0), i + 1 < l.n[0] ? rows.here[i + 1] : T(0), neighbours, diagonal);
-            f(i + row * l.n[0], neighbours, diagonal);
-          }
-        }
-      },
-      &context);
-}
-
 // The mean of the fine faces that make up each coarse one; those that are missing beyond an odd border count as solid.
 template <class T>
-Lattice<T> coarse_faces(const Lattice<T>& fine, int axis, const std::array<size_t, 3>& cells, const std::array<size_t, 3>& coarse_cells,
+Lattice<T> coarse_faces(const Walls<T>& fine, int axis, const std::array<size_t, 3>& cells, const std::array<size_t, 3>& coarse_cells,
                         const std::array<bool, 3>& halved) {
   auto n = coarse_cells;
   ++n[size_t(axis)];
@@ -77,7 +117,7 @@ Lattice<T> coarse_faces(const Lattice<T>& fine, int axis, const std::array<size_
         T sum = 0;
         for (size_t z = lo[2]; z < hi[2]; ++z)
           for (size_t y = lo[1]; y < hi[1]; ++y)
-            for (size_t x = lo[0]; x < hi[0]; ++x) sum += fine(x, y, z);
+            for (size_t x = lo[0]; x < hi[0]; ++x) sum += fine.share(cells, axis, x, y, z);
         out(i, j, k) = sum / parts;
       }
   return out;
@@ -86,30 +126,23 @@ Lattice<T> coarse_faces(const Lattice<T>& fine, int axis, const std::array<size_
 }  // namespace
 
 template <class T>
-Multigrid<T>::Multigrid(std::array<size_t, 3> cells, Faces<T> open, const OpenSides& sides) {
+Multigrid<T>::Multigrid(std::array<size_t, 3> cells, Walls<T> walls) {
   std::array<double, 3> h{1, 1, 1};
-  levels_.push_back({cells, {1, 1, 1}, std::move(open), {}, {}, {}, {}});
-  for (size_t a = 0; a < 3; ++a)
-    for (size_t side = 0; side < 2; ++side) {  // half the distance to the border
-      Lattice<T>& f = levels_[0].open[a];
-      std::array<size_t, 3> lo{0, 0, 0}, hi = f.n;
-      lo[a] = side ? f.n[a] - 1 : 0, hi[a] = lo[a] + 1;
-      for (size_t k = lo[2]; k < hi[2]; ++k)
-        for (size_t j = lo[1]; j < hi[1]; ++j)
-          for (size_t i = lo[0]; i < hi[0]; ++i) f(i, j, k) *= sides[2 * a + side] ? T(2) : T(0);
-    }
+  levels_.push_back({cells, {1, 1, 1}, std::move(walls), {}, {}, {}, {}, {}});
+  levels_.front().walls.close_sides();
+  find_plain_rows(levels_.front());
   for (;;) {
     Level& fine = levels_.back();
-    fine.r = Lattice<T>(fine.n);
     std::array<bool, 3> halved{};
     std::array<size_t, 3> n = fine.n;
     for (size_t a = 0; a < 3; ++a) halved[a] = n[a] > 2, n[a] = halved[a] ? (n[a] + 1) / 2 : n[a];
     if (fine.n[0] * fine.n[1] * fine.n[2] <= coarsest || n == fine.n) break;
     Level next;
     next.n = n;
+    next.walls.sides = fine.walls.sides;
     for (size_t a = 0; a < 3; ++a) {
       h[a] *= halved[a] ? 2 : 1;
-      next.open[a] = coarse_faces(fine.open[a], int(a), fine.n, n, halved);
+      next.walls.open[a] = coarse_faces(fine.walls, int(a), fine.n, n, halved);
       // A fine place takes 3/4 of the coarse one in which it lies and 1/4 of the next; at a wall all of the first, and between 0 at an
       // open border and it a half.
       fine.coarse[a].resize(n[a]);
@@ -125,38 +158,85 @@ Multigrid<T>::Multigrid(std::array<size_t, 3> cells, Faces<T> open, const OpenSi
         }
         const size_t own = i / 2;
         const bool up = i % 2 == 1, outside = up ? own + 1 >= n[a] : own == 0;
-        take_part(own, i, outside ? (sides[2 * a + (up ? 1 : 0)] ? T(0.5) : T(1)) : T(0.75));
+        take_part(own, i, outside ? (fine.walls.sides[2 * a + (up ? 1 : 0)] ? T(0.5) : T(1)) : T(0.75));
         if (!outside) take_part(up ? own + 1 : own - 1, i, T(0.25));
       }
     }
     next.coupling = {T(h[1] * h[2] / h[0]), T(h[0] * h[2] / h[1]), T(h[0] * h[1] / h[2])};
-    next.x = next.b = Lattice<T>(n);
+    next.x = next.b = next.r = Lattice<T>(n);
+    find_plain_rows(next);
     levels_.push_back(std::move(next));
   }
 }
 
 template <class T>
-void Multigrid<T>::apply(const Lattice<T>& x, Lattice<T>& out, const Context& context) const {
-  T* const to = out.values.data();
-  const T* const p = x.values.data();
-  each_cell<1>(levels_.front(), x, 0, context, [=](size_t cell, T neighbours, T diagonal) { to[cell] = diagonal * p[cell] - neighbours; });
+void Multigrid<T>::find_plain_rows(Level& l) {
+  const size_t rows = l.n[1] * l.n[2];
+  l.plain.assign(rows, 1);
+  if (!l.walls.obstacles()) return;
+  const auto& w = l.walls.open;
+  const auto alike = [&](const T* v) { return std::all_of(v, v + l.n[0], [&](T x) { return x == v[0]; }); };
+  for (size_t row = 0; row < rows; ++row) {
+    const size_t y = row % l.n[1] + (l.n[1] + 1) * (row / l.n[1]);
+    const T* const x = w[0].row(row);
+    l.plain[row] = std::all_of(x + 1, x + l.n[0], [](T v) { return v == 1; }) && alike(w[1].row(y)) && alike(w[1].row(y + 1)) &&
+                   alike(w[2].row(row)) && alike(w[2].row(row + l.n[1]));
+  }
 }
 
+// Calls f(row, its Rows) for every row of cells.
 template <class T>
-void Multigrid<T>::residual(const Level& l, const Lattice<T>& b, const Lattice<T>& x, Lattice<T>& r, const Context& context) const {
-  T* const to = r.values.data();
-  const T *const from = b.values.data(), *const p = x.values.data();
-  each_cell<1>(l, x, 0, context, [=](size_t cell, T neighbours, T diagonal) {  // dry cells take no part
-    to[cell] = diagonal > 0 ? from[cell] - (diagonal * p[cell] - neighbours) : T(0);
+template <class F>
+void Multigrid<T>::each_row(const Level& l, const Lattice<T>& x, const Context& context, F&& f) {
+  const std::vector<T> zeros(l.n[0]);
+  parallel_for(
+      x.rows(), row_grain,
+      [&](size_t begin, size_t end) {
+        for (size_t row = begin; row < end; ++row) f(row, Rows<T>(l.n, l.coupling, l.walls, l.plain[row], x, zeros.data(), row));
+      },
+      &context);
+}
+
+// Calls f(row, neighbours, diagonal) with the sums of every row of cells.
+template <class T>
+template <class F>
+void Multigrid<T>::each_sum(const Level& l, const Lattice<T>& x, const Context& context, F&& f) {
+  each_row(l, x, context, [&](size_t row, const Rows<T>& rows) {
+    thread_local std::vector<T> sums;
+    if (sums.size() < 2 * l.n[0]) sums.resize(2 * l.n[0]);
+    T *const neighbours = sums.data(), *const diagonal = neighbours + l.n[0];
+    rows.sums(neighbours, diagonal);
+    f(row, neighbours, diagonal);
   });
 }
 
 template <class T>
+void Multigrid<T>::apply(const Lattice<T>& x, Lattice<T>& out, const Context& context) const {
+  const Level& l = levels_.front();
+  each_sum(l, x, context, [&](size_t row, const T* neighbours, const T* diagonal) {
+    const T* const p = x.row(row);
+    T* const to = out.row(row);
+    for (size_t i = 0; i < l.n[0]; ++i) to[i] = diagonal[i] * p[i] - neighbours[i];
+  });
+}
+
+template <class T>
+void Multigrid<T>::residual(const Level& l, const Lattice<T>& b, const Lattice<T>& x, Lattice<T>& r, const Context& context) const {
+  each_sum(l, x, context, [&](size_t row, const T* neighbours, const T* diagonal) {
+    const T *const p = x.row(row), *const from = b.row(row);
+    T* const to = r.row(row);
+    for (size_t i = 0; i < l.n[0]; ++i) {  // dry cells take no part
+      const T left = from[i] - (diagonal[i] * p[i] - neighbours[i]);
+      to[i] = diagonal[i] > 0 ? left : T(0);
+    }
+  });
+}
+
+// One colour of the chessboard.
+template <class T>
 void Multigrid<T>::smooth(const Level& l, const Lattice<T>& b, Lattice<T>& x, int color, const Context& context) const {
-  T* const to = x.values.data();
-  const T* const from = b.values.data();
-  each_cell<2>(l, x, size_t(color), context,
-               [=](size_t cell, T neighbours, T diagonal) { to[cell] = diagonal > 0 ? (from[cell] + neighbours) / diagonal : T(0); });
+  each_row(l, x, context,
+           [&](size_t row, const Rows<T>& rows) { rows.relax(b.row(row), x.row(row), (size_t(color) + row % l.n[1] + row / l.n[1]) % 2); });
 }
 
 template <class T>
@@ -225,7 +305,7 @@ void Multigrid<T>::prolong(const Level& fine, const Lattice<T>& coarse, Lattice<
 }
 
 template <class T>
-void Multigrid<T>::cycle(size_t level, const Lattice<T>& b, Lattice<T>& x, const Context& context) {
+void Multigrid<T>::cycle(size_t level, const Lattice<T>& b, Lattice<T>& x, Lattice<T>& r, const Context& context) {
   Level& l = levels_[level];
   std::fill(x.values.begin(), x.values.end(), T(0));
   const bool last = level + 1 == levels_.size();
@@ -233,17 +313,17 @@ void Multigrid<T>::cycle(size_t level, const Lattice<T>& b, Lattice<T>& x, const
   for (int s = 0; s < sweeps; ++s) smooth(l, b, x, 0, context), smooth(l, b, x, 1, context);
   if (!last) {
     Level& next = levels_[level + 1];
-    residual(l, b, x, l.r, context);
-    restrict_to(l, l.r, next.b, context);
-    cycle(level + 1, next.b, next.x, context);
+    residual(l, b, x, r, context);
+    restrict_to(l, r, next.b, context);
+    cycle(level + 1, next.b, next.x, next.r, context);
     prolong(l, next.x, x, context);
   }
   for (int s = 0; s < sweeps; ++s) smooth(l, b, x, 1, context), smooth(l, b, x, 0, context);
 }
 
 template <class T>
-void Multigrid<T>::precondition(const Lattice<T>& b, Lattice<T>& x, const Context& context) {
-  cycle(0, b, x, context);
+void Multigrid<T>::precondition(const Lattice<T>& b, Lattice<T>& x, Lattice<T>& spare, const Context& context) {
+  cycle(0, b, x, spare, context);
 }
 
 template class Multigrid<float>;

@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -14,13 +15,13 @@ namespace sg::fluid {
 
 namespace {
 
-// to[i] = f(i)
-template <class T, class F>
-void each(Lattice<T>& to, const Context& context, F&& f) {
+// Calls f(i) for all of so many numbers.
+template <class F>
+void each(size_t count, const Context& context, F&& f) {
   parallel_for(
-      to.values.size(), values_at_once,
+      count, values_at_once,
       [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) to.values[i] = f(i);
+        for (size_t i = begin; i < end; ++i) f(i);
       },
       &context);
 }
@@ -28,10 +29,14 @@ void each(Lattice<T>& to, const Context& context, F&& f) {
 }  // namespace
 
 template <class T>
-PressureSolver<T>::PressureSolver(std::array<size_t, 3> cells, Faces<T> open, const OpenSides& sides)
-    : multigrid_(cells, std::move(open), sides), r_(cells), z_(cells), s_(cells) {
-  const auto& w = multigrid_.open();
+PressureSolver<T>::PressureSolver(std::array<size_t, 3> cells, Walls<T> given) : multigrid_(cells, std::move(given)) {
+  const Walls<T>& w = walls();
   const size_t count = cells[0] * cells[1] * cells[2];
+  if (!w.obstacles()) {  // a single room
+    closed_ = std::none_of(w.sides.begin(), w.sides.end(), [](bool open) { return open; });
+    if (closed_) room_.assign(count, 0);
+    return;
+  }
   const auto id = [&](size_t i, size_t j, size_t k) { return i + cells[0] * (j + cells[1] * k); };
   UnionFind<> rooms(count);
   std::vector<uint8_t> opens(count), wet(count);
@@ -40,7 +45,7 @@ PressureSolver<T>::PressureSolver(std::array<size_t, 3> cells, Faces<T> open, co
       for (size_t i = 0; i < cells[0]; ++i) {
         const size_t c = id(i, j, k);
         const auto face = [&](int a, size_t x, size_t y, size_t z, bool border, size_t neighbour) {
-          if (!(w[size_t(a)](x, y, z) > 0)) return;
+          if (!(w.share(cells, a, x, y, z) > 0)) return;
           wet[c] = 1;
           if (border) opens[c] = 1;
           else rooms.join(uint32_t(c), uint32_t(neighbour));
@@ -80,7 +85,10 @@ void PressureSolver<T>::balance(Lattice<T>& v, bool must) const {
 }
 
 template <class T>
-SolveReport PressureSolver<T>::solve(Lattice<T>& b, Lattice<T>& p, double tolerance, const Context& context, int most) {
+SolveReport PressureSolver<T>::solve(Lattice<T>& b, Lattice<T>& p, double tolerance, Spare<T> spare, const Context& context, int most) {
+  Lattice<T>&r = shaped(spare[0], p.n), &z = shaped(spare[1], p.n), &s = shaped(spare[2], p.n), &smoothed = shaped(spare[3], p.n);
+  const size_t count = p.values.size();
+  T *const pv = p.values.data(), *const rv = r.values.data(), *const zv = z.values.data(), *const sv = s.values.data();
   balance(b, true);
   SolveReport report;
   const double size = largest(b, context);
@@ -91,27 +99,27 @@ SolveReport PressureSolver<T>::solve(Lattice<T>& b, Lattice<T>& p, double tolera
   }
   if (!std::isfinite(size)) fail_data("the flow grew beyond all numbers", "the pressure", "take smaller time steps");
   // Conjugate gradients (Hestenes, Stiefel 1952): r the residual, z = M r, s the direction.
-  multigrid_.apply(p, z_, context);
-  each(r_, context, [&](size_t i) { return b.values[i] - z_.values[i]; });
-  if (!(largest(r_, context) < size)) {  // worse than nothing to begin with
+  multigrid_.apply(p, z, context);
+  each(count, context, [&, bv = b.values.data()](size_t i) { rv[i] = bv[i] - zv[i]; });
+  if (!(largest(r, context) < size)) {  // worse than nothing to begin with
     std::fill(p.values.begin(), p.values.end(), T(0));
-    r_.values = b.values;
+    r.values = b.values;
   }
   double rz = 0;
   for (report.iterations = 0;; ++report.iterations) {
-    report.residual = largest(r_, context) / size;
+    report.residual = largest(r, context) / size;
     if (report.residual <= tolerance || report.iterations == most) break;
-    multigrid_.precondition(r_, z_, context);
-    const double now = dot(r_, z_, context);
+    multigrid_.precondition(r, z, smoothed, context);
+    const double now = dot(r, z, context);
     const T beta = report.iterations == 0 ? T(0) : T(now / rz);
     rz = now;
-    each(s_, context, [&](size_t i) { return z_.values[i] + beta * s_.values[i]; });
-    multigrid_.apply(s_, z_, context);
-    const double curvature = dot(s_, z_, context);
+    if (report.iterations == 0) s.values = z.values;
+    else each(count, context, [=](size_t i) { sv[i] = zv[i] + beta * sv[i]; });
+    multigrid_.apply(s, z, context);
+    const double curvature = dot(s, z, context);
     if (!(curvature > 0)) break;  // nothing is left but rounding
     const T alpha = T(rz / curvature);
-    each(p, context, [&](size_t i) { return p.values[i] + alpha * s_.values[i]; });
-    each(r_, context, [&](size_t i) { return r_.values[i] - alpha * z_.values[i]; });
+    each(count, context, [=](size_t i) { pv[i] += alpha * sv[i], rv[i] -= alpha * zv[i]; });
   }
   balance(p, false);
   return report;

@@ -18,11 +18,12 @@ struct SolveReport {
 template <class T>
 class PressureSolver {
  public:
-  PressureSolver(std::array<size_t, 3> cells, Faces<T> open, const OpenSides& sides);
+  PressureSolver(std::array<size_t, 3> cells, Walls<T> walls);
 
   /// From the values of p on, until the residual is at most `tolerance`, or `most` iterations are done. Throws Error(data) where b adds up
-  /// to something in a closed room: what flows in cannot flow out; and where no progress is made.
-  SolveReport solve(Lattice<T>& b, Lattice<T>& p, double tolerance, const Context& context, int most = 200);
+  /// to something in a closed room: what flows in cannot flow out; and where no progress is made. `spare`: four lattices.
+  SolveReport solve(Lattice<T>& b, Lattice<T>& p, double tolerance, Spare<T> spare, const Context& context, int most = 200);
+  const Walls<T>& walls() const { return multigrid_.walls(); }
   /// Rooms that have no opening.
   size_t closed_rooms() const { return closed_; }
 
@@ -32,7 +33,6 @@ class PressureSolver {
   Multigrid<T> multigrid_;
   std::vector<int32_t> room_;  // of each cell, from 0 on; -1: dry, or a room with an opening
   size_t closed_ = 0;
-  Lattice<T> r_, z_, s_;
 };
 
 }  // namespace sg::fluid

@@ -2,6 +2,7 @@
 #include "simulate/fluid/project.h"
 
 #include <utility>
+#include <vector>
 
 #include "base/parallel.h"
 
@@ -11,77 +12,89 @@ namespace {
 
 constexpr size_t flow_rows = 32;
 
-template <class T>
-Faces<T> without_closed_sides(const MacGrid& g, Faces<T> open, const OpenSides& sides) {
-  for (size_t a = 0; a < 3; ++a)
-    for (size_t side = 0; side < 2; ++side) {
-      if (sides[2 * a + side] && int(a) < g.axes()) continue;
-      std::array<size_t, 3> lo{0, 0, 0}, hi = open[a].n;
-      lo[a] = side ? open[a].n[a] - 1 : 0, hi[a] = lo[a] + 1;
-      for (size_t k = lo[2]; k < hi[2]; ++k)
-        for (size_t j = lo[1]; j < hi[1]; ++j)
-          for (size_t i = lo[0]; i < hi[0]; ++i) open[a](i, j, k) = 0;
-    }
-  return open;
-}
-
 }  // namespace
 
 template <class T>
-Projection<T>::Projection(const MacGrid& grid, Faces<T> open, const OpenSides& sides)
-    : grid_(grid),
-      open_(without_closed_sides(grid, std::move(open), sides)),
-      sides_(sides),
-      solver_(grid.cells, open_, sides),
-      b_(grid.cells) {}
+Projection<T>::Projection(const MacGrid& grid, Walls<T> walls) : grid_(grid), solver_(grid.cells, std::move(walls)) {}
 
 template <class T>
 void Projection<T>::divergence(const Faces<T>& u, Lattice<T>& out, const Context& context) const {
   const auto& n = grid_.cells;
+  const Walls<T>& w = walls();
+  const std::vector<T> ones(n[0] + 1, 1), zeros(n[0] + 1, 0);
+  std::vector<T> along_x = ones;
+  along_x.front() = w.sides[0] ? T(1) : T(0), along_x.back() = w.sides[1] ? T(1) : T(0);
+  // The open shares of a row of faces across an axis.
+  const auto shares = [&](size_t a, size_t row, size_t at) {
+    if ((at == 0 && !w.sides[2 * a]) || (at == n[a] && !w.sides[2 * a + 1])) return zeros.data();
+    return w.obstacles() ? w.open[a].row(row) : ones.data();
+  };
   parallel_for(
       out.rows(), flow_rows,
       [&](size_t begin, size_t end) {
         for (size_t row = begin; row < end; ++row) {
-          const size_t k = row / n[1], y = row % n[1] + (n[1] + 1) * k;
-          const T *ux = u[0].row(row), *wx = open_[0].row(row), *u0 = u[1].row(y), *u1 = u[1].row(y + 1), *w0 = open_[1].row(y),
-                  *w1 = open_[1].row(y + 1), *d0 = u[2].row(row), *d1 = u[2].row(row + n[1]), *z0 = open_[2].row(row),
-                  *z1 = open_[2].row(row + n[1]);
+          const size_t j = row % n[1], k = row / n[1], y = j + (n[1] + 1) * k;
+          const T *ux = u[0].row(row), *wx = w.obstacles() ? w.open[0].row(row) : along_x.data();
+          const T *u0 = u[1].row(y), *u1 = u[1].row(y + 1), *w0 = shares(1, y, j), *w1 = shares(1, y + 1, j + 1);
+          const T *d0 = u[2].row(row), *d1 = u[2].row(row + n[1]), *z0 = shares(2, row, k), *z1 = shares(2, row + n[1], k + 1);
           T* const to = out.row(row);
           for (size_t i = 0; i < n[0]; ++i)
-            to[i] = wx[i + 1] * ux[i + 1] - wx[i] * ux[i] + w1[i] * u1[i] - w0[i] * u0[i] + z1[i] * d1[i] - z0[i] * d0[i];
+            to[i] = (wx[i + 1] * ux[i + 1] - wx[i] * ux[i]) + (w1[i] * u1[i] - w0[i] * u0[i]) + (z1[i] * d1[i] - z0[i] * d0[i]);
+        }
+      },
+      &context);
+}
+
+// u -= grad p across one axis; nothing flows through solid faces.
+template <class T>
+void Projection<T>::subtract_gradient(size_t a, const Lattice<T>& p, Lattice<T>& v, const Context& context) const {
+  const Walls<T>& w = walls();
+  const size_t n = grid_.cells[a];
+  const auto hold_solid = [&](size_t row) {
+    T* const to = v.row(row);
+    if (w.obstacles()) {
+      const T* const share = w.open[a].row(row);
+      for (size_t i = 0; i < v.n[0]; ++i) to[i] = share[i] > 0 ? to[i] : T(0);
+    }
+  };
+  parallel_for(
+      v.rows(), flow_rows,
+      [&](size_t begin, size_t end) {
+        for (size_t row = begin; row < end; ++row) {
+          const size_t j = row % v.n[1], k = row / v.n[1];
+          T* const to = v.row(row);
+          // At open sides p is 0 on the face itself, half a cell away.
+          const auto at_side = [&](size_t side, T& face, T inside) {
+            face = w.sides[2 * a + side] ? face + (side ? 2 : -2) * inside : T(0);
+          };
+          if (a == 0) {
+            const T* const here = p.row(row);
+            for (size_t i = 1; i < n; ++i) to[i] -= here[i] - here[i - 1];
+            at_side(0, to[0], here[0]), at_side(1, to[n], here[n - 1]);
+          } else {
+            const size_t f = a == 1 ? j : k, stride = a == 1 ? 1 : grid_.cells[1];
+            const size_t row_of_cells = j + grid_.cells[1] * k;  // above the face
+            if (f == 0 || f == n) {
+              const T* const inside = p.row(f == 0 ? row_of_cells : row_of_cells - stride);
+              for (size_t i = 0; i < v.n[0]; ++i) at_side(f == n, to[i], inside[i]);
+            } else {
+              const T *const above = p.row(row_of_cells), *const below = p.row(row_of_cells - stride);
+              for (size_t i = 0; i < v.n[0]; ++i) to[i] -= above[i] - below[i];
+            }
+          }
+          hold_solid(row);
         }
       },
       &context);
 }
 
 template <class T>
-SolveReport Projection<T>::apply(Faces<T>& u, Lattice<T>& p, double tolerance, const Context& context) {
-  divergence(u, b_, context);
-  for (T& b : b_.values) b = -b;
-  const SolveReport report = solver_.solve(b_, p, tolerance, context);
-  for (size_t a = 0; a < size_t(grid_.axes()); ++a) {
-    Lattice<T>& v = u[a];
-    const size_t n = grid_.cells[a], stride = a == 0 ? 1 : a == 1 ? grid_.cells[0] : grid_.cells[0] * grid_.cells[1];
-    parallel_for(
-        v.rows(), flow_rows,
-        [&](size_t begin, size_t end) {
-          for (size_t row = begin; row < end; ++row)
-            for (size_t i = 0; i < v.n[0]; ++i) {
-              const std::array<size_t, 3> at{i, row % v.n[1], row / v.n[1]};
-              const size_t face = i + row * v.n[0], f = at[a];
-              if (!(open_[a].values[face] > 0)) {
-                v.values[face] = 0;
-                continue;
-              }
-              // Of the cell behind the face; beyond open sides p is 0 on the face itself, half a cell away.
-              const size_t cell = at[0] + grid_.cells[0] * (at[1] + grid_.cells[1] * at[2]);
-              if (f == 0) v.values[face] -= 2 * p.values[cell];
-              else if (f == n) v.values[face] += 2 * p.values[cell - stride];
-              else v.values[face] -= p.values[cell] - p.values[cell - stride];
-            }
-        },
-        &context);
-  }
+SolveReport Projection<T>::apply(Faces<T>& u, Lattice<T>& p, double tolerance, Spare<T> spare, const Context& context) {
+  Lattice<T>& b = shaped(spare[4], grid_.cells);
+  divergence(u, b, context);
+  for (T& v : b.values) v = -v;
+  const SolveReport report = solver_.solve(b, p, tolerance, spare.first(4), context);
+  for (size_t a = 0; a < size_t(grid_.axes()); ++a) subtract_gradient(a, p, u[a], context);
   return report;
 }
 

@@ -18,10 +18,10 @@ namespace {
 
 constexpr double most_steps = 1000;  // of a frame
 
-OpenSides sides_of(const SmokeParams& p, const Vec3& up) {
+OpenSides sides_of(const SmokeParams& p, const MacGrid& g, const Vec3& up) {
   OpenSides sides{};
   if (p.open) {
-    if (*p.open != BoxSide::none) sides[size_t(*p.open)] = true;
+    if (*p.open != BoxSide::none && int(*p.open) / 2 < g.axes()) sides[size_t(*p.open)] = true;
     return sides;
   }
   size_t axis = 0;
@@ -41,24 +41,29 @@ Vec3 up_of(const SmokeParams& p, const MacGrid& g) {
 
 // The share of a face that is outside of the balls, from the distance of its middle: exact for the flat walls that large balls are.
 template <class T>
-Faces<T> open_shares(const MacGrid& g, const std::vector<Ball>& solids) {
-  Faces<T> open = make_faces<T>(g, 1);
+Walls<T> walls_of(const SmokeParams& p, const MacGrid& g, const Vec3& up) {
+  Walls<T> walls;
+  walls.sides = sides_of(p, g, up);
+  const std::vector<Ball> solids = balls_of(p.obstacle, g, "obstacle");
+  if (solids.empty()) return walls;
+  Faces<T> open = make_faces<T>(g);
   for (int a = 0; a < 3; ++a) {
     const auto s = MacGrid::shift(a);
     Lattice<T>& l = open[size_t(a)];
     for (size_t k = 0; k < l.n[2]; ++k)
       for (size_t j = 0; j < l.n[1]; ++j)
         for (size_t i = 0; i < l.n[0]; ++i) {
-          Vec3 p = g.origin + g.h * Vec3(double(i) + s[0], double(j) + s[1], double(k) + s[2]);
-          double share = a < g.axes();
+          Vec3 at = g.origin + g.h * Vec3(double(i) + s[0], double(j) + s[1], double(k) + s[2]);
+          double share = walls.share(g.cells, a, i, j, k);
           for (const Ball& b : solids) {
-            if (g.flat()) p.z = b.middle.z;
-            share = std::min(share, std::clamp((length(p - b.middle) - b.radius) / g.h + 0.5, 0.0, 1.0));
+            if (g.flat()) at.z = b.middle.z;
+            share = std::min(share, std::clamp((length(at - b.middle) - b.radius) / g.h + 0.5, 0.0, 1.0));
           }
           l(i, j, k) = share < 0.01 ? T(0) : T(share);  // slits that carry nothing make the pressure hard to find
         }
   }
-  return open;
+  walls.open = std::move(open);
+  return walls;
 }
 
 }  // namespace
@@ -68,13 +73,11 @@ Smoke<T>::Smoke(const SmokeParams& p, const Context& context)
     : params_(p),
       grid_(smoke_grid(p, context)),
       up_(up_of(p, grid_)),
-      projection_(grid_, open_shares<T>(grid_, balls_of(p.obstacle, grid_, "obstacle")), sides_of(p, up_)),
+      projection_(grid_, walls_of<T>(p, grid_, up_)),
       velocity_(make_faces<T>(grid_)),
-      next_velocity_(velocity_),
       density_(grid_.cells),
       temperature_(grid_.cells),
-      pressure_(grid_.cells),
-      next_(grid_.cells) {
+      pressure_(grid_.cells) {
   std::vector<double> numbers = p.source;
   if (numbers.empty()) {
     const Vec3 size = grid_.h * Vec3(double(grid_.cells[0]), double(grid_.cells[1]), grid_.flat() ? 0 : double(grid_.cells[2]));
@@ -84,6 +87,10 @@ Smoke<T>::Smoke(const SmokeParams& p, const Context& context)
     for (int a = 0; a < 3; ++a) middle[a] -= up_[a] * (0.5 * std::abs(size[a]) - 1.5 * radius);
     numbers = {middle.x, middle.y, middle.z, radius};
   }
+  // Lattices change places: each has room for the largest.
+  const size_t most = std::max({velocity_[0].values.size(), velocity_[1].values.size(), velocity_[2].values.size()});
+  for (Lattice<T>* l : {&velocity_[0], &velocity_[1], &velocity_[2], &density_, &temperature_}) l->values.reserve(most);
+  for (Lattice<T>& l : spare_) l.values.reserve(most);
   sources_ = balls_of(numbers, grid_, "source");
   give_off();
 }
@@ -133,13 +140,17 @@ double Smoke<T>::fastest(const Context& context) const {
 template <class T>
 void Smoke<T>::step(double dt, const Context& context) {
   const Carrier<T> carrier{grid_, velocity_, dt, params_.advection, params_.trace, true};
-  const auto carry = [&](int axis, Lattice<T>& f, Lattice<T>& to) {
-    if (scratch_.n != f.n) scratch_ = Lattice<T>(f.n);
-    advect(carrier, axis, f, to, scratch_, context);
-  };
-  for (int a = 0; a < grid_.axes(); ++a) carry(a, velocity_[size_t(a)], next_velocity_[size_t(a)]);
-  for (Lattice<T>* f : {&density_, &temperature_}) carry(-1, *f, next_), std::swap(*f, next_);
-  std::swap(velocity_, next_velocity_);
+  const std::array<Lattice<T>*, 2> scalars{&density_, &temperature_};
+  for (Lattice<T>& l : spare_) shaped(l, grid_.cells);
+  const std::array<Carried<T>, 2> carried{{{scalars[0], &spare_[0], &spare_[2]}, {scalars[1], &spare_[1], &spare_[3]}}};
+  advect<T>(carrier, -1, carried, spare_[4], context);
+  for (size_t f = 0; f < 2; ++f) std::swap(*scalars[f], spare_[f]);
+  for (size_t a = 0; a < size_t(grid_.axes()); ++a) {
+    for (const size_t s : {a, size_t(3), size_t(4)}) shaped(spare_[s], velocity_[a].n);
+    const Carried<T> component{&velocity_[a], &spare_[a], &spare_[3]};
+    advect<T>(carrier, int(a), {&component, 1}, spare_[4], context);
+  }
+  for (size_t a = 0; a < size_t(grid_.axes()); ++a) std::swap(velocity_[a], spare_[a]);
   const T fade = T(std::exp(-params_.fading * dt)), cool = T(std::exp(-params_.cooling * dt));
   if (fade != 1)
     for (T& v : density_.values) v *= fade;
@@ -147,9 +158,9 @@ void Smoke<T>::step(double dt, const Context& context) {
     for (T& v : temperature_.values) v *= cool;
   give_off();
   add_buoyancy(grid_, density_, temperature_, up_, params_.weight, params_.lift, dt, velocity_, context);
-  confine_vortices(grid_, params_.swirl, dt, velocity_, context);
-  diffuse_velocity(grid_, projection_.open(), params_.viscosity, dt, velocity_, context);
-  projection_.apply(velocity_, pressure_, params_.tolerance, context);
+  confine_vortices<T>(grid_, params_.swirl, dt, velocity_, spare_, context);
+  diffuse_velocity<T>(grid_, projection_.walls(), params_.viscosity, dt, velocity_, spare_, context);
+  solved_ = projection_.apply(velocity_, pressure_, params_.tolerance, spare_, context);
 }
 
 template <class T>

@@ -23,6 +23,8 @@ class Smoke {
   Lattice<T>& density() { return density_; }
   Lattice<T>& temperature() { return temperature_; }
   const Projection<T>& projection() const { return projection_; }
+  /// How the last pressure was found.
+  const SolveReport& solved() const { return solved_; }
   /// The cells' middles as the points of a uniform grid with density, temperature, velocity and pressure.
   DatasetPtr dataset(const Context& context) const;
 
@@ -36,9 +38,11 @@ class Smoke {
   Vec3 up_;
   std::vector<Ball> sources_;
   Projection<T> projection_;
-  Faces<T> velocity_, next_velocity_;
-  Lattice<T> density_, temperature_, pressure_, next_, scratch_;
+  Faces<T> velocity_;
+  Lattice<T> density_, temperature_, pressure_;
+  std::array<Lattice<T>, 5> spare_;
   size_t frame_ = 0;
+  SolveReport solved_;
 };
 
 }  // namespace fluid

@@ -39,6 +39,13 @@ Faces<double> flow(const MacGrid& g, F&& v) {
   return u;
 }
 
+void carry(const Carrier<double>& step, int axis, const Lattice<double>& f, Lattice<double>& out) {
+  Context context;
+  Lattice<double> scratch(f.n), marks(f.n);
+  const Carried<double> field{&f, &out, &scratch};
+  advect<double>(step, axis, {&field, 1}, marks, context);
+}
+
 // Unit square, turned once about its middle.
 Vec3 turning(Vec3 p) { return 2 * pi * Vec3(0.5 - p.y, p.x - 0.5, 0); }
 
@@ -51,12 +58,12 @@ Turned turn(size_t n, Advection scheme, bool limit, F&& f, double cfl = 1.5) {
   Context context;
   const MacGrid g{{n, n, 1}, 1.0 / double(n), {}};
   const Faces<double> u = flow(g, turning);
-  Lattice<double> now(g.cells), next(g.cells), scratch(g.cells), first(g.cells);
+  Lattice<double> now(g.cells), next(g.cells), first(g.cells);
   fill_cells(g, now, f);
   first = now;
   const size_t steps = size_t(std::ceil(2 * pi * 0.5 / (cfl * g.h)));
   const Carrier<double> step{g, u, 1.0 / double(steps), scheme, BackTrace::rk3, limit};
-  for (size_t s = 0; s < steps; ++s) advect(step, -1, now, next, scratch, context), std::swap(now, next);
+  for (size_t s = 0; s < steps; ++s) carry(step, -1, now, next), std::swap(now, next);
   Turned r;
   for (size_t c = 0; c < now.values.size(); ++c) {
     const double miss = std::abs(now.values[c] - first.values[c]);
@@ -81,9 +88,9 @@ TEST_CASE("advection: whole cells are moved exactly") {
   const Faces<double> u = flow(g, [](Vec3) { return Vec3(1, -0.5, 0.5); });
   for (const Advection scheme : {Advection::semi_lagrangian, Advection::maccormack, Advection::bfecc})
     for (const BackTrace trace : {BackTrace::euler, BackTrace::rk2, BackTrace::rk3}) {
-      Lattice<double> f(g.cells), out(g.cells), scratch(g.cells);
+      Lattice<double> f(g.cells), out(g.cells);
       fill_cells(g, f, [](Vec3 p) { return std::sin(3 * p.x) + p.y * p.z; });
-      advect({g, u, 1.0, scheme, trace, true}, -1, f, out, scratch, context);  // by 2, -1 and 1 cells
+      carry({g, u, 1.0, scheme, trace, true}, -1, f, out);  // by 2, -1 and 1 cells
       for (size_t k = 2; k < 5; ++k)
         for (size_t j = 2; j < 6; ++j)
           for (size_t i = 3; i < 9; ++i) CHECK(out(i, j, k) == doctest::Approx(f(i - 2, j + 1, k - 1)).epsilon(1e-12));
@@ -98,9 +105,9 @@ TEST_CASE("advection: waves shrink by semi-Lagrangian steps as the closed form s
   for (const double a : {0.25, 0.5, 0.9}) {
     const Faces<double> u = flow(g, [&](Vec3) { return Vec3(a, 0, 0); });
     const double th = 2 * pi / 8;
-    Lattice<double> f(g.cells), out(g.cells), scratch(g.cells);
+    Lattice<double> f(g.cells), out(g.cells);
     fill_cells(g, f, [&](Vec3 p) { return std::cos(th * p.x); });
-    advect({g, u, 1.0, Advection::semi_lagrangian, BackTrace::euler, true}, -1, f, out, scratch, context);
+    carry({g, u, 1.0, Advection::semi_lagrangian, BackTrace::euler, true}, -1, f, out);
     const std::complex<double> factor = 1 - a + a * std::exp(std::complex<double>(0, -th));
     CHECK(std::abs(factor) == doctest::Approx(std::sqrt(1 - 2 * a * (1 - a) * (1 - std::cos(th)))));
     for (size_t i = 4; i < n - 4; ++i) {
@@ -144,8 +151,8 @@ TEST_CASE("advection: constants stay, in velocity components as in cells") {
   const Faces<double> u = flow(g, [](Vec3 p) { return Vec3(std::sin(9 * p.y), std::cos(7 * p.z), std::sin(5 * p.x)); });
   for (int axis = -1; axis < 3; ++axis)
     for (const Advection scheme : {Advection::explicit_euler, Advection::semi_lagrangian, Advection::maccormack, Advection::bfecc}) {
-      Lattice<double> f(axis < 0 ? g.cells : g.faces(axis), 2.5), out = f, scratch = f;
-      advect({g, u, 0.3, scheme, BackTrace::rk2, true}, axis, f, out, scratch, context);
+      Lattice<double> f(axis < 0 ? g.cells : g.faces(axis), 2.5), out = f;
+      carry({g, u, 0.3, scheme, BackTrace::rk2, true}, axis, f, out);
       CHECK(out.values == f.values);
     }
 }
