@@ -60,8 +60,8 @@ void add_difference(const T* f, size_t n, T by, T* to) {
 }  // namespace
 
 template <class T>
-void add_buoyancy(const MacGrid& g, const Lattice<T>& density, const Lattice<T>& temperature, Vec3 up, double weight, double lift,
-                  double dt, Faces<T>& u, const Context& context) {
+void add_buoyancy(const MacGrid& g, const OpenSides& open, const Lattice<T>& density, const Lattice<T>& temperature, Vec3 up, double weight,
+                  double lift, double dt, Faces<T>& u, const Context& context) {
   for (int a = 0; a < g.axes(); ++a) {
     const T by_heat = T(dt * lift * up[a] / 2), by_weight = T(dt * weight * up[a] / 2);
     if (by_heat == 0 && by_weight == 0) continue;
@@ -71,6 +71,18 @@ void add_buoyancy(const MacGrid& g, const Lattice<T>& density, const Lattice<T>&
       const T *heat_below = heat - stride, *mass_below = mass - stride;
       for (size_t i = 0; i < count; ++i) v[i] += by_heat * (heat[i] + heat_below[i]) - by_weight * (mass[i] + mass_below[i]);
     });
+    for (size_t side = 0; side < 2; ++side) {
+      if (!open[2 * size_t(a) + side]) continue;
+      std::array<size_t, 3> lo{0, 0, 0}, hi = g.cells;
+      lo[size_t(a)] = side ? g.cells[size_t(a)] - 1 : 0, hi[size_t(a)] = lo[size_t(a)] + 1;
+      for (size_t k = lo[2]; k < hi[2]; ++k)
+        for (size_t j = lo[1]; j < hi[1]; ++j)
+          for (size_t i = lo[0]; i < hi[0]; ++i) {
+            std::array<size_t, 3> face{i, j, k};
+            face[size_t(a)] += side;
+            u[size_t(a)](face[0], face[1], face[2]) += 2 * (by_heat * temperature(i, j, k) - by_weight * density(i, j, k));
+          }
+    }
   }
 }
 
@@ -142,27 +154,67 @@ void confine_vortices(const MacGrid& g, double strength, double dt, Faces<T>& u,
 
 namespace {
 
-// out = (I - r lap) x over the faces that move; r = viscosity dt / h^2.
+// What holds a component of the velocity: solid faces, and the sides.
 template <class T>
-void friction(const Lattice<T>* moves, T r, const Lattice<T>& x, Lattice<T>& out, const Context& context) {
+struct Holds {
+  const Lattice<T>* shares;  // open ones; none where nothing is solid
+  size_t axis;
+  OpenSides open;
+  std::array<bool, 6> along;  // sides that hold what flows along them
+  std::array<T, 6> value;     // at what
+
+  bool face(size_t face, const std::array<size_t, 3>& at, const std::array<size_t, 3>& n) const {
+    if ((at[axis] == 0 && !open[2 * axis]) || (at[axis] + 1 == n[axis] && !open[2 * axis + 1])) return true;
+    return shares && !(shares->values[face] > 0);
+  }
+};
+
+// out = (I - r lap) x over the faces that move; r = viscosity dt / h^2. Sides that hold the flow are half a cell away; with `still` they
+// do at 0. Beyond the others lies the same value.
+template <class T>
+void friction(const Holds<T>& holds, bool still, T r, const Lattice<T>& x, Lattice<T>& out, const Context& context) {
+  const size_t n = x.n[0];
   parallel_for(
       x.rows(), force_rows,
       [&](size_t begin, size_t end) {
-        for (size_t row = begin; row < end; ++row)
-          for (size_t i = 0; i < x.n[0]; ++i) {
-            const size_t at[3] = {i, row % x.n[1], row / x.n[1]}, here = i + row * x.n[0];
-            if (moves && !(moves->values[here] > 0)) {
-              out.values[here] = x.values[here];
-              continue;
+        for (size_t row = begin; row < end; ++row) {
+          const std::array<size_t, 3> at{0, row % x.n[1], row / x.n[1]};
+          const T* const here = x.row(row);
+          T* const to = out.row(row);
+          const T *around[4], *const *const last = around + 4;
+          const T** next = around;
+          T walls = 0, pull = 0;  // of sides that hold the row
+          for (size_t a = 1, stride = n; a < 3; stride *= x.n[a++])
+            for (size_t side = 0; side < 2; ++side) {
+              const bool inside = side == 0 ? at[a] > 0 : at[a] + 1 < x.n[a];
+              if (inside) *next++ = side == 0 ? here - stride : here + stride;
+              else if (a != holds.axis && holds.along[2 * a + side]) walls += 2, pull += still ? T(0) : 2 * holds.value[2 * a + side];
             }
-            T sum = 0;
-            size_t stride = 1;
-            for (size_t a = 0; a < 3; stride *= x.n[a++]) {  // beyond the border the same value: nothing holds it there
-              if (at[a] > 0) sum += x.values[here] - x.values[here - stride];
-              if (at[a] + 1 < x.n[a]) sum += x.values[here] - x.values[here + stride];
-            }
-            out.values[here] = x.values[here] + r * sum;
+          const T neighbours = T(next - around);
+          while (next != last) *next++ = nullptr;
+          const auto value_at = [&](size_t i) {
+            T sum = (neighbours + walls) * here[i] - pull;
+            for (const T* const line : around)
+              if (line) sum -= line[i];
+            const auto beyond = [&](size_t side) {
+              if (holds.axis != 0 && holds.along[side]) sum += 2 * (here[i] - (still ? T(0) : holds.value[side]));
+            };
+            if (i > 0) sum += here[i] - here[i - 1];
+            else beyond(0);
+            if (i + 1 < n) sum += here[i] - here[i + 1];
+            else beyond(1);
+            return here[i] + r * sum;
+          };
+          if (next - around == 4 && neighbours == 4 && !holds.shares && !holds.face(row * n + 1, {1, at[1], at[2]}, x.n)) {
+            to[0] = holds.face(row * n, at, x.n) ? here[0] : value_at(0);
+            const T *const a = around[0], *const b = around[1], *const c = around[2], *const d = around[3];
+            for (size_t i = 1; i + 1 < n; ++i)
+              to[i] = here[i] + r * (6 * here[i] - ((here[i - 1] + here[i + 1]) + (a[i] + b[i]) + (c[i] + d[i])));
+            to[n - 1] = holds.face(row * n + n - 1, {n - 1, at[1], at[2]}, x.n) ? here[n - 1] : value_at(n - 1);
+            continue;
           }
+          for (size_t i = 0; i < n; ++i) to[i] = holds.face(i + row * n, {i, at[1], at[2]}, x.n) ? here[i] : value_at(i);
+        }
       },
       &context);
 }
@@ -170,26 +222,35 @@ void friction(const Lattice<T>* moves, T r, const Lattice<T>& x, Lattice<T>& out
 }  // namespace
 
 template <class T>
-void diffuse_velocity(const MacGrid& g, const Walls<T>& walls, double viscosity, double dt, Faces<T>& u, Spare<T> spare,
+void diffuse_velocity(const MacGrid& g, const Walls<T>& walls, const Sides& sides, double viscosity, double dt, Faces<T>& u, Spare<T> spare,
                       const Context& context) {
   if (viscosity == 0) return;
   const T r = T(viscosity * dt / (g.h * g.h));
   const double tolerance = std::is_same_v<T, float> ? 1e-6 : 1e-12;
   for (int axis = 0; axis < g.axes(); ++axis) {
-    Lattice<T>& x = u[size_t(axis)];
-    const Lattice<T>* const moves = walls.obstacles() ? &walls.open[size_t(axis)] : nullptr;
-    if (moves)
-      for (size_t i = 0; i < x.values.size(); ++i)
-        if (!(moves->values[i] > 0)) x.values[i] = 0;
+    const size_t a = size_t(axis);
+    Lattice<T>& x = u[a];
+    Holds<T> holds{walls.obstacles() ? &walls.open[a] : nullptr, a, walls.sides, {}, {}};
+    for (size_t s = 0; s < 6; ++s) holds.along[s] = int(s / 2) < g.axes() && sides[s].holds(), holds.value[s] = T(sides[s].velocity[axis]);
+    // Held faces have their values from now on.
+    for (size_t row = 0; row < x.rows(); ++row)
+      for (size_t i = 0; i < x.n[0]; ++i) {
+        const std::array<size_t, 3> at{i, row % x.n[1], row / x.n[1]};
+        const size_t here = i + row * x.n[0];
+        if (!holds.face(here, at, x.n)) continue;
+        if (at[a] == 0 && !walls.sides[2 * a]) x.values[here] = walls.through[2 * a];
+        else if (at[a] + 1 == x.n[a] && !walls.sides[2 * a + 1]) x.values[here] = walls.through[2 * a + 1];
+        else x.values[here] = walls.move() ? walls.solid[a].values[here] : T(0);
+      }
     Lattice<T>&residual = shaped(spare[0], x.n), &q = shaped(spare[1], x.n), &s = shaped(spare[2], x.n);
     // Conjugate gradients; the values before are a good beginning.
-    friction(moves, r, x, q, context);
+    friction(holds, false, r, x, q, context);
     for (size_t i = 0; i < q.values.size(); ++i) residual.values[i] = x.values[i] - q.values[i];
     s.values = residual.values;
     double rr = dot(residual, residual, context);
-    const double enough = tolerance * tolerance * dot(x, x, context);
+    const double enough = tolerance * tolerance * std::max(dot(x, x, context), rr);
     for (int step = 0; step < 1000 && rr > enough; ++step) {
-      friction(moves, r, s, q, context);
+      friction(holds, true, r, s, q, context);
       const T alpha = T(rr / dot(s, q, context));
       for (size_t i = 0; i < q.values.size(); ++i) x.values[i] += alpha * s.values[i], residual.values[i] -= alpha * q.values[i];
       const double next = dot(residual, residual, context);
@@ -200,13 +261,15 @@ void diffuse_velocity(const MacGrid& g, const Walls<T>& walls, double viscosity,
   }
 }
 
-template void add_buoyancy(const MacGrid&, const Lattice<float>&, const Lattice<float>&, Vec3, double, double, double, Faces<float>&,
-                           const Context&);
-template void add_buoyancy(const MacGrid&, const Lattice<double>&, const Lattice<double>&, Vec3, double, double, double, Faces<double>&,
-                           const Context&);
+template void add_buoyancy(const MacGrid&, const OpenSides&, const Lattice<float>&, const Lattice<float>&, Vec3, double, double, double,
+                           Faces<float>&, const Context&);
+template void add_buoyancy(const MacGrid&, const OpenSides&, const Lattice<double>&, const Lattice<double>&, Vec3, double, double, double,
+                           Faces<double>&, const Context&);
 template void confine_vortices(const MacGrid&, double, double, Faces<float>&, Spare<float>, const Context&);
 template void confine_vortices(const MacGrid&, double, double, Faces<double>&, Spare<double>, const Context&);
-template void diffuse_velocity(const MacGrid&, const Walls<float>&, double, double, Faces<float>&, Spare<float>, const Context&);
-template void diffuse_velocity(const MacGrid&, const Walls<double>&, double, double, Faces<double>&, Spare<double>, const Context&);
+template void diffuse_velocity(const MacGrid&, const Walls<float>&, const Sides&, double, double, Faces<float>&, Spare<float>,
+                               const Context&);
+template void diffuse_velocity(const MacGrid&, const Walls<double>&, const Sides&, double, double, Faces<double>&, Spare<double>,
+                               const Context&);
 
 }  // namespace sg::fluid

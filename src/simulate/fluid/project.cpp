@@ -17,6 +17,29 @@ constexpr size_t flow_rows = 32;
 template <class T>
 Projection<T>::Projection(const MacGrid& grid, Walls<T> walls) : grid_(grid), solver_(grid.cells, std::move(walls)) {}
 
+// What closed sides and solids that move push out of a row of cells.
+template <class T>
+void Projection<T>::add_solid_flow(size_t row, T* to) const {
+  const auto& n = grid_.cells;
+  const Walls<T>& w = walls();
+  const size_t j = row % n[1], k = row / n[1], y = j + (n[1] + 1) * k;
+  to[0] -= w.through[0], to[n[0] - 1] += w.through[1];
+  const auto add = [&](bool there, T by) {
+    for (size_t i = 0; there && by != 0 && i < n[0]; ++i) to[i] += by;
+  };
+  add(j == 0, -w.through[2]), add(j + 1 == n[1], w.through[3]), add(k == 0, -w.through[4]), add(k + 1 == n[2], w.through[5]);
+  if (!w.move()) return;
+  const auto flow = [&](size_t a, size_t face_row, size_t i) { return (1 - w.open[a].row(face_row)[i]) * w.solid[a].row(face_row)[i]; };
+  for (size_t i = 0; i < n[0]; ++i) {  // faces of the sides have their own
+    if (i > 0) to[i] -= flow(0, row, i);
+    if (i + 1 < n[0]) to[i] += flow(0, row, i + 1);
+    if (j > 0) to[i] -= flow(1, y, i);
+    if (j + 1 < n[1]) to[i] += flow(1, y + 1, i);
+    if (k > 0) to[i] -= flow(2, row, i);
+    if (k + 1 < n[2]) to[i] += flow(2, row + n[1], i);
+  }
+}
+
 template <class T>
 void Projection<T>::divergence(const Faces<T>& u, Lattice<T>& out, const Context& context) const {
   const auto& n = grid_.cells;
@@ -40,6 +63,7 @@ void Projection<T>::divergence(const Faces<T>& u, Lattice<T>& out, const Context
           T* const to = out.row(row);
           for (size_t i = 0; i < n[0]; ++i)
             to[i] = (wx[i + 1] * ux[i + 1] - wx[i] * ux[i]) + (w1[i] * u1[i] - w0[i] * u0[i]) + (z1[i] * d1[i] - z0[i] * d0[i]);
+          add_solid_flow(row, to);
         }
       },
       &context);
@@ -50,12 +74,13 @@ template <class T>
 void Projection<T>::subtract_gradient(size_t a, const Lattice<T>& p, Lattice<T>& v, const Context& context) const {
   const Walls<T>& w = walls();
   const size_t n = grid_.cells[a];
-  const auto hold_solid = [&](size_t row) {
+  // Nothing flows through solid faces, but as they move; the closed sides have been seen to.
+  const auto hold_solid = [&](size_t row, size_t place) {
+    if (!w.obstacles() || (a > 0 && ((place == 0 && !w.sides[2 * a]) || (place == n && !w.sides[2 * a + 1])))) return;
+    const T *const share = w.open[a].row(row), *const solid = w.move() ? w.solid[a].row(row) : nullptr;
     T* const to = v.row(row);
-    if (w.obstacles()) {
-      const T* const share = w.open[a].row(row);
-      for (size_t i = 0; i < v.n[0]; ++i) to[i] = share[i] > 0 ? to[i] : T(0);
-    }
+    const size_t first = a == 0 && !w.sides[0] ? 1 : 0, last = a == 0 && !w.sides[1] ? n : v.n[0];
+    for (size_t i = first; i < last; ++i) to[i] = share[i] > 0 ? to[i] : solid ? solid[i] : T(0);
   };
   parallel_for(
       v.rows(), flow_rows,
@@ -65,7 +90,7 @@ void Projection<T>::subtract_gradient(size_t a, const Lattice<T>& p, Lattice<T>&
           T* const to = v.row(row);
           // At open sides p is 0 on the face itself, half a cell away.
           const auto at_side = [&](size_t side, T& face, T inside) {
-            face = w.sides[2 * a + side] ? face + (side ? 2 : -2) * inside : T(0);
+            face = w.sides[2 * a + side] ? face + (side ? 2 : -2) * inside : w.through[2 * a + side];
           };
           if (a == 0) {
             const T* const here = p.row(row);
@@ -82,7 +107,7 @@ void Projection<T>::subtract_gradient(size_t a, const Lattice<T>& p, Lattice<T>&
               for (size_t i = 0; i < v.n[0]; ++i) to[i] -= above[i] - below[i];
             }
           }
-          hold_solid(row);
+          hold_solid(row, a == 1 ? j : k);
         }
       },
       &context);

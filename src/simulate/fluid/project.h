@@ -15,11 +15,12 @@ class Projection {
   /// times the largest such sum before. Through solid faces and closed sides nothing flows. `p` (per cell, length * velocity) begins as
   /// what it was and ends as the solution. `spare`: five lattices. Throws as PressureSolver::solve().
   SolveReport apply(Faces<T>& u, Lattice<T>& p, double tolerance, Spare<T> spare, const Context& context);
-  /// Flow out of each cell, as a share of its faces' area: h div u.
+  /// Flow out of each cell, as a share of its faces' area: h div u, with what sides and moving solids push through its faces.
   void divergence(const Faces<T>& u, Lattice<T>& out, const Context& context) const;
   const Walls<T>& walls() const { return solver_.walls(); }
 
  private:
+  void add_solid_flow(size_t row, T* to) const;
   void subtract_gradient(size_t axis, const Lattice<T>& p, Lattice<T>& v, const Context& context) const;
 
   MacGrid grid_;

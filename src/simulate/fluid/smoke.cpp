@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "base/error.h"
@@ -18,19 +19,6 @@ namespace {
 
 constexpr double most_steps = 1000;  // of a frame
 
-OpenSides sides_of(const SmokeParams& p, const MacGrid& g, const Vec3& up) {
-  OpenSides sides{};
-  if (p.open) {
-    if (*p.open != BoxSide::none && int(*p.open) / 2 < g.axes()) sides[size_t(*p.open)] = true;
-    return sides;
-  }
-  size_t axis = 0;
-  for (size_t a = 1; a < 3; ++a)
-    if (std::abs(up[int(a)]) > std::abs(up[int(axis)])) axis = a;
-  sides[2 * axis + (up[int(axis)] > 0)] = true;
-  return sides;
-}
-
 Vec3 up_of(const SmokeParams& p, const MacGrid& g) {
   if (!p.up) return g.flat() ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
   const double l = length(*p.up);
@@ -39,47 +27,27 @@ Vec3 up_of(const SmokeParams& p, const MacGrid& g) {
   return *p.up * (1 / l);
 }
 
-// The share of a face that is outside of the balls, from the distance of its middle: exact for the flat walls that large balls are.
-template <class T>
-Walls<T> walls_of(const SmokeParams& p, const MacGrid& g, const Vec3& up) {
-  Walls<T> walls;
-  walls.sides = sides_of(p, g, up);
-  const std::vector<Ball> solids = balls_of(p.obstacle, g, "obstacle");
-  if (solids.empty()) return walls;
-  Faces<T> open = make_faces<T>(g);
-  for (int a = 0; a < 3; ++a) {
-    const auto s = MacGrid::shift(a);
-    Lattice<T>& l = open[size_t(a)];
-    for (size_t k = 0; k < l.n[2]; ++k)
-      for (size_t j = 0; j < l.n[1]; ++j)
-        for (size_t i = 0; i < l.n[0]; ++i) {
-          Vec3 at = g.origin + g.h * Vec3(double(i) + s[0], double(j) + s[1], double(k) + s[2]);
-          double share = walls.share(g.cells, a, i, j, k);
-          for (const Ball& b : solids) {
-            if (g.flat()) at.z = b.middle.z;
-            share = std::min(share, std::clamp((length(at - b.middle) - b.radius) / g.h + 0.5, 0.0, 1.0));
-          }
-          l(i, j, k) = share < 0.01 ? T(0) : T(share);  // slits that carry nothing make the pressure hard to find
-        }
-  }
-  walls.open = std::move(open);
-  return walls;
-}
-
 }  // namespace
 
 template <class T>
-Smoke<T>::Smoke(const SmokeParams& p, const Context& context)
+Smoke<T>::Smoke(const SmokeParams& p, TriangleSoup surface, bool gives_off, const Context& context)
     : params_(p),
       grid_(smoke_grid(p, context)),
       up_(up_of(p, grid_)),
-      projection_(grid_, walls_of<T>(p, grid_, up_)),
+      sides_(sides_of(p, grid_, up_)),
+      solids_(p, gives_off ? TriangleSoup() : surface, grid_),
+      projection_(grid_, solids_.walls<T>(sides_, 0, context)),
       velocity_(make_faces<T>(grid_)),
       density_(grid_.cells),
       temperature_(grid_.cells),
       pressure_(grid_.cells) {
+  // Lattices change places: each has room for the largest.
+  const size_t most = std::max({velocity_[0].values.size(), velocity_[1].values.size(), velocity_[2].values.size()});
+  for (Lattice<T>* l : {&velocity_[0], &velocity_[1], &velocity_[2], &density_, &temperature_}) l->values.reserve(most);
+  for (Lattice<T>& l : spare_) l.values.reserve(most);
   std::vector<double> numbers = p.source;
-  if (numbers.empty()) {
+  if (gives_off) source_shares_ = shares_inside<T>(surface, grid_, -1, context);
+  else if (numbers.empty() && p.box.empty()) {
     const Vec3 size = grid_.h * Vec3(double(grid_.cells[0]), double(grid_.cells[1]), grid_.flat() ? 0 : double(grid_.cells[2]));
     const double radius = 0.12 * std::min({size.x, size.y, grid_.flat() ? size.x : size.z});
     Vec3 middle = grid_.origin + 0.5 * size;
@@ -87,48 +55,77 @@ Smoke<T>::Smoke(const SmokeParams& p, const Context& context)
     for (int a = 0; a < 3; ++a) middle[a] -= up_[a] * (0.5 * std::abs(size[a]) - 1.5 * radius);
     numbers = {middle.x, middle.y, middle.z, radius};
   }
-  // Lattices change places: each has room for the largest.
-  const size_t most = std::max({velocity_[0].values.size(), velocity_[1].values.size(), velocity_[2].values.size()});
-  for (Lattice<T>* l : {&velocity_[0], &velocity_[1], &velocity_[2], &density_, &temperature_}) l->values.reserve(most);
-  for (Lattice<T>& l : spare_) l.values.reserve(most);
-  sources_ = balls_of(numbers, grid_, "source");
-  give_off();
+  balls_ = balls_of(numbers, grid_, "source"), boxes_ = boxes_of(p.box, grid_, "box");
+  give_off(0);
+}
+
+// From cells of which a share, share(places along the axes, in units of h), lies in a source within the box.
+template <class T>
+template <class Share>
+void Smoke<T>::give_off_within(const Box3& box, double dt, Share&& share) {
+  std::array<size_t, 3> lo{0, 0, 0}, hi = grid_.cells;
+  for (int a = 0; a < grid_.axes(); ++a) {
+    const double n = double(grid_.cells[size_t(a)]);
+    const auto place = [&](double x) { return (x - grid_.origin[a]) / grid_.h; };
+    lo[size_t(a)] = size_t(std::clamp(std::floor(place(box.lo[a]) - 1), 0.0, n));
+    hi[size_t(a)] = size_t(std::clamp(std::ceil(place(box.hi[a]) + 1), 0.0, n));
+  }
+  for (size_t k = lo[2]; k < hi[2]; ++k)
+    for (size_t j = lo[1]; j < hi[1]; ++j)
+      for (size_t i = lo[0]; i < hi[0]; ++i) {
+        const Vec3 at{double(i), double(j), double(k)};
+        const T c = T(share(at + Vec3(0.5, 0.5, 0.5)));
+        const T mass = T(params_.density) * c, heat = T(params_.temperature) * c;
+        T &density = density_(i, j, k), &temperature = temperature_(i, j, k);
+        if (params_.rate) {
+          density += T(*params_.rate * dt) * mass, temperature += T(*params_.rate * dt) * heat;
+        } else {  // cells at the rim of a source have their share of its values, however often that is said
+          density = std::max(density, mass);
+          temperature = heat > 0 ? std::max(temperature, heat) : std::min(temperature, heat);
+        }
+        if (params_.jet == Vec3(0, 0, 0)) continue;
+        for (int a = 0; a < grid_.axes(); ++a) {  // the lower face across each axis
+          const auto s = MacGrid::shift(a);
+          const T f = T(share(at + Vec3(s[0], s[1], s[2])));
+          velocity_[size_t(a)](i, j, k) += f * (T(params_.jet[a]) - velocity_[size_t(a)](i, j, k));
+        }
+      }
 }
 
 template <class T>
-void Smoke<T>::give_off() {
-  for (const Ball& b : sources_) {
-    std::array<size_t, 3> lo{0, 0, 0}, hi = grid_.cells;
-    for (int a = 0; a < grid_.axes(); ++a) {
-      const double n = double(grid_.cells[size_t(a)]), c = (b.middle[a] - grid_.origin[a]) / grid_.h, r = b.radius / grid_.h + 1;
-      lo[size_t(a)] = size_t(std::clamp(std::floor(c - r), 0.0, n)), hi[size_t(a)] = size_t(std::clamp(std::ceil(c + r), 0.0, n));
-    }
-    const auto share = [&](Vec3 p) {
-      if (grid_.flat()) p.z = b.middle.z;
-      return T(std::clamp((b.radius - length(p - b.middle)) / grid_.h + 0.5, 0.0, 1.0));
-    };
-    for (size_t k = lo[2]; k < hi[2]; ++k)
-      for (size_t j = lo[1]; j < hi[1]; ++j)
-        for (size_t i = lo[0]; i < hi[0]; ++i) {
-          const Vec3 at{double(i), double(j), double(k)};
-          const T c = share(grid_.origin + grid_.h * (at + Vec3(0.5, 0.5, 0.5)));
-          // Cells at the rim of a source have their share of its values, however often that is said.
-          const T heat = T(params_.temperature) * c;
-          density_(i, j, k) = std::max(density_(i, j, k), T(params_.density) * c);
-          temperature_(i, j, k) = heat > 0 ? std::max(temperature_(i, j, k), heat) : std::min(temperature_(i, j, k), heat);
-          if (params_.jet == Vec3(0, 0, 0)) continue;
-          for (int a = 0; a < grid_.axes(); ++a) {  // the lower face across each axis
-            const auto s = MacGrid::shift(a);
-            const T f = share(grid_.origin + grid_.h * (at + Vec3(s[0], s[1], s[2])));
-            velocity_[size_t(a)](i, j, k) += f * (T(params_.jet[a]) - velocity_[size_t(a)](i, j, k));
-          }
-        }
+void Smoke<T>::give_off(double dt) {
+  const auto place = [&](Vec3 p) { return grid_.origin + grid_.h * p; };
+  for (const Ball& b : balls_) {
+    const Vec3 r = b.radius * Vec3(1, 1, 1);
+    give_off_within({b.middle - r, b.middle + r}, dt, [&](Vec3 p) {
+      Vec3 way = place(p) - b.middle;
+      if (grid_.flat()) way.z = 0;
+      return std::clamp((b.radius - length(way)) / grid_.h + 0.5, 0.0, 1.0);
+    });
+  }
+  for (const Box3& b : boxes_)
+    give_off_within(b, dt, [&](Vec3 p) {  // the overlap with a cell about the place
+      double part = 1;
+      for (int a = 0; a < grid_.axes(); ++a) {
+        const double x = place(p)[a], overlap = std::min(x + grid_.h / 2, b.hi[a]) - std::max(x - grid_.h / 2, b.lo[a]);
+        part *= std::clamp(overlap / grid_.h, 0.0, 1.0);
+      }
+      return part;
+    });
+  if (!source_shares_.values.empty()) {
+    Box3 all;
+    all.add(grid_.origin), all.add(place(Vec3(double(grid_.cells[0]), double(grid_.cells[1]), double(grid_.cells[2]))));
+    give_off_within(all, dt, [&](Vec3 p) {
+      const auto index = [&](int a) { return size_t(std::clamp(p[a], 0.0, double(grid_.cells[size_t(a)]) - 1)); };
+      return double(source_shares_(index(0), index(1), index(2)));
+    });
   }
 }
 
 template <class T>
 double Smoke<T>::fastest(const Context& context) const {
-  double most = 0;
+  double most = solids_.speed();
+  for (const Side& s : sides_) most = std::max(most, length(s.velocity));
   for (const Lattice<T>& l : velocity_) {
     const double v = largest(l, context);
     most = v <= most ? most : v;  // NaN stays
@@ -139,12 +136,15 @@ double Smoke<T>::fastest(const Context& context) const {
 
 template <class T>
 void Smoke<T>::step(double dt, const Context& context) {
-  const Carrier<T> carrier{grid_, velocity_, dt, params_.advection, params_.trace, true};
+  time_ += dt;
+  if (solids_.move()) projection_ = Projection<T>(grid_, solids_.walls<T>(sides_, time_, context));
+  Carrier<T> carrier{grid_, velocity_, dt, params_.advection, params_.trace, true};
   const std::array<Lattice<T>*, 2> scalars{&density_, &temperature_};
   for (Lattice<T>& l : spare_) shaped(l, grid_.cells);
   const std::array<Carried<T>, 2> carried{{{scalars[0], &spare_[0], &spare_[2]}, {scalars[1], &spare_[1], &spare_[3]}}};
   advect<T>(carrier, -1, carried, spare_[4], context);
   for (size_t f = 0; f < 2; ++f) std::swap(*scalars[f], spare_[f]);
+  carrier.limit = params_.limit;
   for (size_t a = 0; a < size_t(grid_.axes()); ++a) {
     for (const size_t s : {a, size_t(3), size_t(4)}) shaped(spare_[s], velocity_[a].n);
     const Carried<T> component{&velocity_[a], &spare_[a], &spare_[3]};
@@ -156,10 +156,10 @@ void Smoke<T>::step(double dt, const Context& context) {
     for (T& v : density_.values) v *= fade;
   if (cool != 1)
     for (T& v : temperature_.values) v *= cool;
-  give_off();
-  add_buoyancy(grid_, density_, temperature_, up_, params_.weight, params_.lift, dt, velocity_, context);
+  give_off(dt);
+  add_buoyancy(grid_, projection_.walls().sides, density_, temperature_, up_, params_.weight, params_.lift, dt, velocity_, context);
   confine_vortices<T>(grid_, params_.swirl, dt, velocity_, spare_, context);
-  diffuse_velocity<T>(grid_, projection_.walls(), params_.viscosity, dt, velocity_, spare_, context);
+  diffuse_velocity<T>(grid_, projection_.walls(), sides_, params_.viscosity, dt, velocity_, spare_, context);
   solved_ = projection_.apply(velocity_, pressure_, params_.tolerance, spare_, context);
 }
 
@@ -180,9 +180,22 @@ void Smoke<T>::advance(const Context& context) {
                                                                : "weaker forces or shorter frames keep it slower");
     const double dt = left / steps;
     step(dt, context);
+    ++steps_;
     left = steps > 1 ? left - dt : 0;
   }
   ++frame_;
+  time_ = double(frame_) * params_.frame;
+}
+
+template <class T>
+size_t Smoke<T>::bytes() const {
+  size_t numbers = 0;
+  const auto add = [&](const auto& lattices) {
+    for (const Lattice<T>& l : lattices) numbers += l.values.capacity();
+  };
+  add(velocity_), add(spare_), add(projection_.walls().open), add(projection_.walls().solid);
+  add(std::array{std::cref(density_), std::cref(temperature_), std::cref(pressure_), std::cref(source_shares_)});
+  return numbers * sizeof(T);
 }
 
 template <class T>

@@ -3,7 +3,7 @@
 #pragma once
 #include "data/dataset.h"
 #include "simulate/fluid/project.h"
-#include "simulate/fluid/smoke_params.h"
+#include "simulate/fluid/solids.h"
 
 namespace sg {
 
@@ -14,34 +14,53 @@ namespace fluid {
 template <class T>
 class Smoke {
  public:
-  Smoke(const SmokeParams& p, const Context& context);
+  /// `surface`: a solid, or with `gives_off` a source, beside those of the parameters.
+  Smoke(const SmokeParams& p, TriangleSoup surface, bool gives_off, const Context& context);
   /// On to the next frame. Throws Error(data), naming the frame, where the flow grows beyond all numbers.
   void advance(const Context& context);
   size_t frame() const { return frame_; }
+  /// That its lattices take, without those of the solver's coarse levels.
+  size_t bytes() const;
   const MacGrid& grid() const { return grid_; }
   Faces<T>& velocity() { return velocity_; }
   Lattice<T>& density() { return density_; }
   Lattice<T>& temperature() { return temperature_; }
   const Projection<T>& projection() const { return projection_; }
+  size_t steps() const { return steps_; }
   /// How the last pressure was found.
   const SolveReport& solved() const { return solved_; }
+  /// What the next frame depends on.
+  template <class F>
+  void each_part(F&& f) {
+    std::array<uint64_t, 2> counts{frame_, steps_};
+    f(counts);
+    frame_ = counts[0], steps_ = counts[1], time_ = double(frame_) * params_.frame;
+    for (Lattice<T>* l : {&velocity_[0], &velocity_[1], &velocity_[2], &density_, &temperature_, &pressure_}) f(l->values);
+  }
   /// The cells' middles as the points of a uniform grid with density, temperature, velocity and pressure.
   DatasetPtr dataset(const Context& context) const;
 
  private:
   void step(double dt, const Context& context);
-  void give_off();
+  template <class Share>
+  void give_off_within(const Box3& box, double dt, Share&& share);
+  void give_off(double dt);
   double fastest(const Context& context) const;
 
   SmokeParams params_;
   MacGrid grid_;
   Vec3 up_;
-  std::vector<Ball> sources_;
+  Sides sides_;
+  std::vector<Ball> balls_;
+  std::vector<Box3> boxes_;
+  Lattice<T> source_shares_;  // of a surface; its cells
+  Solids solids_;
   Projection<T> projection_;
   Faces<T> velocity_;
   Lattice<T> density_, temperature_, pressure_;
   std::array<Lattice<T>, 5> spare_;
-  size_t frame_ = 0;
+  size_t frame_ = 0, steps_ = 0;
+  double time_ = 0;
   SolveReport solved_;
 };
 
@@ -50,5 +69,9 @@ class Smoke {
 /// Point fields density, temperature (f32 or f64), velocity (three components) and pressure of the air at the last frame before
 /// `time`. A call that goes on from the time before (a film) computes only the frames between; the result is the same in any order.
 DatasetPtr smoke(const SmokeParams& p, Context& context);
+
+/// The same about a closed surface, or from inside of one; triangles of any mesh. Without bounds the box is twice as wide as the surface,
+/// and three times as high.
+DatasetPtr smoke_round(const DatasetPtr& surface, const SmokeRoundParams& p, Context& context);
 
 }  // namespace sg

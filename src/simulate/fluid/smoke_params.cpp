@@ -21,11 +21,18 @@ void describe(Schema& s, SmokeParams& p) {
     "How quantities are carried. explicit: forward in time with central differences, which blows up. semi_lagrangian: stable, but "
     "smooths. maccormack and bfecc: corrected to second order.");
   s("trace", p.trace, "How the way back along the flow is found.");
+  s("limit", p.limit,
+    "Hold corrected values between those that they are mixed from: no ringing, but first order at crests. no: for smooth flows whose "
+    "figures matter. Density and temperature are always held.");
   s("source", p.source, "Balls that give off smoke, as x,y,z,radius of each; default: one above the ground.");
+  s("box", p.box, "Boxes that give off smoke, as x0,x1,y0,y1,z0,z1 of each.");
   s("density", p.density, "Density of the smoke in the sources.").at_least(0);
   s("temperature", p.temperature, "Temperature in the sources above that of the air.");
+  s("rate", p.rate, "Shares of density and temperature that the sources give off per time; default: they are held at them.").at_least(0);
   s("jet", p.jet, "Velocity of the air in the sources.");
   s("obstacle", p.obstacle, "Solid balls, as x,y,z,radius of each.");
+  s("obstacle_velocity", p.obstacle_velocity, "Velocity at which the obstacles move.");
+  s("obstacle_spin", p.obstacle_spin, "Angular velocity of the obstacles about their middle, radians per time along the axis.");
   s("up", p.up, "Away from the ground; default: z, of flat flows y.");
   s("lift", p.lift, "Acceleration upwards per temperature.");
   s("weight", p.weight, "Acceleration downwards per density.");
@@ -34,6 +41,9 @@ void describe(Schema& s, SmokeParams& p) {
   s("cooling", p.cooling, "Share of the temperature that is lost per time.").at_least(0);
   s("fading", p.fading, "Share of the density that is lost per time.").at_least(0);
   s("open", p.open, "The side of the box through which air comes and goes; default: the one away from the ground. none: a closed box.");
+  s("sides", p.sides,
+    "What lies at the sides of the box, as 'SIDE KIND [VX,VY,VZ]; ...'. slip: a wall (default). held: a wall at which friction holds the "
+    "flow, and which may move along itself. inflow: air comes in. open: as 'open'. Example: 'x0 inflow 1,0,0; x1 open'.");
   s("tolerance", p.tolerance, "What may be left of the divergence, as a share of the largest before.").range(1e-12, 0.1);
 }
 
@@ -55,11 +65,47 @@ MacGrid smoke_grid(const SmokeParams& p, const Context& context) {
     g.cells[size_t(a)] = a == 2 && extent.z == 0 ? 1 : size_t(std::max(2.0, std::round(extent[a] / g.h)));
     cells *= double(g.cells[size_t(a)]);
   }
-  const double bytes = cells * (p.type == FieldType::f64 ? 240 : 120);
+  const double bytes = cells * (p.type == FieldType::f64 ? 130 : 65);
   if (cells > 4e9 || (context.memory_limit && bytes > double(context.memory_limit)))
     fail_usage(fmt::format("{:.3g} cells take about {}, more than there is", cells, human_bytes(uint64_t(std::min(bytes, 1e18)))), "smoke",
                "ask for a smaller size");
   return g;
+}
+
+Sides sides_of(const SmokeParams& p, const MacGrid& g, const Vec3& up) {
+  Sides sides{};
+  std::optional<size_t> open;
+  if (p.open) {
+    if (*p.open != BoxSide::none) open = size_t(*p.open);
+  } else if (p.sides.find("open") == std::string::npos) {
+    size_t axis = 0;
+    for (size_t a = 1; a < 3; ++a)
+      if (std::abs(up[int(a)]) > std::abs(up[int(axis)])) axis = a;
+    open = 2 * axis + (up[int(axis)] > 0);
+  }
+  if (open && int(*open / 2) < g.axes()) sides[*open].kind = SideKind::open;
+  return sides_of_text(p.sides, sides, "smoke sides");
+}
+
+std::vector<Box3> boxes_of(const std::vector<double>& numbers, const MacGrid& g, const char* word) {
+  const std::string who = fmt::format("smoke {}", word);
+  if (numbers.size() % 6 != 0) fail_usage(fmt::format("{} numbers are no boxes", numbers.size()), who, "give x0,x1,y0,y1,z0,z1 of each");
+  std::vector<Box3> boxes;
+  for (size_t i = 0; i < numbers.size(); i += 6) {
+    Box3 box;
+    for (int a = 0; a < 3; ++a) {
+      const double lo = numbers[i + size_t(2 * a)], hi = numbers[i + size_t(2 * a + 1)];
+      if (!std::isfinite(lo) || !std::isfinite(hi) || !(a == 2 && g.flat() ? lo <= hi : lo < hi))
+        fail_usage(fmt::format("a box from {} to {} along {}", exact_number(lo), exact_number(hi), "xyz"[a]), who,
+                   "give finite numbers, the lower one first");
+      box.lo[a] = lo, box.hi[a] = hi;
+      if (a < g.axes() && (hi <= g.origin[a] || lo >= g.origin[a] + g.h * double(g.cells[size_t(a)])))
+        fail_usage(fmt::format("the box from {} to {} along {} lies outside of the air", exact_number(lo), exact_number(hi), "xyz"[a]), who,
+                   "move it, or change the bounds");
+    }
+    boxes.push_back(box);
+  }
+  return boxes;
 }
 
 std::vector<Ball> balls_of(const std::vector<double>& numbers, const MacGrid& g, const char* word) {

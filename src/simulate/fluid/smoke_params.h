@@ -8,6 +8,7 @@
 #include "base/schema/schema.h"
 #include "simulate/analytic_grid.h"
 #include "simulate/fluid/advect.h"
+#include "simulate/fluid/sides.h"
 #include "simulate/run/frames.h"
 
 namespace sg {
@@ -25,15 +26,27 @@ struct SmokeParams : FrameParams {
   double cfl = 2;
   fluid::Advection advection = fluid::Advection::maccormack;
   fluid::BackTrace trace = fluid::BackTrace::rk2;
-  std::vector<double> source, obstacle;
+  bool limit = true;
+  std::vector<double> source, box, obstacle;
+  std::optional<double> rate;
+  Vec3 obstacle_velocity{0, 0, 0}, obstacle_spin{0, 0, 0};
   double density = 1, temperature = 1;
   Vec3 jet{0, 0, 0};
   std::optional<Vec3> up;
   double lift = 1, weight = 0.1, swirl = 0, viscosity = 0, cooling = 0, fading = 0;
   std::optional<BoxSide> open;
+  std::string sides;
   double tolerance = 1e-5;
 };
 void describe(Schema& s, SmokeParams& p);
+
+enum class SurfaceRole { obstacle, source };
+constexpr auto enum_words(SurfaceRole) { return std::array{Word{"obstacle", SurfaceRole::obstacle}, Word{"source", SurfaceRole::source}}; }
+
+struct SmokeRoundParams : SmokeParams {
+  SurfaceRole role = SurfaceRole::obstacle;
+};
+void describe(Schema& s, SmokeRoundParams& p);
 
 namespace fluid {
 
@@ -46,6 +59,10 @@ struct Ball {
   Vec3 middle;
   double radius;
 };
+/// What lies at the sides, from `open` and `sides`. `up` chooses the open one where neither does.
+Sides sides_of(const SmokeParams& p, const MacGrid& g, const Vec3& up);
+/// Boxes as x0,x1,y0,y1,z0,z1 of each. Throws Error(usage) for a wrong count, and boxes outside of the air.
+std::vector<Box3> boxes_of(const std::vector<double>& numbers, const MacGrid& g, const char* word);
 std::vector<Ball> balls_of(const std::vector<double>& numbers, const MacGrid& g, const char* word);
 
 }  // namespace fluid

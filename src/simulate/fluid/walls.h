@@ -12,9 +12,12 @@ using OpenSides = std::array<bool, 6>;
 template <class T>
 struct Walls {
   OpenSides sides{};
-  Faces<T> open;  ///< empty where nothing is solid but the closed sides
+  Faces<T> open;               ///< empty where nothing is solid but the closed sides
+  Faces<T> solid;              ///< velocity of the solid part of each face, across it; empty where nothing moves
+  std::array<T, 6> through{};  ///< velocity across the closed sides
 
   bool obstacles() const { return !open[0].values.empty(); }
+  bool move() const { return !solid[0].values.empty(); }
   /// Of face (i, j, k) across `axis` of a box with so many cells.
   T share(const std::array<size_t, 3>& cells, int axis, size_t i, size_t j, size_t k) const {
     const size_t a = size_t(axis), at = a == 0 ? i : a == 1 ? j : k;

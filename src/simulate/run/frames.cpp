@@ -10,6 +10,9 @@ namespace sg {
 void describe(Schema& s, FrameParams& p) {
   s("time", p.time, "When, from 0 on: the last whole frame before it is shown.").unit("time").at_least(0);
   s("frame", p.frame, "Time from frame to frame; each is computed from the one before.").unit("time").positive();
+  s("store", p.store, "File that keeps the state of the run: a run that was broken off goes on from it, with the same numbers.")
+      .unit("new file");
+  s("store_every", p.store_every, "Frames after which the state is stored; the last one is in any case.").range(1, 1000000);
 }
 
 size_t frame_at(const FrameParams& p, const std::string& who) {
@@ -17,5 +20,7 @@ size_t frame_at(const FrameParams& p, const std::string& who) {
   if (!(frames <= 1e6)) fail_usage("that is more than a million frames away", who + " time", "ask for an earlier time or longer frames");
   return size_t(frames);
 }
+
+bool may_keep(size_t bytes, const Context& context) { return context.memory_limit == 0 || bytes <= context.memory_limit / 4; }
 
 }  // namespace sg

@@ -8,46 +8,90 @@
 #include <utility>
 
 #include "base/context.h"
+#include "base/error.h"
+#include "base/file/file.h"
 #include "base/schema/schema.h"
 #include "data/dataset.h"
+#include "simulate/run/state_file.h"
 
 namespace sg {
 
-/// When, of every simulator.
+/// When, of every simulator, and where its state is kept.
 struct FrameParams {
   double time = 0, frame = 0.04;
+  std::string store;
+  int store_every = 10;
 };
 void describe(Schema& s, FrameParams& p);
 
 /// The last whole frame before p.time. Throws Error(usage) beyond a million frames.
 size_t frame_at(const FrameParams& p, const std::string& who);
 
+/// Whether a run that takes so much is kept for the next call: at most a quarter of the memory allowed.
+bool may_keep(size_t bytes, const Context& context);
+
+/// A Run that can be stored lists what its frame depends on: each_part(f) calls f(list) for lists of numbers, whose lengths follow from the
+/// parameters.
+template <class Run>
+concept Storable = requires(Run& run) {
+  run.each_part([](auto&) {});
+};
+
+/// Goes on from what is stored at the path for the run `key`, unless that lies beyond `frame`; returns whether it does. Throws Error(usage)
+/// where something else is there.
+template <Storable Run>
+bool go_on(Run& run, const std::string& path, const std::string& key, size_t frame) {
+  if (!file_exists(path)) return false;
+  StateFile file(path);
+  if (file.key() != key) fail_usage("is the state of another run", "'" + path + "'", "remove it, or name another file as store");
+  if (file.frame() > frame) return false;
+  run.each_part([&](auto& list) { file.fill(list); });
+  return true;
+}
+template <Storable Run>
+void store(Run& run, const std::string& path, const std::string& key) {
+  StateWriter file(path, key, run.frame());
+  run.each_part([&](auto& list) { file.add(list); });
+  file.commit();
+}
+
 /// A frame of the run of these parameters: `make()` begins it, or the run that was shown last goes on where it is the same one and has not
-/// gone beyond. A Run has size_t frame() const, void advance(const Context&) to the next frame, and DatasetPtr dataset(const Context&)
-/// const. `params` may say any time. What else the run depends on, such as the meshes given to it, is told apart by `of`.
+/// gone beyond, or the one stored. A Run has size_t frame() const, void advance(const Context&) to the next frame,
+/// DatasetPtr dataset(const Context&) const, and size_t bytes() const, the memory that it takes. `params` may say any time. What else the run depends on, such as the meshes given to it, is
+/// told apart by `of`.
 template <class Run, class Params, class Make>
 DatasetPtr frame_of_run(const std::string& who, Params params, Make&& make, Context& context, const std::string& of = {}) {
   static std::mutex mutex;
   static std::string kept_key;
   static std::unique_ptr<Run> kept;
   const size_t frame = frame_at(params, who);
-  params.time = 0;
-  const std::string key = params_text(schema_of(params)) + " " + of;
+  const FrameParams frames = params;
+  params.time = 0, params.store.clear(), params.store_every = FrameParams().store_every;
+  const std::string text = who + " " + params_text(schema_of(params)), key = text + " " + of;
+  if (!frames.store.empty() && !Storable<Run>) fail_usage("its state cannot be stored", who, "leave store out");
   std::unique_ptr<Run> run;
   {
     const std::lock_guard lock(mutex);
     if (kept && kept_key == key && kept->frame() <= frame) run = std::move(kept);
   }
-  if (!run) run = make();
+  bool stores = !frames.store.empty();
+  if (!run) {
+    run = make();
+    if constexpr (Storable<Run>)
+      if (stores) stores = go_on(*run, frames.store, text, frame) || !file_exists(frames.store);
+  }
   const size_t first = run->frame();
   while (run->frame() < frame) {
     context.check();
     context.progress(double(run->frame() - first) / double(frame - first), who);
     run->advance(context);
+    if constexpr (Storable<Run>)
+      if (stores && (run->frame() % size_t(frames.store_every) == 0 || run->frame() == frame)) store(*run, frames.store, text);
   }
   DatasetPtr result = run->dataset(context);
   const std::lock_guard lock(mutex);
-  kept_key = key, kept = std::move(run);
+  kept.reset();
+  if (may_keep(run->bytes(), context)) kept_key = key, kept = std::move(run);
   return result;
 }
 

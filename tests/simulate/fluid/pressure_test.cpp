@@ -34,7 +34,7 @@ Walls<T> shares(const MacGrid& g, double radius, const OpenSides& sides) {
                          0.5 * Vec3(double(g.cells[0]), double(g.cells[1]), g.flat() ? 0 : double(g.cells[2]));
           open[size_t(a)](i, j, k) = T(std::clamp(length(p) - radius + 0.5, 0.0, 1.0));
         }
-  return {sides, std::move(open)};
+  return {sides, std::move(open), {}, {}};
 }
 
 template <class T>
@@ -182,7 +182,8 @@ TEST_CASE("fluid pressure: a box without obstacles is one whose faces are all op
     const Lattice<double> x = noise<double>(cells, 11);
     std::array<Lattice<double>, 3> results[2];
     for (const bool listed : {false, true}) {
-      Walls<double> walls{sides, {}};
+      Walls<double> walls;
+      walls.sides = sides;
       if (listed) walls.open = make_faces<double>(grid_of(cells), 1);
       Multigrid<double> grid(cells, walls);
       for (Lattice<double>& l : results[listed]) l = Lattice<double>(cells);
