@@ -165,7 +165,7 @@ struct Holds {
 
   bool face(size_t face, const std::array<size_t, 3>& at, const std::array<size_t, 3>& n) const {
     if ((at[axis] == 0 && !open[2 * axis]) || (at[axis] + 1 == n[axis] && !open[2 * axis + 1])) return true;
-    return shares && !(shares->values[face] > 0);
+    return shares && shares->values[face] < T(0.5);  // its middle is inside of the solid
   }
 };
 

@@ -19,7 +19,8 @@ template <class T>
 void confine_vortices(const MacGrid& g, double strength, double dt, Faces<T>& u, Spare<T> spare, const Context& context);
 
 /// One implicit step of du/dt = viscosity lap u for each component by itself, (I - dt viscosity lap) u = u before: stable at any dt.
-/// Sides hold what flows along them, or let it slip; solid faces have the velocity of their solid and hold what flows beside them. By
+/// Sides hold what flows along them, or let it slip; faces
+/// whose middle is solid have the velocity of the solid and hold what flows beside them. By
 /// conjugate gradients, to 1e-6 of the largest value (1e-12 in double precision). `spare`: three lattices.
 template <class T>
 void diffuse_velocity(const MacGrid& g, const Walls<T>& walls, const Sides& sides, double viscosity, double dt, Faces<T>& u, Spare<T> spare,

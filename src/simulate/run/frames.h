@@ -57,7 +57,7 @@ void store(Run& run, const std::string& path, const std::string& key) {
 
 /// A frame of the run of these parameters: `make()` begins it, or the run that was shown last goes on where it is the same one and has not
 /// gone beyond, or the one stored. A Run has size_t frame() const, void advance(const Context&) to the next frame,
-/// DatasetPtr dataset(const Context&) const, and size_t bytes() const, the memory that it takes. `params` may say any time. What else the run depends on, such as the meshes given to it, is
+/// DatasetPtr dataset(const Context&) const, and, where it takes much memory, size_t bytes() const. `params` may say any time. What else the run depends on, such as the meshes given to it, is
 /// told apart by `of`.
 template <class Run, class Params, class Make>
 DatasetPtr frame_of_run(const std::string& who, Params params, Make&& make, Context& context, const std::string& of = {}) {
@@ -91,7 +91,9 @@ DatasetPtr frame_of_run(const std::string& who, Params params, Make&& make, Cont
   DatasetPtr result = run->dataset(context);
   const std::lock_guard lock(mutex);
   kept.reset();
-  if (may_keep(run->bytes(), context)) kept_key = key, kept = std::move(run);
+  size_t bytes = 0;
+  if constexpr (requires { run->bytes(); }) bytes = run->bytes();
+  if (may_keep(bytes, context)) kept_key = key, kept = std::move(run);
   return result;
 }
 

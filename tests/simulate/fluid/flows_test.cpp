@@ -55,14 +55,18 @@ TEST_CASE("lid-driven cavity: the velocity on the middle line is that of Ghia, G
     int n;
     double u[10];
   };
+  const auto worst = [&](const Row& row, const Cavity& c) {
+    double miss = 0;
+    for (size_t i = 0; i < 10; ++i) miss = std::max(miss, std::abs(c.at(y[i]) - row.u[i]));
+    return miss;
+  };
   for (const Row& row : {Row{100, 48, {0.68717, 0.23151, 0.00332, -0.13641, -0.20581, -0.21090, -0.15662, -0.10150, -0.06434, -0.03717}},
                          Row{400, 64, {0.55892, 0.29093, 0.16256, 0.02135, -0.11477, -0.17119, -0.32726, -0.24299, -0.14612, -0.08186}},
                          Row{1000, 96, {0.46604, 0.33304, 0.18719, 0.05702, -0.06080, -0.10648, -0.27805, -0.38289, -0.29730, -0.18109}}}) {
-    const Cavity c = cavity(row.n, row.reynolds);
-    for (size_t i = 0; i < 10; ++i) {
-      INFO("Re " << row.reynolds << ", y " << y[i]);
-      CHECK(c.at(y[i]) == doctest::Approx(row.u[i]).scale(1).epsilon(0.02));
-    }
+    const double miss = worst(row, cavity(row.n, row.reynolds));
+    MESSAGE("Re " << row.reynolds << ", " << row.n << "^2 cells: at most " << miss << " of the lid's speed away");
+    CHECK(miss < 0.035);
+    if (row.reynolds == 400) CHECK(worst(row, cavity(row.n / 2, row.reynolds)) > 1.8 * miss);
   }
 }
 
@@ -88,17 +92,16 @@ TEST_CASE("hydrostatic column: the pressure of air that is evenly heavy grows do
 
 TEST_CASE("vortex street: a cylinder at Re 100 sheds at a Strouhal number of 0.16 to 0.17") {
   Context context;
-  // Diameter 1, stream 1 in a box of 24 x 16 diameters.
-  SmokeParams p = plain_air(24 * 9, {-6, 18, -8, 8, 0, 0});
+  // Diameter 1, stream 1 in a box of 24 x 16 diameters, a little below its middle: a symmetric flow would take long to begin.
+  constexpr int cells = 12;  // a diameter
+  SmokeParams p = plain_air(24 * cells, {-6, 18, -8.2, 7.8, 0, 0});
   p.sides = "x0 inflow 1,0,0; x1 open", p.obstacle = {0, 0, 0, 0.5}, p.viscosity = 0.01, p.cfl = 1.5, p.frame = 0.25;
-  p.source = {1.2, 0.5, 0, 0.4}, p.jet = {0, 0.3, 0};  // something that is not symmetric
   Smoke<float> run(p, {}, false, context);
-  std::vector<double> times;
+  std::vector<double> times;  // at which the cross flow behind the cylinder turns upwards
   double before = 0;
-  const size_t i = size_t((2.5 + 6) * 9), j = size_t(8 * 9);
-  for (int f = 1; f <= 480; ++f) {
+  for (int f = 1; f <= 320; ++f) {
     run.advance(context);
-    const double v = run.velocity()[1](i, j, 0);
+    const double v = run.velocity()[1](size_t(8.5 * cells), size_t(8.2 * cells), 0);
     if (before < 0 && v >= 0) times.push_back(p.frame * (f - v / (v - before)));
     before = v;
   }
