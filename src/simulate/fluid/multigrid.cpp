@@ -77,15 +77,16 @@ struct Rows {
     std::fill(diagonal + 1, diagonal + std::max<size_t>(n, 2) - 1, plain_diagonal());
   }
 
-  // Every second cell from `first` on as its neighbours want it; `to` is the row itself.
-  void relax(const T* b, T* to, size_t first) const {
+  // Every second cell from `first` on as its neighbours want it, but for those of air; `to` is the row itself.
+  void relax(const T* b, T* to, size_t first, const uint8_t* air) const {
     const auto relax_at = [&](size_t i) {
       T neighbours, diagonal;
       sums_at(i, neighbours, diagonal);
       to[i] = diagonal > 0 ? (b[i] + neighbours) / diagonal : T(0);  // dry cells take no part
     };
-    if (wx || plain_diagonal() <= 0) {
-      for (size_t i = first; i < n; i += 2) relax_at(i);
+    if (wx || air || plain_diagonal() <= 0) {
+      for (size_t i = first; i < n; i += 2)
+        if (!air || !air[i]) relax_at(i);
       return;
     }
     const T inverse = 1 / plain_diagonal();
@@ -128,7 +129,7 @@ Lattice<T> coarse_faces(const Walls<T>& fine, int axis, const std::array<size_t,
 template <class T>
 Multigrid<T>::Multigrid(std::array<size_t, 3> cells, Walls<T> walls) {
   std::array<double, 3> h{1, 1, 1};
-  levels_.push_back({cells, {1, 1, 1}, std::move(walls), {}, {}, {}, {}, {}});
+  levels_.push_back({cells, {1, 1, 1}, std::move(walls), {}, {}, {}, {}, {}, {}});
   levels_.front().walls.close_sides();
   find_plain_rows(levels_.front());
   for (;;) {
@@ -184,6 +185,32 @@ void Multigrid<T>::find_plain_rows(Level& l) {
   }
 }
 
+// Sets the cells of air in a row to 0.
+template <class T>
+void Multigrid<T>::clear_air(const Level& l, size_t row, T* to) {
+  if (l.air.empty()) return;
+  const uint8_t* const air = l.air.data() + row * l.n[0];
+  for (size_t i = 0; i < l.n[0]; ++i) to[i] = air[i] ? T(0) : to[i];
+}
+
+template <class T>
+void Multigrid<T>::set_air(std::vector<uint8_t> air) {
+  levels_.front().air = std::move(air);
+  for (size_t level = 1; level < levels_.size(); ++level) {
+    const Level& fine = levels_[level - 1];
+    Level& l = levels_[level];
+    l.air.clear();
+    if (fine.air.empty()) continue;
+    l.air.assign(l.n[0] * l.n[1] * l.n[2], 0);
+    std::array<size_t, 3> step;
+    for (size_t a = 0; a < 3; ++a) step[a] = l.n[a] == fine.n[a] ? 1 : 2;
+    for (size_t k = 0; k < fine.n[2]; ++k)
+      for (size_t j = 0; j < fine.n[1]; ++j)
+        for (size_t i = 0; i < fine.n[0]; ++i)
+          l.air[i / step[0] + l.n[0] * (j / step[1] + l.n[1] * (k / step[2]))] |= fine.air[i + fine.n[0] * (j + fine.n[1] * k)];
+  }
+}
+
 // Calls f(row, its Rows) for every row of cells.
 template <class T>
 template <class F>
@@ -217,6 +244,7 @@ void Multigrid<T>::apply(const Lattice<T>& x, Lattice<T>& out, const Context& co
     const T* const p = x.row(row);
     T* const to = out.row(row);
     for (size_t i = 0; i < l.n[0]; ++i) to[i] = diagonal[i] * p[i] - neighbours[i];
+    clear_air(l, row, to);
   });
 }
 
@@ -229,14 +257,16 @@ void Multigrid<T>::residual(const Level& l, const Lattice<T>& b, const Lattice<T
       const T left = from[i] - (diagonal[i] * p[i] - neighbours[i]);
       to[i] = diagonal[i] > 0 ? left : T(0);
     }
+    clear_air(l, row, to);
   });
 }
 
 // One colour of the chessboard.
 template <class T>
 void Multigrid<T>::smooth(const Level& l, const Lattice<T>& b, Lattice<T>& x, int color, const Context& context) const {
-  each_row(l, x, context,
-           [&](size_t row, const Rows<T>& rows) { rows.relax(b.row(row), x.row(row), (size_t(color) + row % l.n[1] + row / l.n[1]) % 2); });
+  each_row(l, x, context, [&](size_t row, const Rows<T>& rows) {
+    rows.relax(b.row(row), x.row(row), (size_t(color) + row % l.n[1] + row / l.n[1]) % 2, l.air.empty() ? nullptr : &l.air[row * l.n[0]]);
+  });
 }
 
 template <class T>
@@ -317,6 +347,8 @@ void Multigrid<T>::cycle(size_t level, const Lattice<T>& b, Lattice<T>& x, Latti
     restrict_to(l, r, next.b, context);
     cycle(level + 1, next.b, next.x, next.r, context);
     prolong(l, next.x, x, context);
+    if (!l.air.empty())
+      for (size_t row = 0; row < x.rows(); ++row) clear_air(l, row, x.row(row));
   }
   for (int s = 0; s < sweeps; ++s) smooth(l, b, x, 1, context), smooth(l, b, x, 0, context);
 }

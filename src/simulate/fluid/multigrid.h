@@ -25,6 +25,9 @@ class Multigrid {
   /// x = M b with M symmetric, positive definite where A is, about the inverse of A. `spare` is as large as they are.
   void precondition(const Lattice<T>& b, Lattice<T>& x, Lattice<T>& spare, const Context& context);
   const Walls<T>& walls() const { return levels_.front().walls; }
+  /// Cells of air, one byte each, in which p is 0: they take no part. Where the list is empty there are none. A coarse cell is air where
+  /// any of its fine ones is (McAdams, Sifakis, Teran 2010).
+  void set_air(std::vector<uint8_t> air);
   size_t levels() const { return levels_.size(); }
 
  private:
@@ -36,6 +39,7 @@ class Multigrid {
     std::array<size_t, 3> n{};
     std::array<T, 3> coupling{1, 1, 1};
     Walls<T> walls;
+    std::vector<uint8_t> air;                    // cells; empty where there are none
     std::vector<uint8_t> plain;                  // rows of cells whose faces are all open inside, and alike along y and z
     std::array<std::vector<Stencil>, 3> coarse;  // of the next level
     Lattice<T> x, b, r;                          // of all but the finest
@@ -45,6 +49,7 @@ class Multigrid {
   template <class F>
   static void each_sum(const Level& l, const Lattice<T>& x, const Context& context, F&& f);
   static void find_plain_rows(Level& l);
+  static void clear_air(const Level& l, size_t row, T* to);
   void cycle(size_t level, const Lattice<T>& b, Lattice<T>& x, Lattice<T>& r, const Context& context);
   void smooth(const Level& l, const Lattice<T>& b, Lattice<T>& x, int color, const Context& context) const;
   void residual(const Level& l, const Lattice<T>& b, const Lattice<T>& x, Lattice<T>& r, const Context& context) const;

@@ -29,10 +29,23 @@ void each(size_t count, const Context& context, F&& f) {
 }  // namespace
 
 template <class T>
-PressureSolver<T>::PressureSolver(std::array<size_t, 3> cells, Walls<T> given) : multigrid_(cells, std::move(given)) {
+PressureSolver<T>::PressureSolver(std::array<size_t, 3> cells, Walls<T> given) : cells_(cells), multigrid_(cells, std::move(given)) {
+  find_rooms({});
+}
+
+template <class T>
+void PressureSolver<T>::set_air(std::vector<uint8_t> air) {
+  find_rooms(air);
+  multigrid_.set_air(std::move(air));
+}
+
+template <class T>
+void PressureSolver<T>::find_rooms(const std::vector<uint8_t>& air) {
   const Walls<T>& w = walls();
+  const auto& cells = cells_;
   const size_t count = cells[0] * cells[1] * cells[2];
-  if (!w.obstacles()) {  // a single room
+  closed_ = 0, room_.clear();
+  if (!w.obstacles() && air.empty()) {  // a single room
     closed_ = std::none_of(w.sides.begin(), w.sides.end(), [](bool open) { return open; });
     if (closed_) room_.assign(count, 0);
     return;
@@ -44,10 +57,11 @@ PressureSolver<T>::PressureSolver(std::array<size_t, 3> cells, Walls<T> given) :
     for (size_t j = 0; j < cells[1]; ++j)
       for (size_t i = 0; i < cells[0]; ++i) {
         const size_t c = id(i, j, k);
+        if (!air.empty() && air[c]) continue;
         const auto face = [&](int a, size_t x, size_t y, size_t z, bool border, size_t neighbour) {
           if (!(w.share(cells, a, x, y, z) > 0)) return;
           wet[c] = 1;
-          if (border) opens[c] = 1;
+          if (border || (!air.empty() && air[neighbour])) opens[c] = 1;
           else rooms.join(uint32_t(c), uint32_t(neighbour));
         };
         face(0, i, j, k, i == 0, c - 1), face(0, i + 1, j, k, i + 1 == cells[0], c + 1);

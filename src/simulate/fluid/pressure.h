@@ -24,12 +24,16 @@ class PressureSolver {
   /// to something in a closed room: what flows in cannot flow out; and where no progress is made. `spare`: four lattices.
   SolveReport solve(Lattice<T>& b, Lattice<T>& p, double tolerance, Spare<T> spare, const Context& context, int most = 200);
   const Walls<T>& walls() const { return multigrid_.walls(); }
-  /// Rooms that have no opening.
+  /// Cells of air, see Multigrid::set_air().
+  void set_air(std::vector<uint8_t> air);
+  /// Rooms that have no opening, neither to the outside nor to air.
   size_t closed_rooms() const { return closed_; }
 
  private:
+  void find_rooms(const std::vector<uint8_t>& air);
   void balance(Lattice<T>& v, bool must) const;
 
+  std::array<size_t, 3> cells_;
   Multigrid<T> multigrid_;
   std::vector<int32_t> room_;  // of each cell, from 0 on; -1: dry, or a room with an opening
   size_t closed_ = 0;

@@ -17,6 +17,12 @@ constexpr size_t flow_rows = 32;
 template <class T>
 Projection<T>::Projection(const MacGrid& grid, Walls<T> walls) : grid_(grid), solver_(grid.cells, std::move(walls)) {}
 
+template <class T>
+void Projection<T>::set_air(std::vector<uint8_t> air) {
+  air_ = air;
+  solver_.set_air(std::move(air));
+}
+
 // What closed sides and solids that move push out of a row of cells.
 template <class T>
 void Projection<T>::add_solid_flow(size_t row, T* to) const {
@@ -117,7 +123,9 @@ template <class T>
 SolveReport Projection<T>::apply(Faces<T>& u, Lattice<T>& p, double tolerance, Spare<T> spare, const Context& context) {
   Lattice<T>& b = shaped(spare[4], grid_.cells);
   divergence(u, b, context);
-  for (T& v : b.values) v = -v;
+  for (size_t i = 0; i < b.values.size(); ++i) b.values[i] = !air_.empty() && air_[i] ? T(0) : -b.values[i];
+  for (size_t i = 0; i < air_.size(); ++i)
+    if (air_[i]) p.values[i] = 0;
   const SolveReport report = solver_.solve(b, p, tolerance, spare.first(4), context);
   for (size_t a = 0; a < size_t(grid_.axes()); ++a) subtract_gradient(a, p, u[a], context);
   return report;

@@ -18,6 +18,8 @@ class Projection {
   /// Flow out of each cell, as a share of its faces' area: h div u, with what sides and moving solids push through its faces.
   void divergence(const Faces<T>& u, Lattice<T>& out, const Context& context) const;
   const Walls<T>& walls() const { return solver_.walls(); }
+  /// Cells of air, one byte each, in which the pressure is 0 and the flow does as it likes.
+  void set_air(std::vector<uint8_t> air);
 
  private:
   void add_solid_flow(size_t row, T* to) const;
@@ -25,6 +27,7 @@ class Projection {
 
   MacGrid grid_;
   PressureSolver<T> solver_;
+  std::vector<uint8_t> air_;
 };
 
 }  // namespace sg::fluid
