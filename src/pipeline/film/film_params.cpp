@@ -13,8 +13,10 @@ void describe(Schema& s, FilmParams& p) {
     "turns in a browser.")
       .unit("new file");
   s("times", p.times,
-    "With {n} in the output, or for a film: the times to draw, e.g. 0:10:101 (first:last:count), 0,0.5,1 or 0:114 (the steps of the file "
-    "in between); default: all in the file. {t} as the value of a parameter stands for the time, also in the camera: azimuth={t} orbits.")
+    "With {n} in the output, or for a film: the times to draw, e.g. 0:10:101 (first:last:count), 0:10:0.1 (first:last:step, where the "
+    "third is not "
+    "whole), 0,0.5,1 or 0:114 (the steps of the file in between); default: all in the file. {t} as the value of a parameter stands for the "
+    "time, also in the camera: azimuth={t} orbits.")
       .unit("time");
   s("fps", p.fps, "Films: pictures per second; default: 25, or fewer, down to 2, for a film of less than four seconds.").range(0.1, 1000);
   s("turntable", p.turntable, "Films: pictures of one turn of the camera about the shape, in place of times; e.g. 100. 0: none.")

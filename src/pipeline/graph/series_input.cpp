@@ -16,9 +16,17 @@ std::vector<double> parse_times(std::string_view text, std::string_view who) {
   const auto ends = split(text, ':');
   if (ends.size() == 3) {
     const auto a = parse_double(ends[0]), b = parse_double(ends[1]);
-    const auto n = parse_int(ends[2]);
+    auto n = parse_int(ends[2]);
+    const auto step = parse_double(ends[2]);
+    const bool by_step = a && b && !n && step && std::isfinite(*step) && *step > 0;
+    if (by_step && *b >= *a && (*b - *a) / *step < 1e6) n = int64_t((*b - *a) / *step * (1 + 1e-12) + 1e-9) + 1;
     if (!a || !b || !n || *n < 1 || *n > 1000000 || !std::isfinite(*a) || !std::isfinite(*b))
-      fail_usage(fmt::format("'{}' is not a list of times", text), std::string(who), "give FIRST:LAST:COUNT, e.g. 0:10:101");
+      fail_usage(fmt::format("'{}' is not a list of times", text), std::string(who),
+                 "give FIRST:LAST:COUNT, e.g. 0:10:101, or FIRST:LAST:STEP, e.g. 0:10:0.1");
+    if (by_step) {
+      for (int64_t i = 0; i < *n; ++i) times.push_back(*a + *step * double(i));
+      return times;
+    }
     for (int64_t i = 0; i < *n; ++i) times.push_back(*n == 1 ? *a : *a + (*b - *a) * double(i) / double(*n - 1));
     return times;
   }

@@ -10,7 +10,8 @@
 
 namespace sg {
 
-/// "0:10:6" = 6 times from 0 to 10; "0,1,2.5" = these. Throws Error(usage) naming `who`.
+/// "0:10:6" = 6 times from 0 to 10; "0:10:0.5", with a third number that is not whole, = every 0.5; "0,1,2.5" = these. Throws Error(usage)
+/// naming `who`.
 std::vector<double> parse_times(std::string_view text, std::string_view who);
 
 struct Node;

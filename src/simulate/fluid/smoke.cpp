@@ -233,6 +233,23 @@ DatasetPtr Smoke<T>::dataset(const Context& context) const {
       &context);
   parts.fields.add({"velocity", Association::point, std::move(velocity), "", Role::vectors});
   add("pressure", pressure_);
+  if (const Walls<T>& w = projection_.walls(); w.obstacles()) {  // share of the cells about each that is solid, by their faces
+    Lattice<T> solid(n);
+    for (size_t k = 0; k < n[2]; ++k)
+      for (size_t j = 0; j < n[1]; ++j)
+        for (size_t i = 0; i < n[0]; ++i) {
+          T open = 0, faces = 0;
+          for (size_t a = 0; a < size_t(grid_.axes()); ++a)
+            for (size_t side = 0; side < 2; ++side) {
+              std::array<size_t, 3> f{i, j, k};
+              f[a] += side;
+              if (f[a] == 0 || f[a] == n[a]) continue;  // walls of the box are no obstacles
+              open += w.open[a](f[0], f[1], f[2]), ++faces;
+            }
+          solid(i, j, k) = faces > 0 ? 1 - open / faces : T(0);
+        }
+    add("solid", solid);
+  }
   return make_dataset(std::move(parts));
 }
 

@@ -208,3 +208,15 @@ TEST_CASE("series: the plan says what runs for each time, and keys hold paramete
   CHECK(g.explain(a).find("each time") != std::string::npos);
   CHECK(test::all_runs() == 0);
 }
+
+TEST_CASE("times: lists, so many of them, and steps") {
+  CHECK(parse_times("0,1,2.5", "x") == std::vector<double>{0, 1, 2.5});
+  CHECK(parse_times("0:10:6", "x") == std::vector<double>{0, 2, 4, 6, 8, 10});
+  const std::vector<double> steps = parse_times("0:5:0.04", "x");
+  REQUIRE(steps.size() == 126);
+  CHECK(steps[1] == 0.04);
+  CHECK(steps.back() == doctest::Approx(5));
+  CHECK(parse_times("1:2:0.7", "x") == std::vector<double>{1, 1.7});
+  for (const char* wrong : {"0:5:0", "0:5:-0.5", "5:0:0.5", "0:1e300:0.5", "0:5:nan", "0:5:inf", "a:5:0.5", "0:inf:0.5"})
+    CHECK_THROWS_AS(parse_times(wrong, "x"), Error);
+}
