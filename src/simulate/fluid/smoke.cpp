@@ -135,31 +135,64 @@ double Smoke<T>::fastest(const Context& context) const {
 }
 
 template <class T>
-void Smoke<T>::step(double dt, const Context& context) {
-  time_ += dt;
-  if (solids_.move()) projection_ = Projection<T>(grid_, solids_.walls<T>(sides_, time_, context));
-  Carrier<T> carrier{grid_, velocity_, dt, params_.advection, params_.trace, true};
+void Smoke<T>::carry_scalars(double dt, const Context& context) {
+  const Carrier<T> carrier{grid_, velocity_, dt, params_.advection, params_.trace, true};
   const std::array<Lattice<T>*, 2> scalars{&density_, &temperature_};
   for (Lattice<T>& l : spare_) shaped(l, grid_.cells);
   const std::array<Carried<T>, 2> carried{{{scalars[0], &spare_[0], &spare_[2]}, {scalars[1], &spare_[1], &spare_[3]}}};
   advect<T>(carrier, -1, carried, spare_[4], context);
   for (size_t f = 0; f < 2; ++f) std::swap(*scalars[f], spare_[f]);
-  carrier.limit = params_.limit;
-  for (size_t a = 0; a < size_t(grid_.axes()); ++a) {
-    for (const size_t s : {a, size_t(3), size_t(4)}) shaped(spare_[s], velocity_[a].n);
-    const Carried<T> component{&velocity_[a], &spare_[a], &spare_[3]};
-    advect<T>(carrier, int(a), {&component, 1}, spare_[4], context);
-  }
-  for (size_t a = 0; a < size_t(grid_.axes()); ++a) std::swap(velocity_[a], spare_[a]);
   const T fade = T(std::exp(-params_.fading * dt)), cool = T(std::exp(-params_.cooling * dt));
   if (fade != 1)
     for (T& v : density_.values) v *= fade;
   if (cool != 1)
     for (T& v : temperature_.values) v *= cool;
-  give_off(dt);
+}
+
+// v, by the flow of velocity_, which may be v.
+template <class T>
+void Smoke<T>::carry_velocity(double dt, Faces<T>& v, const Context& context) {
+  const Carrier<T> carrier{grid_, velocity_, dt, params_.advection, params_.trace, params_.limit};
+  for (size_t a = 0; a < size_t(grid_.axes()); ++a) {
+    for (const size_t s : {a, size_t(3), size_t(4)}) shaped(spare_[s], v[a].n);
+    const Carried<T> component{&v[a], &spare_[a], &spare_[3]};
+    advect<T>(carrier, int(a), {&component, 1}, spare_[4], context);
+  }
+  for (size_t a = 0; a < size_t(grid_.axes()); ++a) std::swap(v[a], spare_[a]);
+}
+
+template <class T>
+void Smoke<T>::push(double dt, const Context& context) {
   add_buoyancy(grid_, projection_.walls().sides, density_, temperature_, up_, params_.weight, params_.lift, dt, velocity_, context);
   confine_vortices<T>(grid_, params_.swirl, dt, velocity_, spare_, context);
   diffuse_velocity<T>(grid_, projection_.walls(), sides_, params_.viscosity, dt, velocity_, spare_, context);
+  solved_ = projection_.apply(velocity_, pressure_, params_.tolerance, spare_, context);
+}
+
+template <class T>
+void Smoke<T>::step(double dt, const Context& context) {
+  time_ += dt;
+  if (solids_.move()) projection_ = Projection<T>(grid_, solids_.walls<T>(sides_, time_, context));
+  if (!params_.reflect) {
+    carry_scalars(dt, context), carry_velocity(dt, velocity_, context);
+    give_off(dt);
+    push(dt, context);
+    return;
+  }
+  // What forces and pressure did in the first half is done once more before the second is carried: u becomes 2 u - (u before).
+  const double half = dt / 2;
+  carry_scalars(half, context), carry_velocity(half, velocity_, context);
+  reflected_ = velocity_;
+  give_off(half);
+  push(half, context);
+  for (size_t a = 0; a < 3; ++a)
+    for (size_t i = 0; i < reflected_[a].values.size(); ++i) {
+      T& v = reflected_[a].values[i];
+      v = 2 * velocity_[a].values[i] - v;
+    }
+  carry_scalars(half, context), carry_velocity(half, reflected_, context);
+  std::swap(velocity_, reflected_);
+  give_off(half);
   solved_ = projection_.apply(velocity_, pressure_, params_.tolerance, spare_, context);
 }
 
@@ -193,7 +226,7 @@ size_t Smoke<T>::bytes() const {
   const auto add = [&](const auto& lattices) {
     for (const Lattice<T>& l : lattices) numbers += l.values.capacity();
   };
-  add(velocity_), add(spare_), add(projection_.walls().open), add(projection_.walls().solid);
+  add(velocity_), add(reflected_), add(spare_), add(projection_.walls().open), add(projection_.walls().solid);
   add(std::array{std::cref(density_), std::cref(temperature_), std::cref(pressure_), std::cref(source_shares_)});
   return numbers * sizeof(T);
 }

@@ -42,6 +42,9 @@ class Smoke {
 
  private:
   void step(double dt, const Context& context);
+  void carry_scalars(double dt, const Context& context);
+  void carry_velocity(double dt, Faces<T>& v, const Context& context);
+  void push(double dt, const Context& context);
   template <class Share>
   void give_off_within(const Box3& box, double dt, Share&& share);
   void give_off(double dt);
@@ -56,7 +59,7 @@ class Smoke {
   Lattice<T> source_shares_;  // of a surface; its cells
   Solids solids_;
   Projection<T> projection_;
-  Faces<T> velocity_;
+  Faces<T> velocity_, reflected_;
   Lattice<T> density_, temperature_, pressure_;
   std::array<Lattice<T>, 5> spare_;
   size_t frame_ = 0, steps_ = 0;

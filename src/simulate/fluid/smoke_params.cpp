@@ -24,6 +24,9 @@ void describe(Schema& s, SmokeParams& p) {
   s("limit", p.limit,
     "Hold corrected values between those that they are mixed from: no ringing, but first order at crests. no: for smooth flows whose "
     "figures matter. Density and temperature are always held.");
+  s("reflect", p.reflect,
+    "Two half steps, between which the change by forces and pressure is mirrored: second order in time, vortices live longer, at twice "
+    "the work.");
   s("source", p.source, "Balls that give off smoke, as x,y,z,radius of each; default: one above the ground.");
   s("box", p.box, "Boxes that give off smoke, as x0,x1,y0,y1,z0,z1 of each.");
   s("density", p.density, "Density of the smoke in the sources.").at_least(0);

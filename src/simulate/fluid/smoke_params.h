@@ -26,7 +26,7 @@ struct SmokeParams : FrameParams {
   double cfl = 2;
   fluid::Advection advection = fluid::Advection::maccormack;
   fluid::BackTrace trace = fluid::BackTrace::rk2;
-  bool limit = true;
+  bool limit = true, reflect = false;
   std::vector<double> source, box, obstacle;
   std::optional<double> rate;
   Vec3 obstacle_velocity{0, 0, 0}, obstacle_spin{0, 0, 0};

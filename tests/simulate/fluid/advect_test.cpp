@@ -133,10 +133,11 @@ TEST_CASE("advection: Zalesak's disc after a turn, and no value beyond those tha
   const double area = 0.0582207;  // pi r^2 less the slot
   CHECK(turn(200, Advection::maccormack, true, slotted).area == doctest::Approx(area).epsilon(0.03));
   const double dissolved = turn(100, Advection::semi_lagrangian, true, slotted).mean;
-  for (const Advection scheme : {Advection::maccormack, Advection::bfecc}) {
+  for (const Advection scheme : {Advection::semi_lagrangian, Advection::maccormack, Advection::bfecc}) {
     const Turned r = turn(100, scheme, true, slotted);
-    CHECK(r.mean < 0.75 * dissolved);
+    MESSAGE(word_of(scheme) << ", 100^2 cells: area " << r.area / area << " of the disc's, L1 error " << r.mean / area << " of it");
     CHECK(r.worst <= 1);
+    if (scheme != Advection::semi_lagrangian) CHECK(r.mean < 0.75 * dissolved);
   }
 }
 

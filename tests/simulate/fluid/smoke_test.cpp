@@ -117,8 +117,9 @@ TEST_CASE("smoke: Taylor-Green vortices decay as viscosity says, the better the 
   // u = (sin(pi x) cos(pi y), -cos(pi x) sin(pi y)): between walls along which it slips its energy is 1/4 exp(-4 nu pi^2 t).
   Context context;
   const double viscosity = 0.02, time = 0.4;
-  const auto miss = [&](int n, Advection scheme) {
+  const auto miss = [&](int n, Advection scheme, bool reflect = false) {
     SmokeParams p = still(n);
+    p.reflect = reflect, p.limit = false;
     p.viscosity = viscosity, p.frame = time, p.cfl = 0.5, p.advection = scheme, p.tolerance = 1e-10;
     Smoke<double> air(p, {}, false, context);
     auto& u = air.velocity();
@@ -138,6 +139,13 @@ TEST_CASE("smoke: Taylor-Green vortices decay as viscosity says, the better the 
   CHECK(std::log2(coarse / fine) > 0.8);
   CHECK(std::log2(fine / finest) > 0.8);
   CHECK(miss(32, Advection::semi_lagrangian) > 2 * fine);
+  std::vector<double> reflected;
+  for (const int n : {16, 32, 64}) reflected.push_back(miss(n, Advection::maccormack, true));
+  MESSAGE("energy too small by " << coarse << ", " << fine << ", " << finest << "; reflected " << reflected[0] << ", " << reflected[1]
+                                 << ", " << reflected[2]);
+  CHECK(std::log2(reflected[0] / reflected[1]) > 1.5);
+  CHECK(std::log2(reflected[1] / reflected[2]) > 1.7);
+  CHECK(reflected[2] < finest / 50);
 }
 
 TEST_CASE("smoke: friction takes from a wave what the implicit step says") {
