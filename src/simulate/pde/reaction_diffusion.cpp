@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulate/pde/reaction_diffusion.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "base/error.h"
+#include "base/text/text.h"
+#include "simulate/pde/expressions.h"
+
+namespace sg {
+
+void describe(Schema& s, ReactionDiffusionParams& p) {
+  describe(s, static_cast<pde::RoomParams&>(p));
+  describe(s, static_cast<FrameParams&>(p));
+  s("model", p.model, "gray_scott: spots and stripes that feed on u. fitzhugh_nagumo: waves and spirals in an excitable medium.");
+  s("initial_u", p.initial_u, "u at time 0: an expression of x, y and z; default: the model's own, for a box from 0 to 1.");
+  s("initial_v", p.initial_v, "v at time 0, likewise.");
+  s("diffusivity_u", p.diffusivity_u, "Du, length^2 per time; default: 8e-6, fitzhugh_nagumo 2e-5.").range(0, 1e100);
+  s("diffusivity_v", p.diffusivity_v, "Dv; default: 4e-6, fitzhugh_nagumo 0.").range(0, 1e100);
+  s("feed", p.feed, "gray_scott: how fast u comes in and both go out.");
+  s("kill", p.kill, "gray_scott: how fast v goes out besides.");
+  s("threshold", p.threshold, "fitzhugh_nagumo: how far the medium is from waking by itself.");
+  s("damping", p.damping, "fitzhugh_nagumo: share of v that it loses.");
+  s("recovery", p.recovery, "fitzhugh_nagumo: how fast v follows u.");
+  s("step", p.step, "Time step; default: what diffusion and reaction allow.").unit("time").positive();
+}
+
+namespace pde {
+
+namespace {
+
+constexpr const char* spots =
+    "hypot(x-0.5,y-0.5)<0.1||hypot(x-0.25,y-0.3)<0.05||hypot(x-0.7,y-0.28)<0.06||hypot(x-0.35,y-0.75)<0.05||hypot(x-0.8,y-0.7)<0.04";
+
+struct Beginning {
+  std::string u, v;
+};
+Beginning beginning_of(const ReactionDiffusionParams& p) {
+  Beginning b = p.model == Reaction::gray_scott ? Beginning{fmt::format("if({},0.5,1)", spots), fmt::format("if({},0.25,0)", spots)}
+                                                // A wave with a free end, which curls up.
+                                                : Beginning{"if(x<0.5&&abs(y-0.5)<0.05,2,-1.2)", "if(x<0.5&&y<0.45&&y>0.3,1,-0.62)"};
+  if (!p.initial_u.empty()) b.u = p.initial_u;
+  if (!p.initial_v.empty()) b.v = p.initial_v;
+  return b;
+}
+
+constexpr const char* rd_name = "reaction_diffusion";
+
+// What diffusion, at the real end of the method's region of stability (2.51), and reactions of a rate of about 1 or 2 allow, with room.
+double rd_step(const ReactionDiffusionParams& p, const Room& room, double d) {
+  return std::min(0.8 * 2.51 / (4 * d * room.couplings()), p.model == Reaction::gray_scott ? 1.0 : 0.4);
+}
+
+}  // namespace
+
+ReactionDiffusion::ReactionDiffusion(const ReactionDiffusionParams& p, const Context& context)
+    : params_(p),
+      room_(make_room(p, rd_name, 100, false, context)),
+      du_(p.diffusivity_u.value_or(p.model == Reaction::gray_scott ? 8e-6 : 2e-5)),
+      dv_(p.diffusivity_v.value_or(p.model == Reaction::gray_scott ? 4e-6 : 0)),
+      steps_(steps_of_frame(p.frame, p.step, rd_step(p, room_, std::max(du_, dv_)), rd_name)),
+      sides_(room_, rd_name, 0, context) {
+  for (const double d : {du_, dv_})
+    if (!(d >= 0) || !std::isfinite(d)) fail_usage(fmt::format("a diffusivity of {}", exact_number(d)), rd_name, "give 0 or more");
+  const Beginning b = beginning_of(p);
+  values_ = {values_of(b.u, room_.grid(), 0, "reaction_diffusion initial_u", context),
+             values_of(b.v, room_.grid(), 0, "reaction_diffusion initial_v", context)};
+  base_ = slope_ = values_;
+}
+
+void ReactionDiffusion::rates(const std::vector<Values>& at, double time, std::vector<Values>& out, const Context& context) {
+  sides_.update(time, context);
+  for (size_t f = 0; f < 2; ++f) laplacian(room_, at[f], sides_, out[f], context);
+  const double *const u = at[0].values.data(), *const v = at[1].values.data();
+  double *const a = out[0].values.data(), *const b = out[1].values.data();
+  const double du = du_, dv = dv_, feed = params_.feed, kill = params_.kill;
+  const double threshold = params_.threshold, damping = params_.damping, recovery = params_.recovery;
+  if (params_.model == Reaction::gray_scott)
+    each_index(at[0].values.size(), context, [=](size_t i) {
+      const double r = u[i] * v[i] * v[i];
+      a[i] = du * a[i] - r + feed * (1 - u[i]), b[i] = dv * b[i] + r - (feed + kill) * v[i];
+    });
+  else
+    each_index(at[0].values.size(), context, [=](size_t i) {
+      a[i] = du * a[i] + u[i] - u[i] * u[i] * u[i] / 3 - v[i], b[i] = dv * b[i] + recovery * (u[i] + threshold - damping * v[i]);
+    });
+}
+
+void ReactionDiffusion::advance(const Context& context) {
+  for (size_t i = 0; i < steps_.count; ++i) {
+    context.check();
+    const double time = double(frame_) * params_.frame + double(i) * steps_.length;
+    shu_osher_step(values_, base_, slope_, time, steps_.length, context,
+                   [&](const std::vector<Values>& at, double t, std::vector<Values>& out) { rates(at, t, out, context); });
+    ++taken_;
+    for (const Values& v : values_) check_finite(v, rd_name, taken_, time + steps_.length, "shorter steps, or initial values nearer to 1", context);
+  }
+  ++frame_;
+}
+
+DatasetPtr ReactionDiffusion::dataset(const Context& context) const {
+  return room_dataset(room_, double(frame_) * params_.frame,
+                      {whole_field(room_, values_[1], sides_, "v", params_.type, context),
+                       whole_field(room_, values_[0], sides_, "u", params_.type, context)});
+}
+
+}  // namespace pde
+
+DatasetPtr reaction_diffusion(const ReactionDiffusionParams& p, Context& context) {
+  return frame_of_run<pde::ReactionDiffusion>(
+      "reaction_diffusion", p, [&] { return std::make_unique<pde::ReactionDiffusion>(p, context); }, context);
+}
+
+}  // namespace sg
