@@ -17,8 +17,8 @@ namespace sg {
 void describe(Schema& s, AdvectionDiffusionParams& p) {
   describe(s, static_cast<pde::RoomParams&>(p));
   describe(s, static_cast<FrameParams&>(p));
-  s("initial", p.initial, "Concentration at time 0: an expression of x, y and z.");
-  s("velocity", p.velocity, "Of the flow: an expression of x, y, z and time with three components, vec(u,v,w).");
+  s("initial", p.initial, "Concentration at time 0: an expression of x, y and z; default: 1 in a ball.");
+  s("velocity", p.velocity, "Of the flow: an expression of x, y, z and time with three components, vec(u,v,w); default: about the middle, along a line from end to end in time 1.");
   s("source", p.source, "What is added per time: an expression of x, y, z and time.");
   s("diffusivity", p.diffusivity, "kappa, length^2 per time.").range(0, 1e100);
   s("scheme", p.scheme,
@@ -38,12 +38,23 @@ AdvectionDiffusion::AdvectionDiffusion(const AdvectionDiffusionParams& p, const 
     : params_(p),
       room_(make_room(p, ad_name, 120, false, context)),
       sides_(room_, ad_name, 0, context),
-      values_{values_of(p.initial, room_.grid(), 0, "advection_diffusion initial", context)},
-      base_(values_),
-      slope_(values_),
       source_(values_of(p.source, room_.grid(), 0, "advection_diffusion source", context)),
       flow_moves_(depends_on_time(p.velocity)),
       source_moves_(depends_on_time(p.source)) {
+  const bool line = room_.axes[0].flat() || room_.axes[1].flat();
+  const std::string x = place_in(room_, 0), y = place_in(room_, 1);
+  if (params_.velocity.empty()) {
+    double longest = 0;
+    for (const Axis& a : room_.axes) longest = std::max(longest, a.length);
+    const std::string l = exact_number(longest);
+    params_.velocity = line ? fmt::format("vec({0},{0},{0})", l)
+                            : fmt::format("{}*vec({}-{},{}-{},0)", l, exact_number(room_.axes[1].length / longest / 2), y, x,
+                                          exact_number(room_.axes[0].length / longest / 2));
+  }
+  if (params_.initial.empty())  // the ball is the top of a bump
+    params_.initial = bump_in(room_, 1, line ? std::array{0.3, 0.3, 0.3} : std::array{0.5, 0.75, 0.5}) + ">exp(-0.0225)";
+  values_ = {values_of(params_.initial, room_.grid(), 0, "advection_diffusion initial", context)};
+  base_ = slope_ = values_;
   if (!(p.diffusivity >= 0) || !std::isfinite(p.diffusivity))
     fail_usage(fmt::format("a diffusivity of {}", exact_number(p.diffusivity)), "advection_diffusion diffusivity", "give 0 or more");
   steps_of_frame(p.frame, p.step, p.frame, ad_name);

@@ -19,7 +19,7 @@ constexpr auto enum_words(FluxScheme) {
 }
 
 struct AdvectionDiffusionParams : FrameParams, pde::RoomParams {
-  std::string initial = "hypot(x-0.5,y-0.75)<0.15", velocity = "vec(0.5-y,x-0.5,0)", source = "0";
+  std::string initial, velocity, source = "0";
   double diffusivity = 1e-4;
   FluxScheme scheme = FluxScheme::limited;
   std::optional<double> step;

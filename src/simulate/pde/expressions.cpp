@@ -37,6 +37,23 @@ Values values_of(const std::string& expression, const UniformGrid& grid, double 
   return v;
 }
 
+std::string place_in(const Room& room, size_t axis) {
+  if (room.axes[axis].flat()) return "0.5";
+  double longest = 0;
+  for (const Axis& a : room.axes) longest = std::max(longest, a.length);
+  return fmt::format("(({}-({}))/{})", "xyz"[axis], exact_number(room.corner[int(axis)]), exact_number(longest));
+}
+
+std::string bump_in(const Room& room, double sharpness, std::array<double, 3> shares) {
+  double longest = 0;
+  for (const Axis& a : room.axes) longest = std::max(longest, a.length);
+  std::string sum = "0";
+  for (size_t a = 0; a < 3; ++a)
+    if (!room.axes[a].flat())
+      sum += fmt::format("+({}-{})^2", place_in(room, a), exact_number(shares[a] * room.axes[a].length / longest));
+  return fmt::format("exp(-{}*({}))", exact_number(sharpness), sum);
+}
+
 bool depends_on_time(const std::string& expression) {
   const auto names = names_in_expression(expression);
   return std::find(names.begin(), names.end(), "time") != names.end();

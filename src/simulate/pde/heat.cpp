@@ -15,7 +15,7 @@ namespace sg {
 void describe(Schema& s, HeatParams& p) {
   describe(s, static_cast<pde::RoomParams&>(p));
   describe(s, static_cast<FrameParams&>(p));
-  s("initial", p.initial, "Temperature at time 0: an expression of x, y and z.");
+  s("initial", p.initial, "Temperature at time 0: an expression of x, y and z; default: a round bump of height 1.");
   s("diffusivity", p.diffusivity, "kappa, length^2 per time.").range(0, 1e100);
   s("source", p.source, "Temperature that is added per time: an expression of x, y, z and time.");
   s("scheme", p.scheme,
@@ -39,7 +39,7 @@ Heat::Heat(const HeatParams& p, const Context& context)
       room_(make_room(p, "heat", 60, false, context)),
       steps_(steps_of_frame(p.frame, p.step, p.scheme == HeatScheme::explicit_euler ? limit() / 2 : p.frame, "heat")),
       sides_(room_, "heat", 0, context),
-      u_(values_of(p.initial, room_.grid(), 0, "heat initial", context)),
+      u_(values_of(p.initial.empty() ? bump_in(room_, 60, {0.35, 0.6, 0.5}) : p.initial, room_.grid(), 0, "heat initial", context)),
       source_(values_of(p.source, room_.grid(), 0, "heat source", context)),
       rate_(room_.n()),
       source_moves_(depends_on_time(p.source)) {

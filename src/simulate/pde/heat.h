@@ -19,7 +19,7 @@ constexpr auto enum_words(HeatScheme) {
 }
 
 struct HeatParams : FrameParams, pde::RoomParams {
-  std::string initial = "exp(-60*((x-0.35)^2+(y-0.6)^2))";
+  std::string initial;
   double diffusivity = 0.1;
   std::string source = "0";
   HeatScheme scheme = HeatScheme::explicit_euler;

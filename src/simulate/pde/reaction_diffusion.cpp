@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "base/error.h"
@@ -18,10 +20,10 @@ void describe(Schema& s, ReactionDiffusionParams& p) {
   describe(s, static_cast<pde::RoomParams&>(p));
   describe(s, static_cast<FrameParams&>(p));
   s("model", p.model, "gray_scott: spots and stripes that feed on u. fitzhugh_nagumo: waves and spirals in an excitable medium.");
-  s("initial_u", p.initial_u, "u at time 0: an expression of x, y and z; default: the model's own, for a box from 0 to 1.");
+  s("initial_u", p.initial_u, "u at time 0: an expression of x, y and z; default: the model's own.");
   s("initial_v", p.initial_v, "v at time 0, likewise.");
-  s("diffusivity_u", p.diffusivity_u, "Du, length^2 per time; default: 8e-6, fitzhugh_nagumo 2e-5.").range(0, 1e100);
-  s("diffusivity_v", p.diffusivity_v, "Dv; default: 4e-6, fitzhugh_nagumo 0.").range(0, 1e100);
+  s("diffusivity_u", p.diffusivity_u, "Du, length^2 per time; default: 8e-6 (fitzhugh_nagumo: 2e-5) times the square of the longest side.").range(0, 1e100);
+  s("diffusivity_v", p.diffusivity_v, "Dv; default: half of that (fitzhugh_nagumo: 0).").range(0, 1e100);
   s("feed", p.feed, "gray_scott: how fast u comes in and both go out.");
   s("kill", p.kill, "gray_scott: how fast v goes out besides.");
   s("threshold", p.threshold, "fitzhugh_nagumo: how far the medium is from waking by itself.");
@@ -34,19 +36,31 @@ namespace pde {
 
 namespace {
 
-constexpr const char* spots =
-    "hypot(x-0.5,y-0.5)<0.1||hypot(x-0.25,y-0.3)<0.05||hypot(x-0.7,y-0.28)<0.06||hypot(x-0.35,y-0.75)<0.05||hypot(x-0.8,y-0.7)<0.04";
-
 struct Beginning {
   std::string u, v;
 };
-Beginning beginning_of(const ReactionDiffusionParams& p) {
-  Beginning b = p.model == Reaction::gray_scott ? Beginning{fmt::format("if({},0.5,1)", spots), fmt::format("if({},0.25,0)", spots)}
-                                                // A wave with a free end, which curls up.
-                                                : Beginning{"if(x<0.5&&abs(y-0.5)<0.05,2,-1.2)", "if(x<0.5&&y<0.45&&y>0.3,1,-0.62)"};
+Beginning beginning_of(const ReactionDiffusionParams& p, const Room& room) {
+  const std::string x = place_in(room, 0), y = place_in(room, 1), z = place_in(room, 2);
+  Beginning b;
+  if (p.model == Reaction::gray_scott) {
+    constexpr double spots[][3] = {{0.5, 0.5, 0.1}, {0.25, 0.3, 0.05}, {0.7, 0.28, 0.06}, {0.35, 0.75, 0.05}, {0.8, 0.7, 0.04}};
+    std::string inside;
+    for (const auto& s : spots)
+      inside += fmt::format("{}hypot(hypot({}-{},{}-{}),{}-0.5)<{}", inside.empty() ? "" : "||", x, s[0], y, s[1], z, s[2]);
+    b = {fmt::format("if({},0.5,1)", inside), fmt::format("if({},0.25,0)", inside)};
+  } else {  // a wave with a free end, which curls up
+    b = {fmt::format("if({}<0.5&&abs({}-0.5)<0.05,2,-1.2)", x, y), fmt::format("if({0}<0.5&&{1}<0.45&&{1}>0.3,1,-0.62)", x, y)};
+  }
   if (!p.initial_u.empty()) b.u = p.initial_u;
   if (!p.initial_v.empty()) b.v = p.initial_v;
   return b;
+}
+
+// What is given, or what makes patterns of about a tenth of the longest side.
+double rd_diffusivity(const std::optional<double>& given, double own, const Room& room) {
+  double longest = 0;
+  for (const Axis& a : room.axes) longest = std::max(longest, a.length);
+  return given.value_or(own * longest * longest);
 }
 
 constexpr const char* rd_name = "reaction_diffusion";
@@ -61,13 +75,13 @@ double rd_step(const ReactionDiffusionParams& p, const Room& room, double d) {
 ReactionDiffusion::ReactionDiffusion(const ReactionDiffusionParams& p, const Context& context)
     : params_(p),
       room_(make_room(p, rd_name, 100, false, context)),
-      du_(p.diffusivity_u.value_or(p.model == Reaction::gray_scott ? 8e-6 : 2e-5)),
-      dv_(p.diffusivity_v.value_or(p.model == Reaction::gray_scott ? 4e-6 : 0)),
+      du_(rd_diffusivity(p.diffusivity_u, p.model == Reaction::gray_scott ? 8e-6 : 2e-5, room_)),
+      dv_(rd_diffusivity(p.diffusivity_v, p.model == Reaction::gray_scott ? 4e-6 : 0, room_)),
       steps_(steps_of_frame(p.frame, p.step, rd_step(p, room_, std::max(du_, dv_)), rd_name)),
       sides_(room_, rd_name, 0, context) {
   for (const double d : {du_, dv_})
     if (!(d >= 0) || !std::isfinite(d)) fail_usage(fmt::format("a diffusivity of {}", exact_number(d)), rd_name, "give 0 or more");
-  const Beginning b = beginning_of(p);
+  const Beginning b = beginning_of(p, room_);
   values_ = {values_of(b.u, room_.grid(), 0, "reaction_diffusion initial_u", context),
              values_of(b.v, room_.grid(), 0, "reaction_diffusion initial_v", context)};
   base_ = slope_ = values_;

@@ -17,7 +17,7 @@ namespace sg {
 void describe(Schema& s, WaveParams& p) {
   describe(s, static_cast<pde::RoomParams&>(p));
   describe(s, static_cast<FrameParams&>(p));
-  s("initial", p.initial, "Height at time 0: an expression of x, y and z.");
+  s("initial", p.initial, "Height at time 0: an expression of x, y and z; default: a round bump of height 1.");
   s("velocity", p.velocity, "Its change per time at time 0: an expression of x, y and z.");
   s("speed", p.speed, "Speed of the waves, length per time.").range(0, 1e100);
   s("source", p.source, "Acceleration of the height: an expression of x, y, z and time.");
@@ -35,9 +35,10 @@ double wave_limit(const WaveParams& p, const Room& room) { return 1 / (p.speed *
 Wave::Wave(const WaveParams& p, const Context& context)
     : params_(p),
       room_(make_room(p, "wave", 80, true, context)),
+      initial_(p.initial.empty() ? bump_in(room_, 150, {0.35, 0.6, 0.5}) : p.initial),
       steps_(steps_of_frame(p.frame, p.step, 0.98 * limit(), "wave")),
       sides_(room_, "wave", 0, context),
-      u_(values_of(p.initial, room_.grid(), 0, "wave initial", context)),
+      u_(values_of(initial_, room_.grid(), 0, "wave initial", context)),
       before_(room_.n()),
       velocity_(values_of(p.velocity, room_.grid(), 0, "wave velocity", context)),
       source_(values_of(p.source, room_.grid(), 0, "wave source", context)),
@@ -47,7 +48,7 @@ Wave::Wave(const WaveParams& p, const Context& context)
     fail_usage(fmt::format("a speed of {}", exact_number(p.speed)), "wave speed", "give 0 or more");
   for (size_t s = 0; s < 6; ++s)
     if (room_.sides()[s].kind == SideKind::absorbing && !sides_.of(s).values.empty())
-      sides_.of(s) = values_of(p.initial, side_grid(room_, s), 0, "wave initial", context);
+      sides_.of(s) = values_of(initial_, side_grid(room_, s), 0, "wave initial", context);
 }
 
 double Wave::limit() const { return wave_limit(params_, room_); }

@@ -12,7 +12,7 @@ namespace sg {
 
 struct WaveParams : FrameParams, pde::RoomParams {
   WaveParams() { sides = "0"; }
-  std::string initial = "exp(-150*((x-0.35)^2+(y-0.6)^2))", velocity = "0";
+  std::string initial, velocity = "0";
   double speed = 1;
   std::string source = "0";
   std::optional<double> step;
@@ -40,6 +40,7 @@ class Wave {
   void step(double time, const Context& context);
   WaveParams params_;
   Room room_;
+  std::string initial_;
   Steps steps_;
   SideValues sides_;
   Values u_, before_, velocity_, source_, rate_;
