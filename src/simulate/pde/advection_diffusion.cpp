@@ -18,7 +18,9 @@ void describe(Schema& s, AdvectionDiffusionParams& p) {
   describe(s, static_cast<pde::RoomParams&>(p));
   describe(s, static_cast<FrameParams&>(p));
   s("initial", p.initial, "Concentration at time 0: an expression of x, y and z; default: 1 in a ball.");
-  s("velocity", p.velocity, "Of the flow: an expression of x, y, z and time with three components, vec(u,v,w); default: about the middle, along a line from end to end in time 1.");
+  s("velocity", p.velocity,
+    "Of the flow: an expression of x, y, z and time with three components, vec(u,v,w); default: about the middle, along a line from end to "
+    "end in time 1.");
   s("source", p.source, "What is added per time: an expression of x, y, z and time.");
   s("diffusivity", p.diffusivity, "kappa, length^2 per time.").range(0, 1e100);
   s("scheme", p.scheme,

@@ -19,9 +19,8 @@ Values values_of(const std::string& expression, const UniformGrid& grid, double 
   DatasetParts parts;
   parts.mesh = grid, parts.time = time;
   Context inner(context, 0, 1);
-  const DatasetPtr d = with_context(who, [&] {
-    return calc(make_dataset(std::move(parts)), {.expr = expression, .name = "value", .on = CalcPlace::point}, inner);
-  });
+  const DatasetPtr d = with_context(
+      who, [&] { return calc(make_dataset(std::move(parts)), {.expr = expression, .name = "value", .on = CalcPlace::point}, inner); });
   const Array& a = d->fields().require("value", Association::point).array;
   if (component >= a.components() || (component == 0 && a.components() != 1 && a.components() != 3))
     fail_usage(fmt::format("the expression gives {} numbers", a.components()), who, component ? "vec(u,v,w)" : "one number is needed");
@@ -49,8 +48,7 @@ std::string bump_in(const Room& room, double sharpness, std::array<double, 3> sh
   for (const Axis& a : room.axes) longest = std::max(longest, a.length);
   std::string sum = "0";
   for (size_t a = 0; a < 3; ++a)
-    if (!room.axes[a].flat())
-      sum += fmt::format("+({}-{})^2", place_in(room, a), exact_number(shares[a] * room.axes[a].length / longest));
+    if (!room.axes[a].flat()) sum += fmt::format("+({}-{})^2", place_in(room, a), exact_number(shares[a] * room.axes[a].length / longest));
   return fmt::format("exp(-{}*({}))", exact_number(sharpness), sum);
 }
 

@@ -56,9 +56,7 @@ double Heat::limit() const { return heat_limit(params_, room_); }
 
 void Heat::step(double time, const Context& context) {
   const double dt = steps_.length, kappa = params_.diffusivity, next = time + dt;
-  const double before = params_.scheme == HeatScheme::backward_euler   ? 0
-                        : params_.scheme == HeatScheme::crank_nicolson ? 0.5
-                                                                       : 1;
+  const double before = params_.scheme == HeatScheme::backward_euler ? 0 : params_.scheme == HeatScheme::crank_nicolson ? 0.5 : 1;
   double *const u = u_.values.data(), *const rate = rate_.values.data();
   const size_t count = u_.values.size();
   if (before > 0) {

@@ -40,9 +40,8 @@ bool Operator::singular() const {
 void Operator::apply(const Values& x, Values& out, const Context& context) const {
   double* const to = out.values.data();
   const double* const v = x.values.data();
-  each_place<1>(axes, x, 0, context, [=, this](size_t i, double around, double diagonal) {
-    to[i] = shift * v[i] + scale * (diagonal * v[i] - around);
-  });
+  each_place<1>(axes, x, 0, context,
+                [=, this](size_t i, double around, double diagonal) { to[i] = shift * v[i] + scale * (diagonal * v[i] - around); });
 }
 
 void Operator::residual(const Values& b, const Values& x, Values& r, const Context& context) const {

@@ -22,7 +22,8 @@ void describe(Schema& s, ReactionDiffusionParams& p) {
   s("model", p.model, "gray_scott: spots and stripes that feed on u. fitzhugh_nagumo: waves and spirals in an excitable medium.");
   s("initial_u", p.initial_u, "u at time 0: an expression of x, y and z; default: the model's own.");
   s("initial_v", p.initial_v, "v at time 0, likewise.");
-  s("diffusivity_u", p.diffusivity_u, "Du, length^2 per time; default: 8e-6 (fitzhugh_nagumo: 2e-5) times the square of the longest side.").range(0, 1e100);
+  s("diffusivity_u", p.diffusivity_u, "Du, length^2 per time; default: 8e-6 (fitzhugh_nagumo: 2e-5) times the square of the longest side.")
+      .range(0, 1e100);
   s("diffusivity_v", p.diffusivity_v, "Dv; default: half of that (fitzhugh_nagumo: 0).").range(0, 1e100);
   s("feed", p.feed, "gray_scott: how fast u comes in and both go out.");
   s("kill", p.kill, "gray_scott: how fast v goes out besides.");
@@ -112,7 +113,8 @@ void ReactionDiffusion::advance(const Context& context) {
     shu_osher_step(values_, base_, slope_, time, steps_.length, context,
                    [&](const std::vector<Values>& at, double t, std::vector<Values>& out) { rates(at, t, out, context); });
     ++taken_;
-    for (const Values& v : values_) check_finite(v, rd_name, taken_, time + steps_.length, "shorter steps, or initial values nearer to 1", context);
+    for (const Values& v : values_)
+      check_finite(v, rd_name, taken_, time + steps_.length, "shorter steps, or initial values nearer to 1", context);
   }
   ++frame_;
 }

@@ -39,10 +39,10 @@ double Axis::least_eigenvalue() const {
   if (flat()) return 0;
   const int walls = int(lo.wall()) + int(hi.wall());
   const double m = double(n);
-  const double angle = walls == 2                       ? 1 / (2 * (m + 1))
-                       : walls == 1                     ? 1 / (2 * (2 * m + 1))
+  const double angle = walls == 2                      ? 1 / (2 * (m + 1))
+                       : walls == 1                    ? 1 / (2 * (2 * m + 1))
                        : lo.kind == SideKind::periodic ? 1 / m
-                                                        : 1 / (2 * m);
+                                                       : 1 / (2 * m);
   const double s = std::sin(std::numbers::pi * angle);
   return 4 * coupling() * s * s;
 }
@@ -99,7 +99,7 @@ Room make_room(const RoomParams& p, const std::string& who, double bytes, bool w
       fail_usage(fmt::format("one side along {} is periodic, but not the other", "xyz"[a]), who + " sides", "make both periodic");
     const double cells = std::max(1.0, std::round(axis.length / longest * p.size));
     const bool periodic = axis.lo.kind == SideKind::periodic;
-    axis.n = size_t(periodic                          ? std::max(2.0, 2 * std::ceil(cells / 2))  // even: a chessboard of two colours
+    axis.n = size_t(periodic                           ? std::max(2.0, 2 * std::ceil(cells / 2))  // even: a chessboard of two colours
                     : axis.lo.wall() && axis.hi.wall() ? std::max(1.0, cells - 1)
                                                        : cells);
     count *= double(axis.n);

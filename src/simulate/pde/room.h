@@ -37,7 +37,7 @@ struct Axis {
 
   bool flat() const { return length == 0; }
   double h() const;
-  double first() const;                              ///< of the first unknown, from the lower side on
+  double first() const;  ///< of the first unknown, from the lower side on
   double coupling() const { return flat() ? 0 : 1 / (h() * h()); }
   /// The least eigenvalue of minus the second difference that is not 0.
   double least_eigenvalue() const;

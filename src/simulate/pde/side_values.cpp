@@ -28,7 +28,8 @@ UniformGrid side_grid(const Room& room, size_t side) {
   return g;
 }
 
-SideValues::SideValues(const Room& room, std::string who, double time, const Context& context) : room_(room), who_(std::move(who)), time_(time) {
+SideValues::SideValues(const Room& room, std::string who, double time, const Context& context)
+    : room_(room), who_(std::move(who)), time_(time) {
   const Sides sides = room.sides();
   const auto walls = walls_of(room);
   for (size_t s = 0; s < 6; ++s) {

@@ -44,14 +44,19 @@ void each_place(const std::array<Axis, 3>& axes, const Values& x, size_t color, 
             if (at + 1 < axis.n || axis.hi.kind != SideKind::insulated) diagonal += c;
           }
           const auto put = [&](size_t i, double west, double east, double links) {
-            f(i + row * nx,
-              cx * (west + east) + coupling[0] * (beside[0][i] + beside[1][i]) + coupling[1] * (beside[2][i] + beside[3][i]),
+            f(i + row * nx, cx * (west + east) + coupling[0] * (beside[0][i] + beside[1][i]) + coupling[1] * (beside[2][i] + beside[3][i]),
               diagonal + cx * links);
           };
           const size_t from = Step == 1 ? 0 : (color + row % ny + row / ny) % 2;
           const auto edge = [&](size_t i) {
             const bool low = i == 0, high = i + 1 == nx;
-            put(i, !low ? here[i - 1] : round ? here[nx - 1] : 0, !high ? here[i + 1] : round ? here[0] : 0,
+            put(i,
+                !low    ? here[i - 1]
+                : round ? here[nx - 1]
+                        : 0,
+                !high   ? here[i + 1]
+                : round ? here[0]
+                        : 0,
                 (low ? first_links : 1) + (high ? last_links : 1));
           };
           size_t i = from;

@@ -60,16 +60,14 @@ void Wave::step(double time, const Context& context) {
   const double *const rate = rate_.values.data(), *const s = source_.values.data(), *const v = velocity_.values.data();
   if (taken_ == 0)
     each_index(u_.values.size(), context, [=](size_t i) { before[i] = u[i] + dt * v[i] + dt * dt / 2 * (c2 * rate[i] + s[i]); });
-  else
-    each_index(u_.values.size(), context, [=](size_t i) { before[i] = 2 * u[i] - before[i] + dt * dt * (c2 * rate[i] + s[i]); });
+  else each_index(u_.values.size(), context, [=](size_t i) { before[i] = 2 * u[i] - before[i] + dt * dt * (c2 * rate[i] + s[i]); });
   std::swap(u_, before_);
   for (size_t side = 0; side < 6; ++side) {
     if (room_.sides()[side].kind != SideKind::absorbing || sides_.of(side).values.empty()) continue;
     const double h = room_.axes[side / 2].h(), k = (c * dt - h) / (c * dt + h);
     Values& g = sides_.of(side);
-    SideValues::each(u_.n, side, [&](size_t place, size_t at) {
-      g.values[at] = before_.values[place] + k * (u_.values[place] - g.values[at]);
-    });
+    SideValues::each(u_.n, side,
+                     [&](size_t place, size_t at) { g.values[at] = before_.values[place] + k * (u_.values[place] - g.values[at]); });
   }
   sides_.update(time + dt, context);
   if (source_moves_) source_ = values_of(params_.source, room_.grid(), time + dt, "wave source", context);
@@ -80,8 +78,8 @@ void Wave::advance(const Context& context) {
     context.check();
     step(double(frame_) * params_.frame + double(i) * steps_.length, context);
     ++taken_;
-    check_finite(u_, "wave", taken_, double(taken_) * steps_.length,
-                 fmt::format("steps are stable up to {:.4g}; leave step open", limit()), context);
+    check_finite(u_, "wave", taken_, double(taken_) * steps_.length, fmt::format("steps are stable up to {:.4g}; leave step open", limit()),
+                 context);
   }
   ++frame_;
 }

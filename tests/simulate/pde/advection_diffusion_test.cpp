@@ -105,8 +105,8 @@ TEST_CASE("advection_diffusion: a steady boundary layer between held sides, (exp
 }
 
 TEST_CASE("advection_diffusion: a flow along insulated sides keeps the sum; one through them carries out what is there") {
-  AdvectionDiffusionParams p = ad_params(40, 2, FluxScheme::limited, "exp(-40*((x-0.4)^2+(y-0.6)^2))",
-                                         "vec(sin(pi*x)*cos(pi*y),-cos(pi*x)*sin(pi*y),0)");
+  AdvectionDiffusionParams p =
+      ad_params(40, 2, FluxScheme::limited, "exp(-40*((x-0.4)^2+(y-0.6)^2))", "vec(sin(pi*x)*cos(pi*y),-cos(pi*x)*sin(pi*y),0)");
   p.sides = "insulated", p.diffusivity = 1e-3;
   CHECK(sum_of(ad_after(p, 30).values()) == doctest::Approx(sum_of(ad_after(p, 0).values())).epsilon(1e-12));
   AdvectionDiffusionParams out = ad_params(40, 1, FluxScheme::limited, "exp(-200*(x-0.4)^2)", "vec(1,0,0)");

@@ -76,9 +76,8 @@ TEST_CASE("heat: modes shrink by exp(-kappa k^2 t), with order 2 in space") {
       const Context context;
       Heat run(p, context);
       run.advance(context);
-      error[i] = test::largest_error(run.room(), run.values(), [](Vec3 q) {
-        return std::exp(-5 * pi * pi * 0.02) * std::cos(pi * q.x) * std::cos(2 * pi * q.y);
-      });
+      error[i] = test::largest_error(run.room(), run.values(),
+                                     [](Vec3 q) { return std::exp(-5 * pi * pi * 0.02) * std::cos(pi * q.x) * std::cos(2 * pi * q.y); });
     }
     CHECK(test::observed_order(h, error, 4) == doctest::Approx(2).epsilon(0.1));
   }
@@ -155,7 +154,8 @@ TEST_CASE("heat: the dataset is the same in any order of times and on any number
     set_thread_count(threads);
     Context context;
     HeatParams p;
-    p.bounds = {0, 1, 0, 0.7, 0, 0.4}, p.size = 40, p.time = time, p.frame = 0.01, p.scheme = HeatScheme::crank_nicolson, p.x0 = "sin(5*time)";
+    p.bounds = {0, 1, 0, 0.7, 0, 0.4}, p.size = 40, p.time = time, p.frame = 0.01, p.scheme = HeatScheme::crank_nicolson,
+    p.x0 = "sin(5*time)";
     const DatasetPtr d = heat(p, context);
     set_thread_count(0);
     std::vector<double> v(d->point_count());

@@ -27,7 +27,8 @@ double error_to(const DatasetPtr& d, F&& f) {
   const Array& a = d->fields().require("potential").array;
   double worst = 0;
   for (size_t i = 0; i < a.count(); ++i) {
-    const Vec3 at = g.origin + g.spacing * Vec3(double(i % g.dims[0]), double(i / g.dims[0] % g.dims[1]), double(i / (g.dims[0] * g.dims[1])));
+    const Vec3 at =
+        g.origin + g.spacing * Vec3(double(i % g.dims[0]), double(i / g.dims[0] % g.dims[1]), double(i / (g.dims[0] * g.dims[1])));
     worst = std::max(worst, std::abs(a.get(i) - f(at)));
   }
   return worst;
@@ -45,7 +46,8 @@ TEST_CASE("poisson: a made-up solution is met with order 2 between held, mixed a
   const Case cases[] = {
       {2, "2*pi^2*sin(pi*x)*sin(pi*y)", "0", "", [](Vec3 p) { return std::sin(pi * p.x) * std::sin(pi * p.y); }},
       {2, "-2*exp(x-y)", "exp(x-y)", "", [](Vec3 p) { return std::exp(p.x - p.y); }},
-      {3, "3*pi^2*cos(pi*x)*cos(pi*y)*cos(pi*z)", "insulated", "", [](Vec3 p) { return std::cos(pi * p.x) * std::cos(pi * p.y) * std::cos(pi * p.z); }},
+      {3, "3*pi^2*cos(pi*x)*cos(pi*y)*cos(pi*z)", "insulated", "",
+       [](Vec3 p) { return std::cos(pi * p.x) * std::cos(pi * p.y) * std::cos(pi * p.z); }},
       {1, "(pi/2)^2*sin(pi*x/2)", "0", "insulated", [](Vec3 p) { return std::sin(pi * p.x / 2); }},
       {2, "8*pi^2*sin(2*pi*x)*cos(2*pi*y)", "periodic", "", [](Vec3 p) { return std::sin(2 * pi * p.x) * std::cos(2 * pi * p.y); }},
   };
@@ -85,7 +87,8 @@ TEST_CASE("poisson: the largest value is on the border where there is no source 
   for (size_t i = 0; i < a.count(); ++i) {
     const size_t x = i % g.dims[0], y = i / g.dims[0];
     const bool border = x == 0 || y == 0 || x + 1 == g.dims[0] || y + 1 == g.dims[1];
-    (border ? lo : inside_lo) = std::min(border ? lo : inside_lo, a.get(i)), (border ? hi : inside_hi) = std::max(border ? hi : inside_hi, a.get(i));
+    (border ? lo : inside_lo) = std::min(border ? lo : inside_lo, a.get(i)),
+                   (border ? hi : inside_hi) = std::max(border ? hi : inside_hi, a.get(i));
   }
   CHECK(inside_lo >= lo);
   CHECK(inside_hi <= hi);
@@ -113,7 +116,8 @@ TEST_CASE("poisson: nothing to hold the value, no source, one cell, and what is 
   Context context;
   CHECK(test::contains(test::error_of([&] { poisson(problem(8, 2, "1", "insulated"), context); }), "hold the value at a side"));
   CHECK(error_to(poisson(problem(8, 2, "0", "insulated"), context), [](Vec3) { return 0.0; }) == 0);
-  CHECK(error_to(poisson(problem(1, 1, "8", "0"), context), [](Vec3 p) { return p.x == 0.5 ? 1.0 : 0.0; }) < 1e-12);  // (2/h^2) u = 8, h = 1/2
+  CHECK(error_to(poisson(problem(1, 1, "8", "0"), context), [](Vec3 p) { return p.x == 0.5 ? 1.0 : 0.0; }) <
+        1e-12);  // (2/h^2) u = 8, h = 1/2
   CHECK(poisson(problem(1, 3, "0", "insulated"), context)->point_count() == 1);
   CHECK(test::contains(test::error_of([&] { poisson(problem(9, 2, "1/(x-0.5)", "insulated"), context); }), "poisson source"));
   CHECK(test::contains(test::error_of([&] { poisson(problem(8, 2, "1", "sqrt(-1-x)"), context); }), "not a number"));

@@ -57,7 +57,8 @@ TEST_CASE("reaction_diffusion: without feed and kill, what is lost of u is found
   const double lambda = 4.0 * 32 * 32 * std::pow(std::sin(pi / 32), 2), t = 20;
   Values sum = r.u();
   for (size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += r.v().values[i];
-  CHECK(test::largest_error(r.room(), sum, [&](Vec3 q) { return 1.25 + 0.75 * std::exp(-1e-4 * lambda * t) * std::cos(2 * pi * q.x); }) < 1e-6);
+  CHECK(test::largest_error(r.room(), sum, [&](Vec3 q) { return 1.25 + 0.75 * std::exp(-1e-4 * lambda * t) * std::cos(2 * pi * q.x); }) <
+        1e-6);
   CHECK(test::largest_error(r.room(), r.v(), [](Vec3) { return 0.25; }) > 0.1);
 }
 

@@ -32,9 +32,7 @@ Values noise(std::array<size_t, 3> n, uint64_t seed) {
 }
 
 // The factor by which the residual shrinks in the end.
-double last_factor(const std::vector<double>& r, size_t over) {
-  return std::pow(r.back() / r[r.size() - 1 - over], 1 / double(over));
-}
+double last_factor(const std::vector<double>& r, size_t over) { return std::pow(r.back() / r[r.size() - 1 - over], 1 / double(over)); }
 
 SolveHistory run(const Room& room, Solver solver, int iterations, double tolerance, Values x, Values b, double shift = 0) {
   LinearSolver s({room.axes, shift, 1}, {solver, tolerance, iterations, {}}, "test");
@@ -54,12 +52,18 @@ TEST_CASE("pde: the modes of a line are eigenvectors of the second difference, w
       const Axis& axis = room.axes[0];
       const double n = double(axis.n), h = axis.h(), m = double(k);
       const bool held = axis.lo.wall(), both = axis.hi.wall(), periodic = axis.lo.kind == SideKind::periodic;
-      const double angle = held && both ? m * pi / (2 * (n + 1)) : held ? (2 * m - 1) * pi / (2 * (2 * n + 1)) : periodic ? m * pi / n : m * pi / (2 * n);
+      const double angle = held && both ? m * pi / (2 * (n + 1))
+                           : held       ? (2 * m - 1) * pi / (2 * (2 * n + 1))
+                           : periodic   ? m * pi / n
+                                        : m * pi / (2 * n);
       const double eigenvalue = 4 / (h * h) * std::pow(std::sin(angle), 2);
       Values u(room.n()), out(room.n());
       for (size_t i = 0; i < axis.n; ++i) {
         const double x = axis.first() + double(i) * h;
-        u.values[i] = held && both ? std::sin(m * pi * x) : held ? std::sin((m - 0.5) * pi * x) : periodic ? std::cos(2 * m * pi * x) : std::cos(m * pi * x);
+        u.values[i] = held && both ? std::sin(m * pi * x)
+                      : held       ? std::sin((m - 0.5) * pi * x)
+                      : periodic   ? std::cos(2 * m * pi * x)
+                                   : std::cos(m * pi * x);
       }
       Operator{room.axes, 0, 1}.apply(u, out, context);
       CAPTURE(kind.lo);

@@ -39,9 +39,8 @@ TEST_CASE("wave: in one dimension, steps of a cell move both halves of a bump by
   for (const int steps : {1, 20, 128, 1000}) {
     const Wave w = wave_after(p, 1.0 / 128, steps);
     const auto bump = [](double x) { return std::exp(-500 * std::pow(x - std::floor(x) - 0.5, 2)); };
-    CHECK(test::largest_error(w.room(), w.values(), [&](Vec3 q) {
-            return (bump(q.x - steps / 128.0) + bump(q.x + steps / 128.0)) / 2;
-          }) < 1e-11);
+    CHECK(test::largest_error(w.room(), w.values(), [&](Vec3 q) { return (bump(q.x - steps / 128.0) + bump(q.x + steps / 128.0)) / 2; }) <
+          1e-11);
   }
 }
 
