@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "filter/every_mesh.h"
 #include "simulate/pde/mesh/meshes.h"
 #include "support/test.h"
 
@@ -61,6 +62,33 @@ TEST_CASE("heat_on_mesh: steady linear temperatures are exact on tetrahedra at r
   HeatOnMeshParams wall = steady("2*x+1");
   wall.held = "x==0||x==1";
   CHECK(error_on(heat_on_mesh(test::shaken_grid(5, 0.25), wall, context), [](Vec3 p) { return 2 * p.x + 1; }) < 1e-9);
+}
+
+TEST_CASE("heat_on_mesh: steady linear temperatures are exact on every kind of mesh, curved ones made linear") {
+  Context context;
+  for (const test::MeshKind& kind : test::every_mesh()) {
+    CAPTURE(kind.name);
+    const DatasetPtr mesh = kind.make(4, 2);
+    if (mesh->as<AmrGrid>()) {
+      CHECK(test::contains(test::error_of([&] { heat_on_mesh(mesh, steady("x"), context); }), "resample it first"));
+      continue;
+    }
+    const DatasetPtr d = heat_on_mesh(mesh, steady("3*x-2*y+z-1"), context);
+    CHECK(d->point_count() >= 9);
+    CHECK(error_on(d, [](Vec3 p) { return 3 * p.x - 2 * p.y + p.z - 1; }) < 1e-8);
+  }
+}
+
+TEST_CASE("heat_on_mesh: along a line, a steady source makes a parabola, exact at the points") {
+  Context context;
+  SurfaceMesh m;
+  std::vector<double> xyz;
+  std::vector<int32_t> ids;
+  for (int i = 0; i <= 10; ++i) xyz.insert(xyz.end(), {i / 10.0, 2 * i / 10.0, 0}), ids.push_back(i);
+  m.points.xyz = Array::from_vector(std::move(xyz), 3);
+  m.lines.connectivity = Array::from_vector(std::move(ids));
+  m.lines.offsets = Array::from_vector(std::vector<int32_t>{0, 11});
+  CHECK(error_on(heat_on_mesh(make_dataset(m), steady("0", "2"), context), [](Vec3 p) { return 5 * p.x * (1 - p.x); }) < 1e-9);
 }
 
 TEST_CASE("heat_on_mesh: a made-up solution is met with order 2 on shaken tetrahedra and triangles") {
