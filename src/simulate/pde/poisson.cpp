@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <string>
 #include <utility>
 
 #include "simulate/pde/expressions.h"
@@ -45,7 +47,10 @@ void describe(Schema& s, PoissonParams& p) {
     "jacobi; gauss_seidel and sor in two colours; cg: conjugate gradients; multigrid: V-cycles. poisson_convergence compares them.");
 }
 
-void describe(Schema& s, PoissonConvergenceParams& p) { describe_problem(s, p); }
+void describe(Schema& s, PoissonConvergenceParams& p) {
+  describe_problem(s, p);
+  s("log", p.log, "The decimal logarithms of the residuals, for curves.");
+}
 
 DatasetPtr poisson(const PoissonParams& p, Context& context) {
   const pde::Room room = pde::make_room(p, "poisson", 60, false, context);
@@ -71,6 +76,8 @@ TablePtr poisson_convergence(const PoissonConvergenceParams& p, Context& context
   size_t rows = 0;
   for (const auto& word : enum_words(pde::Solver{})) {
     columns.push_back(solve_poisson(p, room, sides, source, word.value, context).history.residuals);
+    if (p.log)
+      for (double& r : columns.back()) r = r > 0 ? std::log10(r) : std::nan("");
     rows = std::max(rows, columns.back().size());
   }
   Table table;

@@ -28,10 +28,11 @@ DatasetPtr poisson(const PoissonParams& p, Context& context);
 
 struct PoissonConvergenceParams : PoissonParams {
   PoissonConvergenceParams() { iterations = 200; }
+  bool log = false;
 };
 void describe(Schema& s, PoissonConvergenceParams& p);
 
-/// A table: iteration, and the residual of each solver after it; NaN once it is below the tolerance.
+/// A table: iteration, and the residual of each solver after it (log: its log10); NaN once it is below the tolerance.
 TablePtr poisson_convergence(const PoissonConvergenceParams& p, Context& context);
 
 }  // namespace sg

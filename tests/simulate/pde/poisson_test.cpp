@@ -110,6 +110,8 @@ TEST_CASE("poisson: the history of residuals ends at the tolerance; the table ha
   CHECK(t->columns[0].array.count() == 201);
   CHECK(std::isfinite(t->columns[1].array.get(200)));  // jacobi is far from done
   CHECK(std::isnan(t->columns[5].array.get(200)));     // multigrid is
+  q.log = true;
+  CHECK(poisson_convergence(q, context)->columns[1].array.get(200) == doctest::Approx(std::log10(t->columns[1].array.get(200))));
 }
 
 TEST_CASE("poisson: nothing to hold the value, no source, one cell, and what is not a number") {

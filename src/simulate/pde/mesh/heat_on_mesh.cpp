@@ -24,8 +24,9 @@ void describe(Schema& s, HeatOnMeshParams& p) {
   describe(s, static_cast<FrameParams&>(p));
   s("steady", p.steady,
     "The temperatures at which nothing changes any more, instead of those at a time: Laplace's and Poisson's equation.");
-  s("initial", p.initial,
-    "Temperature at time 0: a field or an expression of x, y, z and fields; default: the active scalar, or 0 where values are held.");
+  s("field", p.field, "Temperature at time 0, unless initial gives it; default: the active scalar, or 0 where values are held.")
+      .takes(fields::scalars);
+  s("initial", p.initial, "Temperature at time 0 as an expression of x, y, z and fields.");
   s("held", p.held,
     "Where values are held: an expression that is not 0 there, such as border, z<0.1 or label==3. border: points on the border. Cells "
     "hold all of their points. Default: nowhere.");
@@ -103,8 +104,8 @@ MeshHeat::MeshHeat(DatasetPtr mesh, const HeatOnMeshParams& p, const Context& co
   // The beginning.
   std::string initial = p.initial;
   if (initial.empty()) {
-    const Field* f = mesh_->fields().active(1);
-    if (f && p.held.empty()) initial = "\"" + f->name + "\"";
+    const Field* f = p.field.empty() ? mesh_->fields().active(1) : &mesh_->fields().require(p.field.name);
+    if (f && (!p.field.empty() || p.held.empty())) initial = "\"" + f->name + "\"";
     else if (p.held.empty() && !depends_on_time(p.source) && p.source == "0")
       fail_usage("nothing is warm", "heat_on_mesh", "give initial=EXPRESSION, or held=border and value=EXPRESSION, or source=EXPRESSION");
     else initial = "0";
@@ -122,8 +123,11 @@ MeshHeat::MeshHeat(DatasetPtr mesh, const HeatOnMeshParams& p, const Context& co
     for (size_t t = 0; t < simplices_.size(); ++t)
       if (const double v = where.at[simplices_.cell[t]]; v != 0 && !std::isnan(v))
         for (int k = 0; k <= simplices_.dimension; ++k) held_[simplices_.corners[t][size_t(k)]] = 1;
-  if (std::none_of(held_.begin(), held_.end(), [](uint8_t h) { return h; }))
-    fail_usage("no point is held", "heat_on_mesh held", "the expression is 0 everywhere; border holds the points on the border");
+  if (std::none_of(held_.begin(), held_.end(), [](uint8_t h) { return h; })) {
+    if (!context.parts || context.parts->size() < 2)
+      fail_usage("no point is held", "heat_on_mesh held", "the expression is 0 everywhere; border holds the points on the border");
+    context.warn("heat_on_mesh: no point of a part is held");
+  }
   if (!p.value.empty()) hold(point_numbers(params_.value, "value", 0, context));
 }
 

@@ -22,6 +22,7 @@ constexpr auto enum_words(MeshHeatScheme) {
 
 struct HeatOnMeshParams : FrameParams {
   bool steady = false;
+  FieldName field;
   std::string initial, held, value, source = "0", diffusivity;
   MeshHeatScheme scheme = MeshHeatScheme::backward_euler;
   std::optional<double> step;
