@@ -17,6 +17,7 @@
 #include "filter/mesh/tessellate_cells.h"
 #include "simulate/pde/expressions.h"
 #include "simulate/pde/march.h"
+#include "simulate/pde/mesh/mesh_numbers.h"
 
 namespace sg {
 
@@ -85,19 +86,11 @@ MeshHeat::MeshHeat(DatasetPtr mesh, const HeatOnMeshParams& p, const Context& co
     const Vec3 size = mesh_->bounds().size();
     std::fill(kappa.begin(), kappa.end(), dot(size, size) / 50);
   } else {
-    const Numbers k = numbers_of(p.diffusivity, "diffusivity", 0, context);
-    for (size_t t = 0; t < kappa.size(); ++t) {
-      if (k.of_cells) kappa[t] = k.at[simplices_.cell[t]];
-      else {
-        double sum = 0, count = 0;
-        for (int v = 0; v <= simplices_.dimension; ++v)
-          if (const uint32_t i = simplices_.corners[t][size_t(v)]; i < simplices_.points) sum += k.at[i], ++count;
-        kappa[t] = sum / count;
-      }
+    kappa = simplex_numbers(simplices_, mesh_numbers(mesh_, p.diffusivity, 0, "heat_on_mesh diffusivity", context));
+    for (size_t t = 0; t < kappa.size(); ++t)
       if (!(kappa[t] >= 0) || !std::isfinite(kappa[t]))
         fail_data(fmt::format("the diffusivity is {} in cell {}", exact_number(kappa[t]), simplices_.cell[t]), "heat_on_mesh diffusivity",
                   "it must be 0 or more everywhere");
-    }
   }
   stiffness_ = stiffness_of(simplices_, kappa, context);
   const size_t n = simplices_.at.size();
@@ -110,70 +103,31 @@ MeshHeat::MeshHeat(DatasetPtr mesh, const HeatOnMeshParams& p, const Context& co
       fail_usage("nothing is warm", "heat_on_mesh", "give initial=EXPRESSION, or held=border and value=EXPRESSION, or source=EXPRESSION");
     else initial = "0";
   }
-  u_ = point_numbers(initial, "initial", 0, context);
-  source_ = point_numbers(p.source, "source", 0, context);
+  u_ = numbers_at(initial, "initial", 0, context);
+  source_ = numbers_at(p.source, "source", 0, context);
   right_.resize(n);
   held_.resize(n);
   source_moves_ = depends_on_time(p.source), value_moves_ = depends_on_time(p.value);
   if (p.held.empty()) return;
-  const Numbers where = numbers_of(p.held, "held", 0, context);
-  if (!where.of_cells)
-    for (size_t i = 0; i < simplices_.points; ++i) held_[i] = where.at[i] != 0 && !std::isnan(where.at[i]);
-  else
-    for (size_t t = 0; t < simplices_.size(); ++t)
-      if (const double v = where.at[simplices_.cell[t]]; v != 0 && !std::isnan(v))
-        for (int k = 0; k <= simplices_.dimension; ++k) held_[simplices_.corners[t][size_t(k)]] = 1;
+  held_ = marked_points(simplices_, mesh_numbers(mesh_, p.held, 0, "heat_on_mesh held", context));
   if (std::none_of(held_.begin(), held_.end(), [](uint8_t h) { return h; })) {
     if (!context.parts || context.parts->size() < 2)
       fail_usage("no point is held", "heat_on_mesh held", "the expression is 0 everywhere; border holds the points on the border");
     context.warn("heat_on_mesh: no point of a part is held");
   }
-  if (!p.value.empty()) hold(point_numbers(params_.value, "value", 0, context));
+  if (!p.value.empty()) hold(numbers_at(params_.value, "value", 0, context));
 }
 
-MeshHeat::Numbers MeshHeat::numbers_of(const std::string& expression, const char* word, double time, const Context& context) const {
+std::vector<double> MeshHeat::numbers_at(const std::string& expression, const char* word, double time, const Context& context) const {
   const std::string who = fmt::format("heat_on_mesh {}", word);
-  DatasetParts parts = mesh_->parts();
-  parts.time = time;
-  Context inner(context, 0, 1);
-  constexpr const char* result = "heat_on_mesh result";
-  const DatasetPtr d = with_context(who, [&] { return calc(make_dataset(std::move(parts)), {.expr = expression, .name = result}, inner); });
-  const Field& f = d->fields().require(result);
-  if (f.components() != 1) fail_usage(fmt::format("the expression gives {} numbers", f.components()), who, "one number is needed");
-  Numbers numbers;
-  numbers.of_cells = f.association == Association::cell;
-  numbers.at.resize(f.array.count());
-  dispatch(f.array, [&](auto v) {
-    for (size_t i = 0; i < numbers.at.size(); ++i) numbers.at[i] = double(v(i, 0));
-  });
-  return numbers;
-}
-
-// One number a point: of cells, the mean over the simplices about it. Throws where one that counts is not finite.
-std::vector<double> MeshHeat::point_numbers(const std::string& expression, const char* word, double time, const Context& context) const {
-  const Numbers numbers = numbers_of(expression, word, time, context);
-  const size_t n = simplices_.at.size(), nodes = size_t(simplices_.dimension) + 1;
-  std::vector<double> out(n), share(n);
-  if (!numbers.of_cells) std::copy(numbers.at.begin(), numbers.at.end(), out.begin());
-  std::array<Vec3, 4> g;
-  for (size_t t = 0; t < simplices_.size() && (numbers.of_cells || n > simplices_.points); ++t) {
-    const double size = simplex_gradients(simplices_, t, g);
-    double mean = 0, count = 0;
-    for (size_t v = 0; v < nodes && !numbers.of_cells; ++v)
-      if (const uint32_t i = simplices_.corners[t][v]; i < simplices_.points) mean += numbers.at[i], ++count;
-    mean = numbers.of_cells ? numbers.at[simplices_.cell[t]] : mean / count;
-    for (size_t v = 0; v < nodes; ++v)
-      if (const uint32_t i = simplices_.corners[t][v]; numbers.of_cells || i >= simplices_.points) out[i] += size * mean, share[i] += size;
-  }
-  for (size_t i = 0; i < n; ++i)
-    if (share[i] > 0) out[i] /= share[i];
-  const bool values = !held_.empty() && &expression == &params_.value;
-  for (size_t i = 0; i < n; ++i)
-    if (!std::isfinite(out[i]) && stiffness_.mass[i] > 0 && (!values || held_[i])) {
+  std::vector<double> out = point_numbers(simplices_, mesh_numbers(mesh_, expression, time, who, context));
+  const bool held_alone = &expression == &params_.value;
+  for (size_t i = 0; i < out.size(); ++i)
+    if (!std::isfinite(out[i]) && stiffness_.mass[i] > 0 && (!held_alone || held_[i])) {
       const Vec3 p = simplices_.at[i];
       fail_data(fmt::format("{} at {}, {}, {}", std::isnan(out[i]) ? "not a number" : "infinite", exact_number(p.x), exact_number(p.y),
                             exact_number(p.z)),
-                fmt::format("heat_on_mesh {}", word), "a finite value is needed at every point");
+                who, "a finite value is needed at every point");
     }
   return out;
 }
@@ -193,9 +147,9 @@ void MeshHeat::advance(const Context& context) {
     else
       for (size_t i = 0; i < n; ++i) right_[i] = stiffness_.mass[i] * u_[i];
     for (size_t i = 0; i < n; ++i) right_[i] += before * dt_ * stiffness_.mass[i] * source_[i];
-    if (source_moves_) source_ = point_numbers(params_.source, "source", next, context);
+    if (source_moves_) source_ = numbers_at(params_.source, "source", next, context);
     for (size_t i = 0; i < n; ++i) right_[i] += (1 - before) * dt_ * stiffness_.mass[i] * source_[i];
-    if (value_moves_) hold(point_numbers(params_.value, "value", next, context));
+    if (value_moves_) hold(numbers_at(params_.value, "value", next, context));
     const FemSolve s = solve(stiffness_, 1, (1 - before) * dt_, right_, held_, params_.tolerance, params_.iterations, u_, context);
     const size_t taken = frame_ * steps_ + step + 1;
     if (!std::isfinite(s.residual))

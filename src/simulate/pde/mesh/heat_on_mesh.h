@@ -55,12 +55,8 @@ class MeshHeat {
   DatasetPtr dataset(const Context& context) const;
 
  private:
-  struct Numbers {
-    std::vector<double> at;
-    bool of_cells = false;
-  };
-  Numbers numbers_of(const std::string& expression, const char* word, double time, const Context& context) const;
-  std::vector<double> point_numbers(const std::string& expression, const char* word, double time, const Context& context) const;
+  /// At the points; those that count must be finite.
+  std::vector<double> numbers_at(const std::string& expression, const char* word, double time, const Context& context) const;
   void hold(const std::vector<double>& values);
   HeatOnMeshParams params_;
   DatasetPtr mesh_;  // with the field border where it is asked for
