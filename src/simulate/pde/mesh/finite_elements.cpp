@@ -2,7 +2,9 @@
 #include "simulate/pde/mesh/finite_elements.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/parallel.h"
 
@@ -50,50 +52,47 @@ Stiffness stiffness_of(const Simplices& s, const std::vector<double>& kappa, con
     for (size_t v = 0; v < nodes; ++v) around[fill[s.corners[t][v]]++] = uint32_t(t);
   Stiffness k;
   k.diagonal.resize(n), k.mass.resize(n), k.begin.resize(n + 1);
-  const auto row_of = [&](size_t i, std::vector<std::pair<uint32_t, double>>& row) {
-    row.assign(1, {uint32_t(i), 0.0});
-    double mass = 0;
-    std::array<Vec3, 4> g;
-    for (size_t a = first[i]; a < first[i + 1]; ++a) {
-      const size_t t = around[a];
-      const double size = simplex_gradients(s, t, g);
-      mass += size / double(nodes);
-      size_t own = 0;
-      while (s.corners[t][own] != i) ++own;
-      for (size_t v = 0; v < nodes; ++v) row.emplace_back(s.corners[t][v], kappa[t] * size * dot(g[own], g[v]));
-    }
-    std::stable_sort(row.begin(), row.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
-    size_t kept = 0;
-    for (size_t e = 1; e < row.size(); ++e) {
-      if (row[e].first == row[kept].first) row[kept].second += row[e].second;
-      else row[++kept] = row[e];
-    }
-    row.resize(kept + 1);
-    return mass;
+  // Rows by chunks, which are then put one behind the other.
+  struct Rows {
+    std::vector<uint32_t> column;
+    std::vector<double> value;
   };
-  std::vector<size_t> count(n);
+  std::vector<Rows> chunks(n / points_at_once + 1);
   parallel_for(
       n, points_at_once,
       [&](size_t begin, size_t end) {
+        Rows& rows = chunks[begin / points_at_once];
         std::vector<std::pair<uint32_t, double>> row;
-        for (size_t i = begin; i < end; ++i) k.mass[i] = row_of(i, row), count[i] = row.size();
-      },
-      &context);
-  for (size_t i = 0; i < n; ++i) k.begin[i + 1] = k.begin[i] + count[i];
-  k.column.resize(k.begin[n]), k.value.resize(k.begin[n]);
-  parallel_for(
-      n, points_at_once,
-      [&](size_t begin, size_t end) {
-        std::vector<std::pair<uint32_t, double>> row;
+        std::array<Vec3, 4> g;
         for (size_t i = begin; i < end; ++i) {
-          row_of(i, row);
-          for (size_t e = 0; e < row.size(); ++e) {
-            k.column[k.begin[i] + e] = row[e].first, k.value[k.begin[i] + e] = row[e].second;
-            if (row[e].first == i) k.diagonal[i] = row[e].second;
+          row.assign(1, {uint32_t(i), 0.0});
+          for (size_t a = first[i]; a < first[i + 1]; ++a) {
+            const size_t t = around[a];
+            const double size = simplex_gradients(s, t, g);
+            k.mass[i] += size / double(nodes);
+            size_t own = 0;
+            while (s.corners[t][own] != i) ++own;
+            for (size_t v = 0; v < nodes; ++v) {
+              const uint32_t column = s.corners[t][v];
+              const auto found = std::find_if(row.begin(), row.end(), [&](const auto& e) { return e.first == column; });
+              const double value = kappa[t] * size * dot(g[own], g[v]);
+              if (found == row.end()) row.emplace_back(column, value);
+              else found->second += value;
+            }
           }
+          k.diagonal[i] = row[0].second, k.begin[i + 1] = row.size();
+          std::sort(row.begin(), row.end());
+          for (const auto& [column, value] : row) rows.column.push_back(column), rows.value.push_back(value);
         }
       },
       &context);
+  for (size_t i = 0; i < n; ++i) k.begin[i + 1] += k.begin[i];
+  k.column.reserve(k.begin[n]), k.value.reserve(k.begin[n]);
+  for (Rows& rows : chunks) {
+    k.column.insert(k.column.end(), rows.column.begin(), rows.column.end());
+    k.value.insert(k.value.end(), rows.value.begin(), rows.value.end());
+    rows = {};
+  }
   return k;
 }
 

@@ -158,7 +158,8 @@ double simplex_gradients(const Simplices& s, size_t simplex, std::array<Vec3, 4>
   double longest = 0;
   for (int v = 1; v <= s.dimension; ++v) longest = std::max(longest, length(s.at[c[size_t(v)]] - s.at[c[0]]));
   // Flat ones, as far as can be computed.
-  return std::isfinite(size) && size > 1e-13 * std::pow(longest, s.dimension) ? size : 0;
+  const double least = 1e-13 * longest * (s.dimension > 1 ? longest : 1) * (s.dimension > 2 ? longest : 1);
+  return std::isfinite(size) && size > least ? size : 0;
 }
 
 }  // namespace sg::pde
