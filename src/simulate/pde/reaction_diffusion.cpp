@@ -22,7 +22,9 @@ void describe(Schema& s, ReactionDiffusionParams& p) {
   s("model", p.model, "gray_scott: spots and stripes that feed on u. fitzhugh_nagumo: waves and spirals in an excitable medium.");
   s("initial_u", p.initial_u, "u at time 0: an expression of x, y and z; default: the model's own.");
   s("initial_v", p.initial_v, "v at time 0, likewise.");
-  s("diffusivity_u", p.diffusivity_u, "Du, length^2 per time; default: 8e-6 (fitzhugh_nagumo: 2e-5) times the square of the longest side.")
+  s("diffusivity_u", p.diffusivity_u,
+    "Du, length^2 per time; default: 8e-6 (fitzhugh_nagumo: 2e-5) times the square of the longest side, which counts as 128 cells at "
+    "least.")
       .range(0, 1e100);
   s("diffusivity_v", p.diffusivity_v, "Dv; default: half of that (fitzhugh_nagumo: 0).").range(0, 1e100);
   s("feed", p.feed, "gray_scott: how fast u comes in and both go out.");
@@ -57,18 +59,19 @@ Beginning beginning_of(const ReactionDiffusionParams& p, const Room& room) {
   return b;
 }
 
-// What is given, or what makes patterns of about a tenth of the longest side.
+// What is given, or what makes patterns of about a tenth of the longest side; larger where cells would be too long for them.
 double rd_diffusivity(const std::optional<double>& given, double own, const Room& room) {
   double longest = 0;
   for (const Axis& a : room.axes) longest = std::max(longest, a.length);
-  return given.value_or(own * longest * longest);
+  return given.value_or(own * std::max(longest * longest, room.smallest_h() * room.smallest_h() * 128 * 128));
 }
 
 constexpr const char* rd_name = "reaction_diffusion";
 
-// What diffusion, at the real end of the method's region of stability (2.51), and reactions of a rate of about 1 or 2 allow, with room.
+// Diffusion and reaction shrink what is fastest at these rates together; the method's region of stability ends at 2.51 of them.
 double rd_step(const ReactionDiffusionParams& p, const Room& room, double d) {
-  return std::min(0.8 * 2.51 / (4 * d * room.couplings()), p.model == Reaction::gray_scott ? 1.0 : 0.4);
+  const double reaction = p.model == Reaction::gray_scott ? 1 : 4;  // fitzhugh_nagumo: u^2 - 1 at the largest u, about 2.2
+  return std::min(0.7 * 2.51 / (4 * d * room.couplings() + reaction), 1.0);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ struct ReactionDiffusionParams : FrameParams, pde::RoomParams {
   std::string initial_u, initial_v;
   std::optional<double> diffusivity_u, diffusivity_v;
   double feed = 0.037, kill = 0.06;
-  double threshold = 0.7, damping = 0.8, recovery = 0.08;
+  double threshold = 0.7, damping = 0.8, recovery = 0.04;
   std::optional<double> step;
 };
 void describe(Schema& s, ReactionDiffusionParams& p);
@@ -33,7 +33,8 @@ namespace pde {
 /// The state at a frame.
 ///   gray_scott        u' = Du lap u - u v^2 + feed (1 - u),  v' = Dv lap v + u v^2 - (feed + kill) v   (Pearson 1993)
 ///   fitzhugh_nagumo   u' = Du lap u + u - u^3/3 - v,         v' = Dv lap v + recovery (u + threshold - damping v)
-/// by third-order Runge-Kutta steps (Shu, Osher 1988), stable up to 2.51 / (4 D sum of 1/h^2). Held sides hold both at the same value.
+/// by third-order Runge-Kutta steps (Shu, Osher 1988), stable while 4 D sum of 1/h^2 and the
+/// reaction's own rate add up to less than 2.51 / dt. Held sides hold both at the same value.
 class ReactionDiffusion {
  public:
   ReactionDiffusion(const ReactionDiffusionParams& p, const Context& context);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulate/pde/reaction_diffusion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -85,6 +86,18 @@ TEST_CASE("reaction_diffusion: spots grow, the same on any number of threads; to
   };
   const auto one = values(1);
   CHECK(one == values(4));
+  // A spiral has no chessboard on it: neighbours differ less than what lies two apart.
+  ReactionDiffusionParams f;
+  f.model = Reaction::fitzhugh_nagumo, f.size = 160, f.sides = "insulated";
+  const ReactionDiffusion wave = rd_after(f, 5);
+  double uneven = 0;
+  const auto& u = wave.u();
+  for (size_t j = 0; j < u.n[1]; ++j)
+    for (size_t i = 1; i + 2 < u.n[0]; ++i) {
+      const double a = u(i, j, 0) - u(i - 1, j, 0), b = u(i + 1, j, 0) - u(i, j, 0), c = u(i + 2, j, 0) - u(i + 1, j, 0);
+      if (a * b < 0 && b * c < 0) uneven = std::max(uneven, std::min({std::abs(a), std::abs(b), std::abs(c)}));
+    }
+  CHECK(uneven < 0.02);
   size_t high = 0;
   for (const double v : one) high += v > 0.2;
   CHECK(high > one.size() / 20);
