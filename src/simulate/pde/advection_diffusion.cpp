@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "base/error.h"
 #include "base/text/text.h"
@@ -152,8 +153,9 @@ void AdvectionDiffusion::advance(const Context& context) {
 }
 
 DatasetPtr AdvectionDiffusion::dataset(const Context& context) const {
-  return room_dataset(room_, double(frame_) * params_.frame,
-                      {whole_field(room_, values_[0], sides_, "concentration", params_.type, context)});
+  Field concentration = whole_field(room_, values_[0], sides_, "concentration", params_.type, context);
+  concentration.look.one_sided = true;
+  return room_dataset(room_, double(frame_) * params_.frame, {std::move(concentration)});
 }
 
 }  // namespace pde

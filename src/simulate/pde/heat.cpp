@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "base/text/text.h"
@@ -96,7 +97,9 @@ void Heat::advance(const Context& context) {
 }
 
 DatasetPtr Heat::dataset(const Context& context) const {
-  return room_dataset(room_, double(frame_) * params_.frame, {whole_field(room_, u_, sides_, "temperature", params_.type, context)});
+  Field temperature = whole_field(room_, u_, sides_, "temperature", params_.type, context);
+  temperature.look.one_sided = true;
+  return room_dataset(room_, double(frame_) * params_.frame, {std::move(temperature)});
 }
 
 }  // namespace pde

@@ -123,9 +123,10 @@ void ReactionDiffusion::advance(const Context& context) {
 }
 
 DatasetPtr ReactionDiffusion::dataset(const Context& context) const {
-  return room_dataset(room_, double(frame_) * params_.frame,
-                      {whole_field(room_, values_[1], sides_, "v", params_.type, context),
-                       whole_field(room_, values_[0], sides_, "u", params_.type, context)});
+  std::vector<Field> fields{whole_field(room_, values_[1], sides_, "v", params_.type, context),
+                            whole_field(room_, values_[0], sides_, "u", params_.type, context)};
+  for (Field& f : fields) f.look.one_sided = params_.model == Reaction::gray_scott;
+  return room_dataset(room_, double(frame_) * params_.frame, std::move(fields));
 }
 
 }  // namespace pde

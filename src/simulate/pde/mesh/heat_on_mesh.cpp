@@ -200,7 +200,7 @@ DatasetPtr MeshHeat::dataset(const Context&) const {
   if (!params_.steady) parts.time = double(frame_) * params_.frame;
   Field f{params_.name, Association::point, Array::from_vector(std::vector<double>(u_.begin(), u_.begin() + long(simplices_.points))), "",
           Role::scalars};
-  f.look.result = true;
+  f.look.result = f.look.one_sided = true;
   parts.fields.add(std::move(f));
   return make_dataset(std::move(parts));
 }
