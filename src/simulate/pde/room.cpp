@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/bytes.h"
 #include "base/error.h"
 #include "base/text/text.h"
 

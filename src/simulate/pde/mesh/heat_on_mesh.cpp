@@ -108,6 +108,8 @@ MeshHeat::MeshHeat(DatasetPtr mesh, const HeatOnMeshParams& p, const Context& co
   right_.resize(n);
   held_.resize(n);
   source_moves_ = depends_on_time(p.source), value_moves_ = depends_on_time(p.value);
+  if (p.held.empty() && !p.value.empty())
+    fail_usage("nothing says where the value is held", "heat_on_mesh value", "add held=border or the like");
   if (p.held.empty()) return;
   held_ = marked_points(simplices_, mesh_numbers(mesh_, p.held, 0, "heat_on_mesh held", context));
   if (std::none_of(held_.begin(), held_.end(), [](uint8_t h) { return h; })) {
@@ -157,6 +159,8 @@ void MeshHeat::advance(const Context& context) {
     if (!s.reached && s.residual > 1e-3)
       fail_data(fmt::format("step {} (time {:.6g}) is solved to {:.3g} only", taken, next, s.residual), mesh_heat,
                 "a larger tolerance, more iterations or a shorter step");
+    if (!s.reached && s.iterations == params_.iterations)
+      context.warn(fmt::format("heat_on_mesh: the residual of step {} is {:.3g} after {} iterations", taken, s.residual, s.iterations));
   }
   ++frame_;
 }

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulate/pde/mesh/simplices.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <span>
 
 #include "base/error.h"
+#include "base/text/text.h"
 #include "data/cells/cell_reader.h"
 #include "data/cells/cell_topology.h"
 #include "data/cells/mesh_dimension.h"
@@ -98,6 +101,10 @@ Simplices simplices_of(const DatasetPtr& mesh, const std::string& who, const Con
       s.corners.push_back(corner), s.cell.push_back(uint32_t(c));
     }
   }
+  const double bytes = 80.0 * double(s.size()) + 400.0 * double(s.points);  // with the matrix
+  if (context.memory_limit && bytes > double(context.memory_limit))
+    fail_usage(fmt::format("{} simplices take about {}, more than there is", s.size(), human_bytes(uint64_t(bytes))), who,
+               "take a coarser mesh or a part of it");
   size_t kept = 0;
   std::array<Vec3, 4> gradients;
   for (size_t k = 0; k < s.size(); ++k) {

@@ -24,7 +24,8 @@ struct Simplices {
   size_t size() const { return corners.size(); }
 };
 
-/// Throws Error(usage) naming `who` for meshes without lines, faces or solids, and for more than 2^32 points.
+/// Throws Error(usage) naming `who` for meshes without lines, faces or solids, for AMR, for more than 2^32 points, and for more
+/// cells than memory could hold.
 Simplices simplices_of(const DatasetPtr& mesh, const std::string& who, const Context& context);
 
 /// 1 for points on the border: of facets that belong to one simplex alone.

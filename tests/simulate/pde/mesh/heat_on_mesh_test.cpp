@@ -218,6 +218,7 @@ TEST_CASE("heat_on_mesh: bad input is told; one cell is right") {
   CHECK(test::contains(error([](HeatOnMeshParams& p) { p.initial = "tmperature"; }), "heat_on_mesh initial"));
   CHECK(test::contains(error([](HeatOnMeshParams& p) { p.initial = ""; }), "nothing is warm"));
   CHECK(test::contains(error([](HeatOnMeshParams& p) { p.held = "x>5"; }), "no point is held"));
+  CHECK(test::contains(error([](HeatOnMeshParams& p) { p.value = "5"; }), "held=border"));
   CHECK(test::contains(error([](HeatOnMeshParams& p) { p.held = "border", p.value = "1/(x-x)"; }), "heat_on_mesh value"));
   CHECK(test::contains(error([](HeatOnMeshParams& p) { p.source = "log(-1-x)"; }), "heat_on_mesh source"));
   CHECK(test::contains(error([](HeatOnMeshParams& p) { p.diffusivity = "-1"; }), "0 or more"));
