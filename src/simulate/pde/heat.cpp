@@ -108,7 +108,8 @@ DatasetPtr heat(const HeatParams& p, Context& context) {
   const pde::Room room = pde::make_room(p, "heat", 60, false, context);
   const double limit = pde::heat_limit(p, room);
   if (p.scheme == HeatScheme::explicit_euler && p.step && std::min(*p.step, p.frame) > limit * (1 + 1e-9))
-    context.warn(fmt::format("heat: explicit steps of {:.4g} are beyond the limit of {:.4g}: the values will grow", *p.step, limit));
+    context.warn(fmt::format("heat: explicit steps of {:.4g} are beyond the limit of {:.4g}: the values will grow",
+                             std::min(*p.step, p.frame), limit));
   return frame_of_run<pde::Heat>(
       "heat", p, [&] { return std::make_unique<pde::Heat>(p, context); }, context);
 }

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "base/error.h"
 #include "simulate/pde/expressions.h"
 
 namespace sg::pde {
@@ -44,7 +45,13 @@ SideValues::SideValues(const Room& room, std::string who, double time, const Con
 }
 
 void SideValues::evaluate(size_t side, double time, const Context& context) {
-  values_[side] = values_of(room_.sides()[side].value, side_grid(room_, side), time, who_ + " " + side_names[side], context);
+  const std::string where = who_ + " " + side_names[side];
+  try {
+    values_[side] = values_of(room_.sides()[side].value, side_grid(room_, side), time, where, context);
+  } catch (const Error& e) {
+    if (e.kind() != ErrorKind::usage) throw;
+    fail_usage(e.problem(), where, "a side is insulated, periodic, absorbing (waves), or held at an expression such as 0 or sin(pi*y)");
+  }
 }
 
 bool SideValues::update(double time, const Context& context) {

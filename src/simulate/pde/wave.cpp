@@ -95,7 +95,8 @@ DatasetPtr Wave::dataset(const Context& context) const {
 DatasetPtr wave(const WaveParams& p, Context& context) {
   const double limit = pde::wave_limit(p, pde::make_room(p, "wave", 80, true, context));
   if (p.step && std::min(*p.step, p.frame) > limit * (1 + 1e-9))
-    context.warn(fmt::format("wave: steps of {:.4g} are beyond the limit of {:.4g}: the values will grow", *p.step, limit));
+    context.warn(
+        fmt::format("wave: steps of {:.4g} are beyond the limit of {:.4g}: the values will grow", std::min(*p.step, p.frame), limit));
   return frame_of_run<pde::Wave>(
       "wave", p, [&] { return std::make_unique<pde::Wave>(p, context); }, context);
 }

@@ -180,6 +180,8 @@ TEST_CASE("heat: bad input is told, and one cell, no diffusion and no time are r
   CHECK(test::contains(error([](HeatParams& p) { p.initial = "x+"; }), "heat initial"));
   CHECK(test::contains(error([](HeatParams& p) { p.initial = "temprature"; }), "heat initial"));
   CHECK(test::contains(error([](HeatParams& p) { p.source = "1/(time*0)"; }), "heat source"));
+  CHECK(test::contains(error([](HeatParams& p) { p.x0 = "insulate"; }), "heat x0: 'insulate' is not a field"));
+  CHECK(test::contains(error([](HeatParams& p) { p.x0 = "insulate"; }), "a side is insulated, periodic"));
   CHECK(test::contains(error([](HeatParams& p) { p.step = 0; }), "heat step"));
   CHECK(test::contains(error([](HeatParams& p) { p.step = -1; }), "heat step"));
   CHECK(test::contains(error([](HeatParams& p) { p.step = HUGE_VAL; }), "heat step"));
