@@ -58,6 +58,11 @@ std::string chosen_scale(const Dataset& data, const ParamSet& params, const Cont
 
 void ask_of_calc(const ParamSet& params, const Request&, size_t, Request& up) { add_names_in(params.as<CalcParams>().expr, up); }
 
+void ask_of_mesh_heat(const ParamSet& params, const Request&, size_t, Request& up) {
+  const auto& p = params.as<HeatOnMeshParams>();
+  for (const std::string* e : {&p.initial, &p.held, &p.value, &p.source, &p.diffusivity}) add_names_in(*e, up);
+}
+
 // What is not kept is not needed, but has to be there.
 void ask_of_select(const ParamSet& params, const Request&, size_t, Request& up) {
   const auto& p = params.as<SelectParams>();

@@ -114,8 +114,8 @@ bool spans_decades(std::span<const FieldOf> fields, const Context& context) {
   constexpr double few = 0.5, crowded = 0.9, decade = 10;
   for (const FieldOf& f : fields)
     if (!is_float(f.field->array.type()) || f.field->components() != 1 || (f.field->role != Role::scalars && f.field->role != Role::none) ||
-        f.field->look.tailed || f.field->look.shows != Shows::any)
-      return false;
+        f.field->look.tailed || f.field->look.shows != Shows::any || f.field->look.one_sided || f.field->look.two_sided)
+      return false;  // also where zero is a value like any other, or the middle
   std::vector<double> v = samples_of(fields, 0, context);
   const size_t all = v.size();
   if (std::any_of(v.begin(), v.end(), [](double x) { return x < 0; })) return false;

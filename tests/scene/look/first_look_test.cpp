@@ -157,6 +157,14 @@ TEST_CASE("shown range: a logarithmic scale where values crowd at the low end of
   CHECK_FALSE(decades([](size_t i) { return i == 7 ? 1e6 : 1 + 0.001 * double(i % 10); }));     // one outlier
   CHECK_FALSE(decades([](size_t i) { return i == 7 ? -1 : std::pow(10.0, double(i) / 60); }));  // signed
   CHECK_FALSE(decades([](size_t i) { return i % 10 ? 0 : std::pow(10.0, double(i) / 60); }));   // nothing but in a few places
+  // Nor where zero is a value like any other (temperatures) or the middle (heights of waves).
+  const auto d = grid({1000, 1, 1}, [&](size_t i, size_t, size_t) { return std::pow(10.0, double(i) / 60); });
+  for (const FieldLook look : {FieldLook{.one_sided = true}, FieldLook{.two_sided = true}}) {
+    Field f = d->fields()[0];
+    f.look = look;
+    const FieldOf of{d.get(), &f};
+    CHECK_FALSE(spans_decades({&of, 1}));
+  }
 }
 
 TEST_CASE("choose_scale: labels that have the names of colours have these colours") {
