@@ -152,6 +152,8 @@ void AdvectionDiffusion::advance(const Context& context) {
   sides_.update(double(frame_) * params_.frame, context);
 }
 
+void AdvectionDiffusion::resume(const Context& context) { sides_.update(double(frame_) * params_.frame, context); }
+
 DatasetPtr AdvectionDiffusion::dataset(const Context& context) const {
   Field concentration = whole_field(room_, values_[0], sides_, "concentration", params_.type, context);
   concentration.look.one_sided = true;

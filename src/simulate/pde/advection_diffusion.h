@@ -2,6 +2,7 @@
 // A substance that a given flow carries while it spreads: dc/dt + div(u c) = kappa lap c + s.
 #pragma once
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,6 +43,15 @@ class AdvectionDiffusion {
   /// The longest step at which a forward step of the upwind scheme makes no new extremes: 1 / (sum of |u|/h + 2 kappa sum of 1/h^2).
   double limit(const Context& context) const;
   DatasetPtr dataset(const Context& context) const;
+  /// What the next frame depends on, and what follows from it; see simulate/run/frames.h.
+  template <class F>
+  void each_part(F&& f) {
+    std::array<uint64_t, 2> counts{frame_, taken_};
+    f(counts);
+    frame_ = counts[0], taken_ = counts[1];
+    f(values_[0].values);
+  }
+  void resume(const Context& context);
 
  private:
   void find_velocity(double time, const Context& context);

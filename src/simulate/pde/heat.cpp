@@ -96,6 +96,12 @@ void Heat::advance(const Context& context) {
   ++frame_;
 }
 
+void Heat::resume(const Context& context) {
+  const double time = steps_.last_before(frame_, params_.frame) + steps_.length;
+  sides_.update(time, context);
+  if (source_moves_) source_ = values_of(params_.source, room_.grid(), time, "heat source", context);
+}
+
 DatasetPtr Heat::dataset(const Context& context) const {
   Field temperature = whole_field(room_, u_, sides_, "temperature", params_.type, context);
   temperature.look.one_sided = true;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Heat in a box: du/dt = kappa lap u + s.
 #pragma once
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -48,6 +50,15 @@ class Heat {
   /// The longest stable step of the explicit scheme.
   double limit() const;
   DatasetPtr dataset(const Context& context) const;
+  /// What the next frame depends on, and what follows from it; see simulate/run/frames.h.
+  template <class F>
+  void each_part(F&& f) {
+    std::array<uint64_t, 2> counts{frame_, taken_};
+    f(counts);
+    frame_ = counts[0], taken_ = counts[1];
+    f(u_.values);
+  }
+  void resume(const Context& context);
 
  private:
   void step(double time, const Context& context);

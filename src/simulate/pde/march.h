@@ -15,6 +15,11 @@ namespace sg::pde {
 struct Steps {
   size_t count = 1;
   double length = 0;
+
+  /// Where the last step before the end of a frame begins, by the sums with which it was taken.
+  double last_before(size_t frames, double frame) const {
+    return frames == 0 ? -length : double(frames - 1) * frame + double(count - 1) * length;
+  }
 };
 
 /// The equal steps of a frame: none longer than `stated`, or `automatic` where that is open. Throws Error(usage) for lengths that are not

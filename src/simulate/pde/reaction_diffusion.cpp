@@ -120,7 +120,10 @@ void ReactionDiffusion::advance(const Context& context) {
       check_finite(v, rd_name, taken_, time + steps_.length, "shorter steps, or initial values nearer to 1", context);
   }
   ++frame_;
+  resume(context);
 }
+
+void ReactionDiffusion::resume(const Context& context) { sides_.update(double(frame_) * params_.frame, context); }
 
 DatasetPtr ReactionDiffusion::dataset(const Context& context) const {
   std::vector<Field> fields{whole_field(room_, values_[1], sides_, "v", params_.type, context),

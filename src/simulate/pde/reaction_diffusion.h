@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Two substances that react and spread: spots, stripes, spirals.
 #pragma once
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,6 +47,15 @@ class ReactionDiffusion {
   const Values& v() const { return values_[1]; }
   const Steps& steps() const { return steps_; }
   DatasetPtr dataset(const Context& context) const;
+  /// What the next frame depends on, and what follows from it; see simulate/run/frames.h.
+  template <class F>
+  void each_part(F&& f) {
+    std::array<uint64_t, 2> counts{frame_, taken_};
+    f(counts);
+    frame_ = counts[0], taken_ = counts[1];
+    for (Values& v : values_) f(v.values);
+  }
+  void resume(const Context& context);
 
  private:
   void rates(const std::vector<Values>& at, double time, std::vector<Values>& out, const Context& context);

@@ -84,6 +84,12 @@ void Wave::advance(const Context& context) {
   ++frame_;
 }
 
+void Wave::resume(const Context& context) {
+  const double time = steps_.last_before(frame_, params_.frame) + steps_.length;
+  if (taken_ > 0) sides_.update(time, context);
+  if (source_moves_ && taken_ > 0) source_ = values_of(params_.source, room_.grid(), time, "wave source", context);
+}
+
 DatasetPtr Wave::dataset(const Context& context) const {
   Field height = whole_field(room_, u_, sides_, "height", params_.type, context);
   height.look.two_sided = true;

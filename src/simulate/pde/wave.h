@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Waves in a box: d2u/dt2 = c^2 lap u + s.
 #pragma once
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -35,6 +37,16 @@ class Wave {
   const Steps& steps() const { return steps_; }
   double limit() const;
   DatasetPtr dataset(const Context& context) const;
+  /// What the next frame depends on, and what follows from it; see simulate/run/frames.h.
+  template <class F>
+  void each_part(F&& f) {
+    std::array<uint64_t, 2> counts{frame_, taken_};
+    f(counts);
+    frame_ = counts[0], taken_ = counts[1];
+    f(u_.values), f(before_.values);
+    for (size_t s = 0; s < 6; ++s) f(sides_.of(s).values);
+  }
+  void resume(const Context& context);
 
  private:
   void step(double time, const Context& context);

@@ -31,7 +31,7 @@ size_t frame_at(const FrameParams& p, const std::string& who);
 bool may_keep(size_t bytes, const Context& context);
 
 /// A Run that can be stored lists what its frame depends on: each_part(f) calls f(list) for lists of numbers, whose lengths follow from the
-/// parameters.
+/// parameters. resume(context), where there is one, then finds again what follows from them.
 template <class Run>
 concept Storable = requires(Run& run) {
   run.each_part([](auto&) {});
@@ -40,12 +40,13 @@ concept Storable = requires(Run& run) {
 /// Goes on from what is stored at the path for the run `key`, unless that lies beyond `frame`; returns whether it does. Throws Error(usage)
 /// where something else is there.
 template <Storable Run>
-bool go_on(Run& run, const std::string& path, const std::string& key, size_t frame) {
+bool go_on(Run& run, const std::string& path, const std::string& key, size_t frame, const Context& context) {
   if (!file_exists(path)) return false;
   StateFile file(path);
   if (file.key() != key) fail_usage("is the state of another run", "'" + path + "'", "remove it, or name another file as store");
   if (file.frame() > frame) return false;
   run.each_part([&](auto& list) { file.fill(list); });
+  if constexpr (requires { run.resume(context); }) run.resume(context);
   return true;
 }
 template <Storable Run>
@@ -57,8 +58,8 @@ void store(Run& run, const std::string& path, const std::string& key) {
 
 /// A frame of the run of these parameters: `make()` begins it, or the run that was shown last goes on where it is the same one and has not
 /// gone beyond, or the one stored. A Run has size_t frame() const, void advance(const Context&) to the next frame,
-/// DatasetPtr dataset(const Context&) const, and, where it takes much memory, size_t bytes() const. `params` may say any time. What else the run depends on, such as the meshes given to it, is
-/// told apart by `of`.
+/// DatasetPtr dataset(const Context&) const, and, where it takes much memory, size_t bytes() const. `params` may say any time. What else
+/// the run depends on, such as the meshes given to it, is told apart by `of`.
 template <class Run, class Params, class Make>
 DatasetPtr frame_of_run(const std::string& who, Params params, Make&& make, Context& context, const std::string& of = {}) {
   static std::mutex mutex;
@@ -78,7 +79,7 @@ DatasetPtr frame_of_run(const std::string& who, Params params, Make&& make, Cont
   if (!run) {
     run = make();
     if constexpr (Storable<Run>)
-      if (stores) stores = go_on(*run, frames.store, text, frame) || !file_exists(frames.store);
+      if (stores) stores = go_on(*run, frames.store, text, frame, context) || !file_exists(frames.store);
   }
   const size_t first = run->frame();
   while (run->frame() < frame) {

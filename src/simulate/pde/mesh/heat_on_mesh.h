@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Heat through any mesh and along any surface, by linear finite elements: rho du/dt = div(kappa grad u) + s.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -53,6 +54,13 @@ class MeshHeat {
   const Stiffness& stiffness() const { return stiffness_; }
   /// The mesh with the field.
   DatasetPtr dataset(const Context& context) const;
+  /// What the next frame depends on; see simulate/run/frames.h.
+  template <class F>
+  void each_part(F&& f) {
+    std::array<uint64_t, 1> count{frame_};
+    f(count), f(u_), f(source_);
+    frame_ = count[0];
+  }
 
  private:
   /// At the points; those that count must be finite.

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every simulator that stores its state goes on from it to the same bytes.
+#include <string>
+
+#include "simulate/fluid/flip.h"
+#include "simulate/pde/advection_diffusion.h"
+#include "simulate/pde/heat.h"
+#include "simulate/pde/mesh/heat_on_mesh.h"
+#include "simulate/pde/reaction_diffusion.h"
+#include "simulate/pde/wave.h"
+#include "simulate/run/frames.h"
+#include "support/test.h"
+
+using namespace sg;
+
+namespace {
+
+std::string fields_of(const DatasetPtr& d) {
+  std::string out;
+  for (const Field& f : d->fields()) {
+    out += f.name;
+    for (size_t i = 0; i < f.array.count(); ++i)
+      for (int c = 0; c < f.components(); ++c) {
+        const double v = f.array.get(i, c);
+        out.append(reinterpret_cast<const char*>(&v), sizeof v);
+      }
+  }
+  return out;
+}
+
+// `run` shows a frame of the parameters; the run of `other` ones takes the place of what is kept in memory.
+template <class Params, class Run>
+void goes_on(const char* name, Params p, Params other, Run&& run) {
+  INFO(name);
+  const auto afresh = [&](const Params& q) {
+    run(other);
+    return fields_of(run(q));
+  };
+  p.time = 7 * p.frame;
+  const std::string unbroken = afresh(p);
+  Params stored = p;
+  stored.store = test::fresh_folder(std::string("stored_") + name) + "run", stored.time = 4 * p.frame;
+  afresh(stored);
+  CHECK(StateFile(stored.store).frame() == 4);
+  stored.time = p.time;
+  CHECK(afresh(stored) == unbroken);
+}
+
+}  // namespace
+
+TEST_CASE("runs: every simulator on a grid goes on from its stored state to the same bytes") {
+  Context context;
+  {
+    HeatParams p, other;
+    p.size = 12, p.source = "x*sin(time)", p.frame = 0.1, p.x0 = "time", other.size = 4;
+    for (const HeatScheme scheme : {HeatScheme::explicit_euler, HeatScheme::crank_nicolson, HeatScheme::backward_euler}) {
+      p.scheme = scheme;
+      goes_on("heat", p, other, [&](const HeatParams& q) { return heat(q, context); });
+    }
+  }
+  {
+    WaveParams p, other;
+    p.size = 16, p.frame = 0.05, p.sides = "absorbing", p.y0 = "sin(9*time)", p.source = "time", other.size = 4;
+    goes_on("wave", p, other, [&](const WaveParams& q) { return wave(q, context); });
+  }
+  {
+    ReactionDiffusionParams p, other;
+    p.size = 20, p.frame = 4, other.size = 4;
+    goes_on("reaction_diffusion", p, other, [&](const ReactionDiffusionParams& q) { return reaction_diffusion(q, context); });
+  }
+  {
+    AdvectionDiffusionParams p, other;
+    p.size = 20, p.velocity = "vec(1+time,-y,0)", p.frame = 0.03, p.source = "time", other.size = 4;
+    goes_on("advection_diffusion", p, other, [&](const AdvectionDiffusionParams& q) { return advection_diffusion(q, context); });
+  }
+}
+
+TEST_CASE("runs: heat on a mesh and water go on from their stored states") {
+  Context context;
+  {
+    HeatParams room;
+    room.size = 9;
+    const DatasetPtr mesh = heat(room, context);
+    HeatOnMeshParams p, other;
+    p.initial = "x", p.held = "border", p.value = "x+time", p.source = "time", p.frame = 0.05, other.initial = "y", other.frame = 1;
+    for (const MeshHeatScheme scheme : {MeshHeatScheme::backward_euler, MeshHeatScheme::crank_nicolson}) {
+      p.scheme = scheme;
+      goes_on("heat_on_mesh", p, other, [&](const HeatOnMeshParams& q) { return heat_on_mesh(mesh, q, context); });
+    }
+  }
+  {
+    FlipLiquidParams p, other;
+    p.size = 24, p.bounds = {0, 2, 0, 1, 0, 0}, p.frame = 0.05, other.size = 8;
+    for (const fluid::Transfer transfer : {fluid::Transfer::flip, fluid::Transfer::apic}) {
+      p.transfer = transfer;
+      goes_on("flip_liquid", p, other, [&](const FlipLiquidParams& q) { return flip_liquid(q, context); });
+    }
+  }
+}
