@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <utility>
 
 #include "base/error.h"
@@ -32,8 +33,13 @@ class MechanicsRun {
     const double steps = std::max(1.0, std::ceil(params_.frame / params_.step * (1 - 1e-12)));
     if (!(steps <= 1e6)) fail_usage("a frame of more than a million steps", "mechanics step", "take longer steps or shorter frames");
     try {
+      const size_t between = std::max<size_t>(1, size_t(steps) / 8);  // marks of the trail within a frame
       for (size_t i = 0; i < size_t(steps); ++i) {
         context.check();
+        if (i > 0 && i % between == 0 && leaves_trail()) {
+          speed_ = motion_.speed(state_);
+          mark(double(frame()) * params_.frame + double(i) * params_.frame / steps);
+        }
         motion_.step(params_.integrator, params_.frame / steps, state_);
         for (size_t k = 0; k < state_.q.size(); ++k)
           if (!std::isfinite(state_.q[k]) || !std::isfinite(state_.p[k]))
@@ -54,6 +60,10 @@ class MechanicsRun {
   struct Body {
     Vec3 at, velocity;
   };
+  struct Mark {
+    Body body;
+    double moment;
+  };
   std::vector<Body> bodies() const {
     std::vector<Moving> q;
     for (size_t i = 0; i < state_.q.size(); ++i) q.emplace_back(state_.q[i], std::array{speed_[i]});
@@ -69,8 +79,14 @@ class MechanicsRun {
     kinetic_.push_back(k), potential_.push_back(u), total_.push_back(k + u);
     most_ = std::max(most_, std::abs(k));
     drift_.push_back(most_ > 0 ? (total_.back() - total_[0]) / most_ : 0);
-    trail_.push_back(bodies().back());
-    if (trail_.size() > size_t(params_.trail) + 1) trail_.erase(trail_.begin());
+    if (leaves_trail()) mark(moment_.back());
+  }
+  // A net's last mass is held.
+  bool leaves_trail() const { return params_.trail > 0 && params_.system != MechanicalSystem::spring_net; }
+  void mark(double moment) {
+    trail_.push_back({bodies().back(), moment});
+    const double first = moment - (params_.trail + 1e-9) * params_.frame;
+    while (trail_.front().moment < first) trail_.pop_front();
   }
 
   MechanicsParams params_;
@@ -78,7 +94,7 @@ class MechanicsRun {
   State state_;
   Numbers speed_, moment_, kinetic_, potential_, total_, drift_;
   double most_ = 0;  // kinetic energy
-  std::vector<Body> trail_;
+  std::deque<Mark> trail_;
 };
 
 DatasetPtr MechanicsRun::dataset(const Context&) const {
@@ -88,13 +104,13 @@ DatasetPtr MechanicsRun::dataset(const Context&) const {
   for (size_t i = 0; i < count; ++i) vertices.push_back(int64_t(i));
   for (const auto& [a, b] : motion_.system().rods()) lines.push_back(a), lines.push_back(b), offsets.push_back(int64_t(lines.size()));
   if (trail_.size() > 1) {
-    for (const Body& b : trail_) lines.push_back(int64_t(all.size())), all.push_back(b);
+    for (const Mark& m : trail_) lines.push_back(int64_t(all.size())), all.push_back(m.body);
     offsets.push_back(int64_t(lines.size()));
   }
   std::vector<double> xyz, velocity, age;
   for (size_t i = 0; i < all.size(); ++i) {
     for (int a = 0; a < 3; ++a) xyz.push_back(all[i].at[a]), velocity.push_back(all[i].velocity[a]);
-    age.push_back(i < count ? 0 : double(all.size() - 1 - i) * params_.frame);
+    age.push_back(i < count ? 0 : moment_.back() - trail_[i - count].moment);
   }
   SurfaceMesh mesh;
   mesh.points.xyz = Array::from_vector(std::move(xyz), 3);
@@ -103,7 +119,7 @@ DatasetPtr MechanicsRun::dataset(const Context&) const {
   DatasetParts parts;
   parts.mesh = std::move(mesh);
   parts.time = moment_.back();
-  parts.fields.add({"age", Association::point, Array::from_vector(std::move(age)), "", Role::scalars});
+  if (leaves_trail()) parts.fields.add({"age", Association::point, Array::from_vector(std::move(age)), "", Role::scalars});
   parts.fields.add({"velocity", Association::point, Array::from_vector(std::move(velocity), 3), "", Role::vectors});
   for (const auto& [name, values] : {std::pair<const char*, const Numbers*>{"moment", &moment_},
                                      {"kinetic", &kinetic_},

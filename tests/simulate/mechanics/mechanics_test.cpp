@@ -156,9 +156,9 @@ TEST_CASE("mechanics: energies in expressions move as those of functors do") {
   CHECK(e->fields().require("total").array.count() == 11);
   CHECK(e->fields().require("moment").array.get(10) == doctest::Approx(0.4));
   CHECK(*e->time() == doctest::Approx(0.4));
-  // Three bodies, two rods, a trail of eleven frames.
+  // Three bodies, two rods, a trail of ten frames of eight marks and the first.
   CHECK(e->as<SurfaceMesh>()->lines.size() == 3);
-  CHECK(e->point_count() == 3 + 11);
+  CHECK(e->point_count() == 3 + 81);
 }
 
 TEST_CASE("mechanics: a bead on a parabola, whose mass depends on the coordinate, keeps its energy under Verlet") {
