@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 
-namespace sg::particles {
+namespace sg::swarm {
 
 namespace {
 
@@ -99,4 +99,4 @@ void implicit_velocities_together(const Accelerations& a, double t, double h, st
   fail_data("Newton's method found no end of a step", "backward_euler", "shorter steps or another integrator");
 }
 
-}  // namespace sg::particles
+}  // namespace sg::swarm

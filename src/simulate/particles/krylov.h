@@ -7,7 +7,7 @@
 
 #include "base/vec.h"
 
-namespace sg::particles {
+namespace sg::swarm {
 
 using Accelerations = std::function<void(std::span<const Vec3> x, std::span<const Vec3> v, double t, std::span<Vec3> a)>;
 
@@ -16,4 +16,4 @@ using Accelerations = std::function<void(std::span<const Vec3> x, std::span<cons
 void implicit_velocities_together(const Accelerations& a, double t, double h, std::span<const Vec3> x, std::span<const Vec3> v,
                                   std::vector<Vec3>& w);
 
-}  // namespace sg::particles
+}  // namespace sg::swarm

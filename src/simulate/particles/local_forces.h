@@ -8,7 +8,7 @@
 #include "base/vec.h"
 #include "simulate/particles/wind.h"
 
-namespace sg::particles {
+namespace sg::swarm {
 
 /// a = gravity - (drag + quadratic |v - u|) (v - u) + strength F / mass - tether (x - home) / mass, with the wind u and the force F of a
 /// field; masses are equal.
@@ -36,4 +36,4 @@ struct LocalForces {
   }
 };
 
-}  // namespace sg::particles
+}  // namespace sg::swarm

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "data/cells/cell_reader.h"
 
-namespace sg::particles {
+namespace sg::swarm {
 
 namespace {
 
@@ -143,4 +143,4 @@ bool Obstacles::Walker::walk(Vec3 x, Vec3 v, Vec3& x1, Vec3& v1, double h) {
   return true;
 }
 
-}  // namespace sg::particles
+}  // namespace sg::swarm

@@ -14,7 +14,7 @@
 #include "data/dataset.h"
 #include "index/cell_locator.h"
 
-namespace sg::particles {
+namespace sg::swarm {
 
 /// restitution: speed across the surface after a bounce as a share of that before; friction: Coulomb's coefficient.
 struct Bounce {
@@ -66,4 +66,4 @@ class Obstacles {
   friend class Walker;
 };
 
-}  // namespace sg::particles
+}  // namespace sg::swarm

@@ -46,7 +46,7 @@ void describe(Schema& s, ParticlesInParams& p) {
   describe(s, static_cast<ParticleParams&>(p));
 }
 
-namespace particles {
+namespace swarm {
 
 void check(const MotionParams& p, const std::string& who) {
   const Vec3 g = p.gravity.value_or(Vec3());
@@ -87,5 +87,5 @@ Obstacles obstacles_of(const MotionParams& p, std::span<const DatasetPtr> surfac
   return o;
 }
 
-}  // namespace particles
+}  // namespace swarm
 }  // namespace sg

@@ -51,7 +51,7 @@ struct ParticlesInParams : ParticleParams {
 };
 void describe(Schema& s, ParticlesInParams& p);
 
-namespace particles {
+namespace swarm {
 
 /// Throws Error(usage), naming `who`, for numbers that are not finite.
 void check(const MotionParams& p, const std::string& who);
@@ -62,5 +62,5 @@ std::optional<Box3> box_of(const MotionParams& p, const std::string& who);
 /// Walls and surfaces to bounce off.
 Obstacles obstacles_of(const MotionParams& p, std::span<const DatasetPtr> surfaces, const std::string& who, Context& context);
 
-}  // namespace particles
+}  // namespace swarm
 }  // namespace sg

@@ -13,7 +13,7 @@
 #include "base/random.h"
 #include "base/text/text.h"
 
-namespace sg::particles {
+namespace sg::swarm {
 
 namespace {
 
@@ -118,10 +118,10 @@ void ParticleRun::step(double t, double h, const Context& context) {
         if (!home_.empty()) forces.home = std::span<const Vec3>(home_).subspan(begin, n);
         Scratch scratch;
         if (obstacles_.empty()) {
-          particles::advance(params_.integrator, forces, t, h, x, v, scratch);
+          swarm::advance(params_.integrator, forces, t, h, x, v, scratch);
         } else {
           const std::vector<Vec3> x0(x.begin(), x.end()), v0(v.begin(), v.end());
-          particles::advance(params_.integrator, forces, t, h, x, v, scratch);
+          swarm::advance(params_.integrator, forces, t, h, x, v, scratch);
           Obstacles::Walker walker(obstacles_);
           for (size_t i = 0; i < n; ++i) walker.walk(x0[i], v0[i], x[i], v[i], h);
         }
@@ -167,4 +167,4 @@ DatasetPtr ParticleRun::dataset(const Context&) const {
   return make_dataset(std::move(parts));
 }
 
-}  // namespace sg::particles
+}  // namespace sg::swarm

@@ -15,7 +15,7 @@
 
 namespace sg {
 
-namespace particles {
+namespace swarm {
 
 /// The same bytes for any number of threads: particles are moved in blocks whose borders depend on their number alone.
 class ParticleRun {
@@ -48,7 +48,7 @@ class ParticleRun {
   size_t frame_ = 0;
 };
 
-}  // namespace particles
+}  // namespace swarm
 
 /// Points with the fields velocity, age and id of the particles at the last frame before `time`.
 DatasetPtr particle_system(const ParticleParams& p, Context& context);

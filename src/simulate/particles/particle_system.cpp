@@ -11,8 +11,8 @@
 namespace sg {
 
 DatasetPtr particle_system(const ParticleParams& p, Context& context) {
-  using Run = particles::ParticleRun;
-  particles::check(p, "particle_system");
+  using Run = swarm::ParticleRun;
+  swarm::check(p, "particle_system");
   return frame_of_run<Run>(
       "particle_system", p,
       [&] {
@@ -24,8 +24,8 @@ DatasetPtr particle_system(const ParticleParams& p, Context& context) {
 }
 
 DatasetPtr particle_system_in(const std::vector<Data>& inputs, const ParticlesInParams& p, Context& context) {
-  using Run = particles::ParticleRun;
-  particles::check(p, "particle_system_in");
+  using Run = swarm::ParticleRun;
+  swarm::check(p, "particle_system_in");
   std::vector<DatasetPtr> data;
   std::string of;
   for (const Data& d : inputs) {

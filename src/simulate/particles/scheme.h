@@ -11,7 +11,7 @@
 #include "simulate/particles/krylov.h"
 #include "simulate/run/integrator.h"
 
-namespace sg::particles {
+namespace sg::swarm {
 
 /// Memory that steps use again.
 struct Scratch {
@@ -120,4 +120,4 @@ void advance(Integrator scheme, F&& f, double t, double h, std::span<Vec3> x, st
   }
 }
 
-}  // namespace sg::particles
+}  // namespace sg::swarm

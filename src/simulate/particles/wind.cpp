@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 
-namespace sg::particles {
+namespace sg::swarm {
 
 Wind::Wind(const DatasetPtr& data, const std::string& field, const std::string& who, Context& context) {
   const Field& f = flow_field_of(*data, field, who);
@@ -60,4 +60,4 @@ void Wind::sample(std::span<const Vec3> x, std::span<Vec3> u) const {
     else u[k] = {};
 }
 
-}  // namespace sg::particles
+}  // namespace sg::swarm

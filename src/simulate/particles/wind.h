@@ -11,7 +11,7 @@
 #include "data/dataset.h"
 #include "filter/flow/flow_field.h"
 
-namespace sg::particles {
+namespace sg::swarm {
 
 /// Shared and immutable; holds the dataset.
 class Wind {
@@ -32,4 +32,4 @@ class Wind {
   Vec3 origin_, scale_;
 };
 
-}  // namespace sg::particles
+}  // namespace sg::swarm

@@ -10,7 +10,7 @@
 #include "support/test.h"
 
 using namespace sg;
-using namespace sg::particles;
+using namespace sg::swarm;
 
 namespace {
 

@@ -31,7 +31,7 @@ void describe(Schema& s, NbodyParams& p) {
   s("step", p.step, "Longest step in time: a frame takes as many equal ones as that needs.").unit("time").positive();
 }
 
-namespace particles {
+namespace swarm {
 
 namespace {
 
@@ -92,7 +92,7 @@ void NbodyRun::step(double h, const Context& context) {
     if (pull_.angle == 0) pull_directly(pull_, x, mass_, a, {}, &context);
     else Octree(x, mass_, &context).pull(pull_, a, {}, &context);
   };
-  particles::advance(params_.integrator, forces, 0, h, x_, v_, scratch_, true);
+  swarm::advance(params_.integrator, forces, 0, h, x_, v_, scratch_, true);
 }
 
 void NbodyRun::advance(const Context& context) {
@@ -146,10 +146,10 @@ DatasetPtr NbodyRun::dataset(const Context&) const {
   return make_dataset(std::move(parts));
 }
 
-}  // namespace particles
+}  // namespace swarm
 
 DatasetPtr nbody(const NbodyParams& p, Context& context) {
-  using Run = particles::NbodyRun;
+  using Run = swarm::NbodyRun;
   return frame_of_run<Run>(
       "nbody", p, [&] { return std::make_unique<Run>(p, context); }, context);
 }

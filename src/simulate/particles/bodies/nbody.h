@@ -23,7 +23,7 @@ struct NbodyParams : FrameParams {
 };
 void describe(Schema& s, NbodyParams& p);
 
-namespace particles {
+namespace swarm {
 
 class NbodyRun {
  public:
@@ -48,7 +48,7 @@ class NbodyRun {
   Scratch scratch_;
 };
 
-}  // namespace particles
+}  // namespace swarm
 
 /// Points with the fields velocity, mass, cluster and potential, and, with one value per frame from 0 on, the fields of the whole: moment,
 /// kinetic, potential energy, total, momentum and angular momentum (of three components).

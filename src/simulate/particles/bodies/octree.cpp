@@ -7,7 +7,7 @@
 
 #include "base/parallel.h"
 
-namespace sg::particles {
+namespace sg::swarm {
 
 namespace {
 
@@ -130,4 +130,4 @@ void pull_directly(const Pull& p, std::span<const Vec3> x, std::span<const doubl
       context);
 }
 
-}  // namespace sg::particles
+}  // namespace sg::swarm

@@ -8,7 +8,7 @@
 #include "base/context.h"
 #include "base/vec.h"
 
-namespace sg::particles {
+namespace sg::swarm {
 
 /// How bodies pull each other: acceleration constant m d / (|d|^2 + softening^2)^(3/2) (Plummer).
 struct Pull {
@@ -46,4 +46,4 @@ class Octree {
 void pull_directly(const Pull& p, std::span<const Vec3> x, std::span<const double> mass, std::span<Vec3> a,
                    std::span<double> potential = {}, const Context* context = nullptr);
 
-}  // namespace sg::particles
+}  // namespace sg::swarm

@@ -25,7 +25,7 @@ void describe(Schema& s, SpringMeshParams& p) {
   describe(s, static_cast<MotionParams&>(p));
 }
 
-namespace particles {
+namespace swarm {
 
 Springs springs_of(const DatasetPtr& data) {
   std::vector<std::pair<uint32_t, uint32_t>> pairs;
@@ -88,7 +88,7 @@ class SpringMeshRun {
     for (size_t k = 0; k < steps; ++k) {
       context.check();
       const std::vector<Vec3> x0 = x_, v0 = v_;
-      particles::advance(
+      swarm::advance(
           params_.integrator,
           [&](std::span<const Vec3> x, std::span<const Vec3> v, double t, std::span<Vec3> a) { pull(x, v, t, a, context); }, 0, h, x_, v_,
           scratch_, true);
@@ -160,11 +160,11 @@ class SpringMeshRun {
 };
 
 }  // namespace
-}  // namespace particles
+}  // namespace swarm
 
 DatasetPtr spring_mesh(const std::vector<Data>& inputs, const SpringMeshParams& p, Context& context) {
-  using Run = particles::SpringMeshRun;
-  particles::check(p, "spring_mesh");
+  using Run = swarm::SpringMeshRun;
+  swarm::check(p, "spring_mesh");
   std::vector<DatasetPtr> data;
   std::string of;
   for (const Data& d : inputs) {

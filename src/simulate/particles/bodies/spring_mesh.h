@@ -16,7 +16,7 @@ struct SpringMeshParams : MotionParams {
 };
 void describe(Schema& s, SpringMeshParams& p);
 
-namespace particles {
+namespace swarm {
 
 /// Springs that join points, each once; in the order of their ends.
 struct Springs {
@@ -27,7 +27,7 @@ struct Springs {
 /// Along the sides and diagonals of cells of up to 8 points, round larger ones. Throws Error(usage) for a mesh without lines or cells.
 Springs springs_of(const DatasetPtr& data);
 
-}  // namespace particles
+}  // namespace swarm
 
 /// The mesh with its points moved and the point field velocity: under gravity and drag, pulled by springs of `stiffness` (force per length)
 /// and `damping` (force per speed along the spring), bouncing off the further inputs.
