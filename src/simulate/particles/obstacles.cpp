@@ -67,14 +67,14 @@ void Obstacles::add(const DatasetPtr& data, const std::string& who, Context& con
   surfaces_.push_back(std::move(s));
 }
 
-bool Obstacles::Surface::may_meet(Vec3 a, Vec3 b) const {
+bool Obstacles::Surface::may_meet(Vec3 a, Vec3 b, int most_cells) const {
   int lo[3], hi[3];
   for (int c = 0; c < 3; ++c) {
     const double p = (std::min(a[c], b[c]) - box.lo[c]) * scale[c], q = (std::max(a[c], b[c]) - box.lo[c]) * scale[c];
     if (!(q >= 0 && p <= n[size_t(c)])) return false;
     lo[c] = std::max(0, int(p)), hi[c] = std::min(n[size_t(c)] - 1, int(std::min(q, double(n[size_t(c)]))));
   }
-  if ((hi[0] - lo[0] + 1) * (hi[1] - lo[1] + 1) * (hi[2] - lo[2] + 1) > 64) return true;
+  if ((hi[0] - lo[0] + 1) * (hi[1] - lo[1] + 1) * (hi[2] - lo[2] + 1) > most_cells) return true;
   for (int k = lo[2]; k <= hi[2]; ++k)
     for (int j = lo[1]; j <= hi[1]; ++j)
       for (int i = lo[0]; i <= hi[0]; ++i)
@@ -84,6 +84,15 @@ bool Obstacles::Surface::may_meet(Vec3 a, Vec3 b) const {
 
 Obstacles::Walker::Walker(const Obstacles& obstacles) : all_(obstacles) {
   for (const Surface& s : obstacles.surfaces_) cursors_.emplace_back(*s.locator);
+}
+
+bool Obstacles::Walker::free(const Box3& box) const {
+  if (all_.box_)
+    for (int a = 0; a < 3; ++a)
+      if (!(box.lo[a] >= all_.box_->lo[a] && box.hi[a] <= all_.box_->hi[a])) return false;
+  for (const Surface& s : all_.surfaces_)
+    if (s.may_meet(box.lo, box.hi, 4096)) return false;
+  return true;
 }
 
 Obstacles::Walker::Hit Obstacles::Walker::first(Vec3 x, Vec3 d) {

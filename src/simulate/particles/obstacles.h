@@ -38,6 +38,8 @@ class Obstacles {
     /// between bounces is straight and ends before what it would meet, by 1e-9 of the scene's size: nothing is passed through. Returns
     /// whether there was a bounce.
     bool walk(Vec3 x, Vec3 v, Vec3& x1, Vec3& v1, double h);
+    /// Whether no way within a box meets anything.
+    bool free(const Box3& box) const;
 
    private:
     struct Hit {
@@ -57,7 +59,7 @@ class Obstacles {
     std::array<int, 3> n{};
     Vec3 scale;
     std::vector<uint8_t> filled;
-    bool may_meet(Vec3 a, Vec3 b) const;
+    bool may_meet(Vec3 a, Vec3 b, int most_cells = 64) const;
   };
   Bounce bounce_;
   std::optional<Box3> box_;

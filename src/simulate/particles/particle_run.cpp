@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 #include <utility>
 
 #include "base/error.h"
@@ -17,7 +18,9 @@ namespace sg::swarm {
 
 namespace {
 
-constexpr size_t block = 2048;  // particles that are moved together, within a core's cache
+constexpr size_t few = 1 << 15;        // particles whose order does not matter for speed
+constexpr size_t steps_together = 16;  // after which they have drifted apart
+constexpr size_t block = 2048;         // particles that are moved together, within a core's cache
 
 std::vector<std::array<double, 4>> emitters_of(const ParticlesInParams& p, const std::string& who, const Box3& room, bool flat) {
   if (p.emitter.empty()) {
@@ -40,6 +43,12 @@ std::vector<std::array<double, 4>> emitters_of(const ParticlesInParams& p, const
     balls.push_back(b);
   }
   return balls;
+}
+
+// Two zeros between six bits: the order of a curve through cubes of cells (Morton).
+uint32_t spread_bits(uint32_t v) {
+  v = (v | v << 8) & 0x300f, v = (v | v << 4) & 0x30c3;
+  return (v | v << 2) & 0x9249;
 }
 
 }  // namespace
@@ -108,7 +117,54 @@ void ParticleRun::let_die(double t) {
   if (!home_.empty()) home_.resize(to);
 }
 
+// Particles in the order of a coarse grid, so that those moved together read the same parts of a field.
+void ParticleRun::bring_together(const Context& context) {
+  const size_t n = x_.size();
+  const Box3 box = parallel_reduce(
+      n, 1 << 15, Box3(),
+      [&](size_t begin, size_t end) {
+        Box3 b;
+        for (size_t i = begin; i < end; ++i) b.add(x_[i]);
+        return b;
+      },
+      [](Box3 a, const Box3& b) {
+        a.add(b);
+        return a;
+      },
+      &context);
+  constexpr int along = 64;
+  Vec3 scale;
+  for (int a = 0; a < 3; ++a) scale[a] = box.size()[a] > 0 ? along / box.size()[a] : 0;
+  std::vector<uint32_t> cell(n), begin_of(along * along * along + 1, 0), order(n);
+  parallel_for(
+      n, 1 << 15,
+      [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+          const Vec3 q = (x_[i] - box.lo) * scale;
+          const auto at = [](double v) { return spread_bits(uint32_t(std::min(v, along - 1.0))); };
+          cell[i] = at(q.x) | at(q.y) << 1 | at(q.z) << 2;
+        }
+      },
+      &context);
+  for (const uint32_t c : cell) ++begin_of[c + 1];
+  for (size_t c = 0; c + 1 < begin_of.size(); ++c) begin_of[c + 1] += begin_of[c];
+  for (size_t i = 0; i < n; ++i) order[begin_of[cell[i]]++] = uint32_t(i);
+  const auto reorder = [&](auto& values) {
+    if (values.empty()) return;
+    std::remove_reference_t<decltype(values)> sorted(n);
+    parallel_for(
+        n, 1 << 15,
+        [&](size_t begin, size_t end) {
+          for (size_t i = begin; i < end; ++i) sorted[i] = values[order[i]];
+        },
+        &context);
+    values = std::move(sorted);
+  };
+  reorder(x_), reorder(v_), reorder(home_), reorder(born_), reorder(id_);
+}
+
 void ParticleRun::step(double t, double h, const Context& context) {
+  if (field_ && x_.size() > few && steps_++ % steps_together == 0) bring_together(context);
   parallel_for(
       x_.size(), block,
       [&](size_t begin, size_t end) {
@@ -123,7 +179,10 @@ void ParticleRun::step(double t, double h, const Context& context) {
           const std::vector<Vec3> x0(x.begin(), x.end()), v0(v.begin(), v.end());
           swarm::advance(params_.integrator, forces, t, h, x, v, scratch);
           Obstacles::Walker walker(obstacles_);
-          for (size_t i = 0; i < n; ++i) walker.walk(x0[i], v0[i], x[i], v[i], h);
+          Box3 ways;
+          for (size_t i = 0; i < n; ++i) ways.add(x0[i]), ways.add(x[i]);
+          if (!walker.free(ways))
+            for (size_t i = 0; i < n; ++i) walker.walk(x0[i], v0[i], x[i], v[i], h);
         }
         for (size_t i = 0; i < n; ++i)
           if (!std::isfinite(x[i].x + x[i].y + x[i].z + v[i].x + v[i].y + v[i].z))
@@ -148,22 +207,29 @@ void ParticleRun::advance(const Context& context) {
 }
 
 DatasetPtr ParticleRun::dataset(const Context&) const {
+  // In the order in which they appeared.
   const size_t n = x_.size();
+  const int64_t first = n ? *std::min_element(id_.begin(), id_.end()) : 0;
+  std::vector<uint32_t> place(size_t(emitted_ - first), UINT32_MAX);
+  for (size_t i = 0; i < n; ++i) place[size_t(id_[i] - first)] = uint32_t(i);
+  std::erase(place, UINT32_MAX);
   const double now = double(frame_) * params_.frame;
   double *xyz = nullptr, *velocity = nullptr, *age = nullptr;
+  int64_t* id = nullptr;
   PointCloud cloud;
   cloud.points.xyz = Array::make<double>(n, 3, &xyz);
-  Array velocities = Array::make<double>(n, 3, &velocity), ages = Array::make<double>(n, 1, &age);
+  Array velocities = Array::make<double>(n, 3, &velocity), ages = Array::make<double>(n, 1, &age), ids = Array::make<int64_t>(n, 1, &id);
   for (size_t i = 0; i < n; ++i) {
-    for (size_t a = 0; a < 3; ++a) xyz[3 * i + a] = x_[i][int(a)], velocity[3 * i + a] = v_[i][int(a)];
-    age[i] = now - born_[i];
+    const size_t from = place[i];
+    for (size_t a = 0; a < 3; ++a) xyz[3 * i + a] = x_[from][int(a)], velocity[3 * i + a] = v_[from][int(a)];
+    age[i] = now - born_[from], id[i] = id_[from];
   }
   DatasetParts parts;
   parts.mesh = std::move(cloud);
   parts.time = now;
   parts.fields.add({"age", Association::point, std::move(ages), "", Role::scalars});
   parts.fields.add({"velocity", Association::point, std::move(velocities), "", Role::vectors});
-  parts.fields.add({"id", Association::point, Array::from_vector(id_), "", Role::global_ids});
+  parts.fields.add({"id", Association::point, std::move(ids), "", Role::global_ids});
   return make_dataset(std::move(parts));
 }
 

@@ -33,6 +33,7 @@ class ParticleRun {
  private:
   void emit(double t, double h);
   void let_die(double t);
+  void bring_together(const Context& context);
 
   ParticlesInParams params_;
   std::string who_;
@@ -45,6 +46,7 @@ class ParticleRun {
   std::vector<double> born_;
   std::vector<int64_t> id_;
   int64_t emitted_ = 0;
+  size_t steps_ = 0;
   size_t frame_ = 0;
 };
 
