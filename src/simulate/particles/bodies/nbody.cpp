@@ -82,6 +82,16 @@ NbodyRun::NbodyRun(const NbodyParams& p, Context& context) : params_(p), pull_{p
   note(context);
 }
 
+void NbodyRun::pull(std::span<const Vec3> x, std::span<Vec3> a, const Context& context) {
+  if (!std::equal(x.begin(), x.end(), pulled_at_.begin(), pulled_at_.end())) {
+    pulled_at_.assign(x.begin(), x.end());
+    pull_there_.resize(x.size()), potential_of_.resize(x.size());
+    if (pull_.angle == 0) pull_directly(pull_, x, mass_, pull_there_, potential_of_, &context);
+    else Octree(x, mass_, &context).pull(pull_, pull_there_, potential_of_, &context);
+  }
+  std::copy(pull_there_.begin(), pull_there_.end(), a.begin());
+}
+
 void NbodyRun::step(double h, const Context& context) {
   const auto forces = [&](std::span<const Vec3> x, std::span<const Vec3>, double, std::span<Vec3> a) {
     for (size_t i = 0; i < x.size(); ++i)
@@ -89,8 +99,7 @@ void NbodyRun::step(double h, const Context& context) {
         fail_data(fmt::format("body {} grew beyond all numbers in frame {} (time {:.6g})", i, moment_.size(),
                               double(moment_.size()) * params_.frame),
                   "nbody", "shorter steps or a larger softening stand close encounters");
-    if (pull_.angle == 0) pull_directly(pull_, x, mass_, a, {}, &context);
-    else Octree(x, mass_, &context).pull(pull_, a, {}, &context);
+    pull(x, a, context);
   };
   swarm::advance(params_.integrator, forces, 0, h, x_, v_, scratch_, true);
 }
@@ -108,9 +117,7 @@ void NbodyRun::advance(const Context& context) {
 void NbodyRun::note(const Context& context) {
   const size_t n = x_.size();
   std::vector<Vec3> a(n);
-  potential_of_.assign(n, 0);
-  if (pull_.angle == 0) pull_directly(pull_, x_, mass_, a, potential_of_, &context);
-  else Octree(x_, mass_, &context).pull(pull_, a, potential_of_, &context);
+  pull(x_, a, context);
   double kinetic = 0, potential = 0;
   Vec3 momentum, angular;
   for (size_t i = 0; i < n; ++i) {

@@ -39,9 +39,11 @@ class NbodyRun {
 
  private:
   void note(const Context& context);
+  /// Accelerations and potentials at these places; those of the last ones again where they are the same.
+  void pull(std::span<const Vec3> x, std::span<Vec3> a, const Context& context);
   NbodyParams params_;
   Pull pull_;
-  std::vector<Vec3> x_, v_;
+  std::vector<Vec3> x_, v_, pulled_at_, pull_there_;
   std::vector<double> mass_, potential_of_;
   std::vector<int64_t> cluster_;
   std::vector<double> moment_, kinetic_, potential_, total_, momentum_, angular_;
