@@ -61,6 +61,13 @@ Liquid::Liquid(const LiquidParams& p, const Context& context)
   if (!std::isfinite(p.density + p.viscosity + p.sound + p.frame + gravity_.x + gravity_.y + gravity_.z))
     fail_usage("density, viscosity, sound, frame and gravity are finite numbers", "liquid");
   if (flat_) gravity_.z = 0;
+  double walls = 1, inside = 1;
+  for (int a = 0; a < (flat_ ? 2 : 3); ++a) {
+    const double n = std::round(box_.size()[a] / spacing_);
+    walls *= n + 2 * wall_layers, inside *= n;
+  }
+  if (walls - inside > 5e7 || (context.memory_limit && (walls - inside) * 200 > double(context.memory_limit)))
+    fail_usage(fmt::format("walls of {:.3g} particles are more than there is memory for", walls - inside), "liquid size", "ask for fewer");
   const int up = flat_ ? 1 : 2;
   std::vector<double> fill = p.fill;
   if (fill.empty()) {

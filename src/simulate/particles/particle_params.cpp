@@ -29,7 +29,7 @@ void describe(Schema& s, ParticleParams& p) {
   describe(s, static_cast<MotionParams&>(p));
   s("emitter", p.emitter, "Balls in which particles appear, as x,y,z,radius of each; default: one in the middle.");
   s("rate", p.rate, "Particles per time, of all emitters together.").at_least(0);
-  s("count", p.count, "Particles that are there at the beginning.").range(0, 1e8);
+  s("count", p.count, "Particles that are there at the beginning.").at_least(0);
   s("velocity", p.velocity, "Velocity at which they appear.");
   s("spread", p.spread, "Speed added to that in a direction by chance, at most.").at_least(0);
   s("life", p.life, "Time after which one vanishes; 0: never.").unit("time").at_least(0);

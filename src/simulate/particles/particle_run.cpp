@@ -78,13 +78,15 @@ ParticleRun::ParticleRun(const ParticlesInParams& p, std::string who, DatasetPtr
   forces_.gravity = p.gravity.value_or(forces_.flat ? Vec3(0, -9.81, 0) : Vec3(0, 0, -9.81));
   forces_.drag = p.drag, forces_.quadratic = p.quadratic_drag, forces_.tether = p.tether, forces_.mass = p.mass;
   forces_.field = field_.get(), forces_.is_wind = p.use == FieldUse::wind, forces_.strength = p.strength;
+  if (context.memory_limit) most_ = std::min(most_, double(context.memory_limit) / 250);
   emit(0, 0);
 }
 
 void ParticleRun::emit(double t, double h) {
   const double wanted = params_.count + std::floor(params_.rate * (t + h) * (1 + 1e-12));
-  if (!(wanted - double(emitted_) + double(x_.size()) <= 2e8))
-    fail_usage(fmt::format("more than 200 million particles at time {:.6g}", t), who_ + " rate", "emit fewer, or give them a life");
+  if (!(wanted - double(emitted_) + double(x_.size()) <= most_))
+    fail_usage(fmt::format("more than {:.3g} particles at time {:.6g}, for which there is no memory", most_, t), who_ + " rate",
+               "emit fewer, or give them a life");
   for (; double(emitted_) < wanted; ++emitted_) {
     const auto chance = [&](uint64_t k) { return random_unit(uint64_t(params_.seed), uint64_t(emitted_) * 8 + k); };
     // In a ball, or a disc, evenly.

@@ -47,6 +47,7 @@ class ParticleRun {
   std::vector<int64_t> id_;
   int64_t emitted_ = 0;
   size_t steps_ = 0;
+  double most_ = 2e8;  ///< particles at a time
   size_t frame_ = 0;
 };
 

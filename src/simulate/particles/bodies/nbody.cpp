@@ -19,7 +19,7 @@ void describe(Schema& s, NbodyParams& p) {
   describe(s, static_cast<FrameParams&>(p));
   s("bodies", p.bodies, "x,y,z,vx,vy,vz,mass of each body; default: clusters of stars.");
   s("clusters", p.clusters, "Clusters of mass 1 and radius 1 (Plummer) in a row along x.").range(1, 16);
-  s("count", p.count, "Stars of all clusters together.").range(2, 20000000);
+  s("count", p.count, "Stars of all clusters together.").at_least(2);
   s("apart", p.apart, "Distance from cluster to cluster.").at_least(0);
   s("aside", p.aside, "How far along y a cluster will pass the next one.");
   s("speed", p.speed, "Speed at which clusters come together.");
@@ -61,6 +61,8 @@ std::pair<Vec3, Vec3> plummer_star(uint64_t seed, uint64_t star) {
 NbodyRun::NbodyRun(const NbodyParams& p, Context& context) : params_(p), pull_{p.constant, p.softening, p.angle} {
   if (!std::isfinite(p.step + p.frame + p.constant + p.softening + p.apart + p.aside + p.speed))
     fail_usage("step, frame, constant, softening, apart, aside and speed are finite numbers", "nbody");
+  if (p.count > 50000000 || (context.memory_limit && p.count * 400.0 > double(context.memory_limit)))
+    fail_usage(fmt::format("{} stars are more than there is memory for", p.count), "nbody count", "ask for fewer");
   if (p.bodies.size() % 7 != 0)
     fail_usage(fmt::format("{} numbers are no bodies", p.bodies.size()), "nbody bodies", "give x,y,z,vx,vy,vz,mass of each");
   for (size_t i = 0; i < p.bodies.size(); i += 7) {
