@@ -24,6 +24,8 @@ void describe(Schema& s, LiquidParams& p);
 
 namespace liquid {
 
+constexpr double tait_exponent = 7;
+
 /// Weakly compressible SPH: Tait's equation of state, density by continuity with diffusion (Molteni, Colagrossi 2009; Fourtakas and others
 /// 2019), walls of resting particles whose pressure is that of the liquid beside them (Adami, Hu, Adams 2012), along which it slips.
 class Liquid {

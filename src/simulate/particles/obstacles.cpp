@@ -18,7 +18,7 @@ constexpr double cells_along = 96;
 }  // namespace
 
 void Obstacles::add(const DatasetPtr& data, const std::string& who, Context& context) {
-  if (data->cell_count() == 0 || data->kind() == "points") fail_usage("there is no surface to bounce off", who, "give a mesh with cells");
+  if (data->cell_count() == 0 || data->as<PointCloud>()) fail_usage("there is no surface to bounce off", who, "give a mesh with cells");
   Surface s;
   s.locator = std::make_unique<CellLocator>(data, context);
   s.box = data->bounds();

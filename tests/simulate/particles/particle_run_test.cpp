@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "filter/mesh/to_unstructured.h"
 #include "simulate/particles/meshes.h"
+#include "support/property.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -141,6 +142,28 @@ TEST_CASE("particles: wind of a grid and of a mesh of the same values, against t
   ParticleRun run = run_of(p, {}, test::wind(3, [](Vec3) { return Vec3(1, 0, 0); }));
   run.advance(context);
   CHECK(run.places()[0].x == doctest::Approx(0.5 * 0.5 * 0.25).epsilon(1e-12));
+}
+
+TEST_CASE("particles: wind is trilinear everywhere in a grid, up to its corners, in f32 and f64, and nothing outside") {
+  Context context;
+  const auto u = [](Vec3 x) { return Vec3(1 + x.x * x.y, x.y * x.z - 2, x.x * x.y * x.z); };
+  const DatasetPtr data = test::wind(2, u);  // one cell, in which u is trilinear
+  FieldSet wide;
+  wide.add({"velocity", Association::point, data->fields().require("velocity").array.converted(ElementType::f64), "", Role::vectors});
+  for (const DatasetPtr& d :
+       {data, make_dataset(*data->as<UniformGrid>(), wide), test::wind(9, [&](Vec3 x) { return Vec3(x.x, 2 * x.y, -x.z); })}) {
+    const Wind wind(d, "", "test", context);
+    test::Random random(3);
+    for (int i = 0; i < 500; ++i) {
+      const auto coordinate = [&] { return random.chance(0.3) ? (random.chance(0.5) ? 1.0 : -1.0) : random.in(-1, 1); };
+      const Vec3 x{coordinate(), coordinate(), coordinate()}, out = x + Vec3(0, random.chance(0.5) ? 2.1 : -2.1, 0);
+      Vec3 got, none(1, 1, 1);
+      wind.sample(std::span(&x, 1), std::span(&got, 1)), wind.sample(std::span(&out, 1), std::span(&none, 1));
+      const Vec3 want = d->point_count() == 8 ? u(x) : Vec3(x.x, 2 * x.y, -x.z);
+      CHECK(length(got - want) < 1e-5);
+      CHECK(none == Vec3(0, 0, 0));
+    }
+  }
 }
 
 TEST_CASE("particles: a tether swings with sqrt(k/m)") {

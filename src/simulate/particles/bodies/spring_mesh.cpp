@@ -28,6 +28,8 @@ void describe(Schema& s, SpringMeshParams& p) {
 namespace swarm {
 
 Springs springs_of(const DatasetPtr& data) {
+  if (!data->as<SurfaceMesh>() && !data->as<UnstructuredMesh>())
+    fail_usage("it takes surfaces and unstructured meshes", "spring_mesh", "convert it: -f unstructured");
   std::vector<std::pair<uint32_t, uint32_t>> pairs;
   const auto add = [&](int64_t a, int64_t b) {
     if (a != b) pairs.emplace_back(uint32_t(a), uint32_t(b)), pairs.emplace_back(uint32_t(b), uint32_t(a));
