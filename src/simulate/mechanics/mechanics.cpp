@@ -102,7 +102,8 @@ DatasetPtr MechanicsRun::dataset(const Context&) const {
   const size_t count = all.size();
   std::vector<int64_t> vertices, lines, offsets{0};
   for (size_t i = 0; i < count; ++i) vertices.push_back(int64_t(i));
-  for (const auto& [a, b] : motion_.system().rods()) lines.push_back(a), lines.push_back(b), offsets.push_back(int64_t(lines.size()));
+  if (params_.rods)
+    for (const auto& [a, b] : motion_.system().rods()) lines.push_back(a), lines.push_back(b), offsets.push_back(int64_t(lines.size()));
   if (trail_.size() > 1) {
     for (const Mark& m : trail_) lines.push_back(int64_t(all.size())), all.push_back(m.body);
     offsets.push_back(int64_t(lines.size()));

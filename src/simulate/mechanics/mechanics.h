@@ -28,6 +28,7 @@ struct MechanicsParams : FrameParams {
   std::vector<double> start, speed, mass, length;
   double gravity = 9.81, stiffness = 100, pull = 1;
   int size = 6, trail = 100;
+  bool rods = true;
   std::vector<std::string> coordinates;
   std::string kinetic, potential, places;
 };

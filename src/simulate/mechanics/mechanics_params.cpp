@@ -27,6 +27,7 @@ void describe(Schema& s, MechanicsParams& p) {
   s("pull", p.pull, "Acceleration towards the sun at distance 1, in orbits.");
   s("size", p.size, "Masses along a side of the net.").range(2, 16);
   s("trail", p.trail, "Frames through which the way of the last body is seen.").range(0, 100000);
+  s("rods", p.rods, "Lines that join the bodies.");
   s("coordinates", p.coordinates, "Names of the coordinates in expressions; the speed of one is its name with _dot.");
   s("kinetic", p.kinetic, "Kinetic energy, an expression as in calc of coordinates and speeds.");
   s("potential", p.potential, "Potential energy, an expression of the coordinates; default: 0.");

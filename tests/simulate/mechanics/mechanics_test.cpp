@@ -154,8 +154,7 @@ TEST_CASE("mechanics: energies in expressions move as those of functors do") {
   for (size_t i = 0; i < u.count(); ++i)
     for (int a = 0; a < 3; ++a) CHECK(std::abs(u.get(i, a) - v.get(i, a)) < 1e-9);
   CHECK(e->fields().require("total").array.count() == 11);
-  CHECK(e->fields().require("moment").array.get(10) == doctest::Approx(0.4));
-  CHECK(*e->time() == doctest::Approx(0.4));
+  CHECK((e->fields().require("moment").array.get(10) == doctest::Approx(0.4) && *e->time() == doctest::Approx(0.4)));
   // Three bodies, two rods, a trail of ten frames of eight marks and the first.
   CHECK(e->as<SurfaceMesh>()->lines.size() == 3);
   CHECK(e->point_count() == 3 + 81);
@@ -186,8 +185,7 @@ TEST_CASE("mechanics: a net of springs keeps its energy, hangs from its corners,
   const Array& drift = d->fields().require("drift").array;
   for (size_t i = 0; i < drift.count(); ++i) CHECK(std::abs(drift.get(i)) < 0.01);
   const Points& at = d->as<SurfaceMesh>()->points;
-  CHECK(at.at(12) == Vec3(0, 1, 0));
-  CHECK(at.at(15) == Vec3(1, 1, 0));
+  CHECK((at.at(12) == Vec3(0, 1, 0) && at.at(15) == Vec3(1, 1, 0)));
   CHECK(at.at(0).z < -0.1);
   for (size_t j = 0; j < 4; ++j)
     for (size_t i = 0; i < 2; ++i) CHECK(std::abs(at.at(4 * j + i).z - at.at(4 * j + 3 - i).z) < 1e-9);
