@@ -86,11 +86,11 @@ Obstacles::Walker::Walker(const Obstacles& obstacles) : all_(obstacles) {
   for (const Surface& s : obstacles.surfaces_) cursors_.emplace_back(*s.locator);
 }
 
-bool Obstacles::Walker::free(const Box3& box) const {
-  if (all_.box_)
+bool Obstacles::free(const Box3& box) const {
+  if (box_)
     for (int a = 0; a < 3; ++a)
-      if (!(box.lo[a] >= all_.box_->lo[a] && box.hi[a] <= all_.box_->hi[a])) return false;
-  for (const Surface& s : all_.surfaces_)
+      if (!(box.lo[a] >= box_->lo[a] && box.hi[a] <= box_->hi[a])) return false;
+  for (const Surface& s : surfaces_)
     if (s.may_meet(box.lo, box.hi, 4096)) return false;
   return true;
 }

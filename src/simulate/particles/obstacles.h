@@ -29,6 +29,8 @@ class Obstacles {
   /// Surfaces, or the outsides of solid cells. Throws Error(usage) for meshes without cells.
   void add(const DatasetPtr& data, const std::string& who, Context& context);
   bool empty() const { return surfaces_.empty() && !box_; }
+  /// Whether no way within a box meets anything; false may be wrong.
+  bool free(const Box3& box) const;
 
   /// One per thread.
   class Walker {
@@ -38,8 +40,6 @@ class Obstacles {
     /// between bounces is straight and ends before what it would meet, by 1e-9 of the scene's size: nothing is passed through. Returns
     /// whether there was a bounce.
     bool walk(Vec3 x, Vec3 v, Vec3& x1, Vec3& v1, double h);
-    /// Whether no way within a box meets anything.
-    bool free(const Box3& box) const;
 
    private:
     struct Hit {

@@ -20,7 +20,7 @@ namespace {
 
 constexpr size_t few = 1 << 15;        // particles whose order does not matter for speed
 constexpr size_t steps_together = 16;  // after which they have drifted apart
-constexpr size_t block = 2048;         // particles that are moved together, within a core's cache
+constexpr size_t block = 1024;         // particles that are moved together, within a core's cache
 
 std::vector<std::array<double, 4>> emitters_of(const ParticlesInParams& p, const std::string& who, const Box3& room, bool flat) {
   if (p.emitter.empty()) {
@@ -174,17 +174,19 @@ void ParticleRun::step(double t, double h, const Context& context) {
         const std::span<Vec3> x(x_.data() + begin, n), v(v_.data() + begin, n);
         LocalForces forces = forces_;
         if (!home_.empty()) forces.home = std::span<const Vec3>(home_).subspan(begin, n);
-        Scratch scratch;
+        thread_local Scratch scratch;
+        thread_local std::vector<Vec3> x0, v0;
         if (obstacles_.empty()) {
           swarm::advance(params_.integrator, forces, t, h, x, v, scratch);
         } else {
-          const std::vector<Vec3> x0(x.begin(), x.end()), v0(v.begin(), v.end());
+          x0.assign(x.begin(), x.end()), v0.assign(v.begin(), v.end());
           swarm::advance(params_.integrator, forces, t, h, x, v, scratch);
-          Obstacles::Walker walker(obstacles_);
           Box3 ways;
           for (size_t i = 0; i < n; ++i) ways.add(x0[i]), ways.add(x[i]);
-          if (!walker.free(ways))
+          if (!obstacles_.free(ways)) {
+            Obstacles::Walker walker(obstacles_);
             for (size_t i = 0; i < n; ++i) walker.walk(x0[i], v0[i], x[i], v[i], h);
+          }
         }
         for (size_t i = 0; i < n; ++i)
           if (!std::isfinite(x[i].x + x[i].y + x[i].z + v[i].x + v[i].y + v[i].z))
