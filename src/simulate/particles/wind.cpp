@@ -50,31 +50,50 @@ template <class T>
 void Wind::sample_grid(const T* values, std::span<const Vec3> x, std::span<Vec3> u) const {
   const double last[3] = {double(dims_[0] - 1), double(dims_[1] - 1), double(dims_[2] - 1)};
   const size_t row = 3 * dims_[0], slice = row * dims_[1];
-  for (size_t k = 0; k < x.size(); ++k) {
-    const Vec3 q = (x[k] - origin_) * scale_;
-    if (!(q.x >= 0 && q.y >= 0 && q.z >= 0 && q.x <= last[0] && q.y <= last[1] && q.z <= last[2])) {
-      u[k] = {};
-      continue;
-    }
-    // The last point belongs to the last cell.
-    const int64_t i = std::min(int64_t(q.x), int64_t(dims_[0]) - 2), j = std::min(int64_t(q.y), int64_t(dims_[1]) - 2),
-                  l = std::min(int64_t(q.z), int64_t(dims_[2]) - 2);
-    const T r = T(q.x - double(i)), s = T(q.y - double(j)), t = T(q.z - double(l));
-    const T* const p = values + size_t(3 * i) + row * size_t(j) + slice * size_t(l);
-    if constexpr (std::is_same_v<T, float>)
-      if (p + slice + row + 7 <= values + slice * dims_[2]) {  // the fourth lane reads one number beyond a pair of points
-        const Four front = mixed(side(p, r), side(p + row, r), s), back = mixed(side(p + slice, r), side(p + slice + row, r), s);
-        const Four sum = mixed(front, back, t);
-        u[k] = {double(sum[0]), double(sum[1]), double(sum[2])};
+  // First where some of them read, asking the memory for it, then what is there.
+  struct Place {
+    const T* p;  // of the cell's first point; null: outside
+    T r, s, t;
+  };
+  constexpr size_t together = 32;
+  Place places[together];
+  for (size_t first = 0; first < x.size(); first += together) {
+    const size_t count = std::min(together, x.size() - first);
+    for (size_t k = 0; k < count; ++k) {
+      const Vec3 q = (x[first + k] - origin_) * scale_;
+      if (!(q.x >= 0 && q.y >= 0 && q.z >= 0 && q.x <= last[0] && q.y <= last[1] && q.z <= last[2])) {
+        places[k].p = nullptr;
         continue;
       }
-    T sum[3];
-    for (size_t c = 0; c < 3; ++c) {
-      const auto along = [&](const T* a) { return mixed(a[c], a[c + 3], r); };
-      const T front = mixed(along(p), along(p + row), s), back = mixed(along(p + slice), along(p + slice + row), s);
-      sum[c] = mixed(front, back, t);
+      // The last point belongs to the last cell.
+      const int64_t i = std::min(int64_t(q.x), int64_t(dims_[0]) - 2), j = std::min(int64_t(q.y), int64_t(dims_[1]) - 2),
+                    l = std::min(int64_t(q.z), int64_t(dims_[2]) - 2);
+      const T* const p = values + size_t(3 * i) + row * size_t(j) + slice * size_t(l);
+      places[k] = {p, T(q.x - double(i)), T(q.y - double(j)), T(q.z - double(l))};
+      __builtin_prefetch(p), __builtin_prefetch(p + row), __builtin_prefetch(p + slice), __builtin_prefetch(p + slice + row);
     }
-    u[k] = {double(sum[0]), double(sum[1]), double(sum[2])};
+    for (size_t k = 0; k < count; ++k) {
+      const auto [p, r, s, t] = places[k];
+      Vec3& to = u[first + k];
+      if (!p) {
+        to = {};
+        continue;
+      }
+      if constexpr (std::is_same_v<T, float>)
+        if (p + slice + row + 7 <= values + slice * dims_[2]) {  // the fourth lane reads one number beyond a pair of points
+          const Four front = mixed(side(p, r), side(p + row, r), s), back = mixed(side(p + slice, r), side(p + slice + row, r), s);
+          const Four sum = mixed(front, back, t);
+          to = {double(sum[0]), double(sum[1]), double(sum[2])};
+          continue;
+        }
+      T sum[3];
+      for (size_t c = 0; c < 3; ++c) {
+        const auto along = [c, r = r](const T* a) { return mixed(a[c], a[c + 3], r); };
+        const T front = mixed(along(p), along(p + row), s), back = mixed(along(p + slice), along(p + slice + row), s);
+        sum[c] = mixed(front, back, t);
+      }
+      to = {double(sum[0]), double(sum[1]), double(sum[2])};
+    }
   }
 }
 
