@@ -43,6 +43,7 @@ void add_volume_methods_tasks(std::vector<Task>& tasks);
 void add_volume_cells_tasks(std::vector<Task>& tasks);
 void add_flow_tasks(std::vector<Task>& tasks);
 void add_walk_tasks(std::vector<Task>& tasks);
+void add_particle_tasks(std::vector<Task>& tasks);
 void add_glyph_tasks(std::vector<Task>& tasks);
 void add_ftle_tasks(std::vector<Task>& tasks);
 void add_lic_tasks(std::vector<Task>& tasks);

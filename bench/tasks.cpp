@@ -196,6 +196,7 @@ std::vector<Task> tasks(const std::string& folder) {
   add_volume_tasks(t);
   add_flow_tasks(t);
   add_walk_tasks(t);
+  add_particle_tasks(t);
   add_glyph_tasks(t);
   add_ftle_tasks(t);
   add_volume_error_tasks(t, folder);

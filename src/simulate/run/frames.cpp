@@ -16,6 +16,7 @@ void describe(Schema& s, FrameParams& p) {
 }
 
 size_t frame_at(const FrameParams& p, const std::string& who) {
+  if (!std::isfinite(p.frame)) fail_usage("frames of infinite length", who + " frame", "give a finite time");
   const double frames = std::floor(p.time / p.frame * (1 + 1e-12) + 1e-9);
   if (!(frames <= 1e6)) fail_usage("that is more than a million frames away", who + " time", "ask for an earlier time or longer frames");
   return size_t(frames);

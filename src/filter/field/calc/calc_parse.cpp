@@ -24,31 +24,34 @@ struct Function1 {
   std::string_view name, form, sentence;
   double (*f)(double);
   enum { keeps_unit, drops_unit, square_root, cube_root } unit;
+  Call call;
 };
 constexpr Function1 functions1[] = {
-    {"sin", "sin(a)", "Sine of an angle in radians.", [](double x) { return std::sin(x); }, Function1::drops_unit},
-    {"cos", "cos(a)", "Cosine of an angle in radians.", [](double x) { return std::cos(x); }, Function1::drops_unit},
-    {"tan", "tan(a)", "Tangent of an angle in radians.", [](double x) { return std::tan(x); }, Function1::drops_unit},
-    {"asin", "asin(a)", "Angle in radians, -pi/2 to pi/2, whose sine is a.", [](double x) { return std::asin(x); }, Function1::drops_unit},
-    {"acos", "acos(a)", "Angle in radians, 0 to pi, whose cosine is a.", [](double x) { return std::acos(x); }, Function1::drops_unit},
+    {"sin", "sin(a)", "Sine of an angle in radians.", [](double x) { return std::sin(x); }, Function1::drops_unit, Call::sin},
+    {"cos", "cos(a)", "Cosine of an angle in radians.", [](double x) { return std::cos(x); }, Function1::drops_unit, Call::cos},
+    {"tan", "tan(a)", "Tangent of an angle in radians.", [](double x) { return std::tan(x); }, Function1::drops_unit, Call::tan},
+    {"asin", "asin(a)", "Angle in radians, -pi/2 to pi/2, whose sine is a.", [](double x) { return std::asin(x); }, Function1::drops_unit,
+     Call::asin},
+    {"acos", "acos(a)", "Angle in radians, 0 to pi, whose cosine is a.", [](double x) { return std::acos(x); }, Function1::drops_unit,
+     Call::acos},
     {"atan", "atan(a)", "Angle in radians, -pi/2 to pi/2, whose tangent is a.", [](double x) { return std::atan(x); },
-     Function1::drops_unit},
-    {"sinh", "sinh(a)", "Hyperbolic sine.", [](double x) { return std::sinh(x); }, Function1::drops_unit},
-    {"cosh", "cosh(a)", "Hyperbolic cosine.", [](double x) { return std::cosh(x); }, Function1::drops_unit},
-    {"tanh", "tanh(a)", "Hyperbolic tangent.", [](double x) { return std::tanh(x); }, Function1::drops_unit},
-    {"exp", "exp(a)", "e to the power a.", [](double x) { return std::exp(x); }, Function1::drops_unit},
-    {"log", "log(a)", "Natural logarithm.", [](double x) { return std::log(x); }, Function1::drops_unit},
-    {"log10", "log10(a)", "Logarithm to base 10.", [](double x) { return std::log10(x); }, Function1::drops_unit},
-    {"log2", "log2(a)", "Logarithm to base 2.", [](double x) { return std::log2(x); }, Function1::drops_unit},
-    {"sqrt", "sqrt(a)", "Square root.", [](double x) { return std::sqrt(x); }, Function1::square_root},
-    {"cbrt", "cbrt(a)", "Cube root, also of negative numbers.", [](double x) { return std::cbrt(x); }, Function1::cube_root},
-    {"abs", "abs(a)", "Absolute value.", [](double x) { return std::fabs(x); }, Function1::keeps_unit},
-    {"sign", "sign(a)", "1, -1 or 0 as a is positive, negative or zero.", sign_of, Function1::drops_unit},
-    {"floor", "floor(a)", "Largest whole number not above a.", [](double x) { return std::floor(x); }, Function1::keeps_unit},
-    {"ceil", "ceil(a)", "Smallest whole number not below a.", [](double x) { return std::ceil(x); }, Function1::keeps_unit},
+     Function1::drops_unit, Call::atan},
+    {"sinh", "sinh(a)", "Hyperbolic sine.", [](double x) { return std::sinh(x); }, Function1::drops_unit, Call::sinh},
+    {"cosh", "cosh(a)", "Hyperbolic cosine.", [](double x) { return std::cosh(x); }, Function1::drops_unit, Call::cosh},
+    {"tanh", "tanh(a)", "Hyperbolic tangent.", [](double x) { return std::tanh(x); }, Function1::drops_unit, Call::tanh},
+    {"exp", "exp(a)", "e to the power a.", [](double x) { return std::exp(x); }, Function1::drops_unit, Call::exp},
+    {"log", "log(a)", "Natural logarithm.", [](double x) { return std::log(x); }, Function1::drops_unit, Call::log},
+    {"log10", "log10(a)", "Logarithm to base 10.", [](double x) { return std::log10(x); }, Function1::drops_unit, Call::log10},
+    {"log2", "log2(a)", "Logarithm to base 2.", [](double x) { return std::log2(x); }, Function1::drops_unit, Call::log2},
+    {"sqrt", "sqrt(a)", "Square root.", [](double x) { return std::sqrt(x); }, Function1::square_root, Call::sqrt},
+    {"cbrt", "cbrt(a)", "Cube root, also of negative numbers.", [](double x) { return std::cbrt(x); }, Function1::cube_root, Call::cbrt},
+    {"abs", "abs(a)", "Absolute value.", [](double x) { return std::fabs(x); }, Function1::keeps_unit, Call::abs},
+    {"sign", "sign(a)", "1, -1 or 0 as a is positive, negative or zero.", sign_of, Function1::drops_unit, Call::sign},
+    {"floor", "floor(a)", "Largest whole number not above a.", [](double x) { return std::floor(x); }, Function1::keeps_unit, Call::floor},
+    {"ceil", "ceil(a)", "Smallest whole number not below a.", [](double x) { return std::ceil(x); }, Function1::keeps_unit, Call::ceil},
     {"round", "round(a)", "Nearest whole number; halves are rounded away from zero.", [](double x) { return std::round(x); },
-     Function1::keeps_unit},
-    {"isnan", "isnan(a)", "1 where a is NaN, else 0.", is_nan, Function1::drops_unit},
+     Function1::keeps_unit, Call::round},
+    {"isnan", "isnan(a)", "1 where a is NaN, else 0.", is_nan, Function1::drops_unit, Call::isnan},
 };
 
 struct FunctionN {
@@ -379,7 +382,7 @@ class Parser {
         if (f.unit == Function1::square_root) u = unit(a[0]).to_power(0.5);
         if (f.unit == Function1::cube_root) u = unit(a[0]).to_power(1.0 / 3);
         Instruction i = {Op::call1, components(a[0]), a[0]};
-        i.function = f.f;
+        i.function = f.f, i.call = f.call;
         return emit(i, u);
       }
     for (const FunctionN& f : functions_n)

@@ -49,6 +49,32 @@ enum class Op : uint8_t {
   det
 };
 
+/// Which function call1 is: for those who evaluate over other numbers than double.
+enum class Call : uint8_t {
+  none,
+  sin,
+  cos,
+  tan,
+  asin,
+  acos,
+  atan,
+  sinh,
+  cosh,
+  tanh,
+  exp,
+  log,
+  log10,
+  log2,
+  sqrt,
+  cbrt,
+  abs,
+  sign,
+  floor,
+  ceil,
+  round,
+  isnan
+};
+
 /// Makes register `out` (of `components` numbers a tuple) from registers a, b, c.
 struct Instruction {
   Op op = Op::constant;
@@ -56,6 +82,7 @@ struct Instruction {
   int a = -1, b = -1, c = -1;
   double value = 0;                      ///< constant; component: its number
   double (*function)(double) = nullptr;  ///< call1
+  Call call = Call::none;                ///< call1: the same by name
   size_t field = 0;                      ///< place in Program::fields
 };
 
