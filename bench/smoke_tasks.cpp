@@ -24,7 +24,7 @@ SmokeParams params(int size, bool obstacle) {
 }  // namespace
 
 void add_smoke_tasks(std::vector<Task>& tasks) {
-  for (const int size : {64, 128}) {
+  for (const int size : {64, 128, 256}) {
     for (const bool obstacle : {false, true})
       tasks.push_back(
           {"smoke_step", fmt::format("{}^3{}", size, obstacle ? " round a ball" : ""), "sightglass:maccormack", "iterations", [=] {

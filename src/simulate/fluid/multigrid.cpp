@@ -312,23 +312,34 @@ void Multigrid<T>::prolong(const Level& fine, const Lattice<T>& coarse, Lattice<
   parallel_for(
       x.rows(), row_grain,
       [&](size_t begin, size_t end) {
-        std::vector<T> sum(coarse.n[0]);
+        const size_t n = coarse.n[0];
+        const bool halved = n != fine.n[0];
+        std::vector<T> padded(n + 2);
+        T* const sum = padded.data() + 1;
         for (size_t row = begin; row < end; ++row) {
           size_t js[2], ks[2];
           T wj[2], wk[2];
           const int nj = gather(fine.coarse[1], row % fine.n[1], js, wj), nk = gather(fine.coarse[2], row / fine.n[1], ks, wk);
-          std::fill(sum.begin(), sum.end(), T(0));
+          std::fill(padded.begin(), padded.end(), T(0));
           for (int k = 0; k < nk; ++k)
             for (int j = 0; j < nj; ++j) {
               const T weight = wk[k] * wj[j];
               const T* const from = coarse.row(js[j] + coarse.n[1] * ks[k]);
-              for (size_t i = 0; i < coarse.n[0]; ++i) sum[i] += weight * from[i];
+              for (size_t i = 0; i < n; ++i) sum[i] += weight * from[i];
             }
           T* const to = x.row(row);
-          for (size_t i = 0; i < coarse.n[0]; ++i) {
-            const Stencil& s = fine.coarse[0][i];
-            for (int a = 0; a < s.count; ++a) to[size_t(s.first + a)] += s.weight[a] * sum[i];
+          if (!halved) {
+            for (size_t i = 0; i < n; ++i) to[i] += sum[i];
+            continue;
           }
+          // Beyond walls lies the same value, beyond open sides the opposite one.
+          sum[-1] = fine.walls.sides[0] ? -sum[0] : sum[0], sum[n] = fine.walls.sides[1] ? -sum[n - 1] : sum[n - 1];
+          const size_t pairs = fine.n[0] / 2;
+          for (size_t i = 0; i < pairs; ++i) {
+            const T own = T(0.75) * sum[i];
+            to[2 * i] += own + T(0.25) * sum[ptrdiff_t(i) - 1], to[2 * i + 1] += own + T(0.25) * sum[i + 1];
+          }
+          if (fine.n[0] % 2) to[2 * pairs] += T(0.75) * sum[pairs] + T(0.25) * sum[pairs - 1];
         }
       },
       &context);
