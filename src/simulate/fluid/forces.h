@@ -2,8 +2,8 @@
 // What moves the air: buoyancy, vortices that are given back what the grid took from them, friction.
 #pragma once
 #include "base/context.h"
-#include "simulate/fluid/sides.h"
-#include "simulate/fluid/walls.h"
+#include "simulate/fluid/walls/sides.h"
+#include "simulate/fluid/walls/walls.h"
 
 namespace sg::fluid {
 

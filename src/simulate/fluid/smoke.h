@@ -2,8 +2,8 @@
 // Smoke that rises, curls round obstacles and leaves the box: incompressible air that carries density and temperature.
 #pragma once
 #include "data/dataset.h"
-#include "simulate/fluid/project.h"
-#include "simulate/fluid/solids.h"
+#include "simulate/fluid/pressure/project.h"
+#include "simulate/fluid/walls/solids.h"
 
 namespace sg {
 

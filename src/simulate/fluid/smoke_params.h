@@ -7,8 +7,8 @@
 
 #include "base/schema/schema.h"
 #include "simulate/analytic_grid.h"
-#include "simulate/fluid/advect.h"
-#include "simulate/fluid/sides.h"
+#include "simulate/fluid/advection/advect.h"
+#include "simulate/fluid/walls/sides.h"
 #include "simulate/run/frames.h"
 
 namespace sg {

@@ -2,7 +2,7 @@
 // Every simulator that stores its state goes on from it to the same bytes.
 #include <string>
 
-#include "simulate/fluid/flip.h"
+#include "simulate/fluid/water/flip.h"
 #include "simulate/pde/advection_diffusion.h"
 #include "simulate/pde/heat.h"
 #include "simulate/pde/mesh/heat_on_mesh.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A flow made free of divergence (Chorin 1968).
 #pragma once
-#include "simulate/fluid/pressure.h"
+#include "simulate/fluid/pressure/pressure.h"
 
 namespace sg::fluid {
 

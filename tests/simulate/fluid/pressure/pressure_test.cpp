@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulate/fluid/pressure.h"
+#include "simulate/fluid/pressure/pressure.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulate/fluid/solids.h"
+#include "simulate/fluid/walls/solids.h"
 
 #include <cmath>
 #include <numbers>
 
 #include "base/error.h"
-#include "simulate/fluid/project.h"
+#include "simulate/fluid/pressure/project.h"
 #include "simulate/fluid/smoke.h"
 #include "support/test.h"
 

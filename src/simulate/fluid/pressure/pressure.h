@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "simulate/fluid/multigrid.h"
+#include "simulate/fluid/pressure/multigrid.h"
 
 namespace sg::fluid {
 

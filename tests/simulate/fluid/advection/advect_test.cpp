@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulate/fluid/advect.h"
+#include "simulate/fluid/advection/advect.h"
 
 #include <cmath>
 #include <complex>

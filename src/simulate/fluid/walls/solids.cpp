@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulate/fluid/solids.h"
+#include "simulate/fluid/walls/solids.h"
 
 #include <algorithm>
 #include <cmath>

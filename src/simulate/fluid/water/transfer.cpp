@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulate/fluid/transfer.h"
+#include "simulate/fluid/water/transfer.h"
 
 #include <algorithm>
 #include <cmath>

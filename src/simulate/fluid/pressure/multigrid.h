@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/context.h"
-#include "simulate/fluid/walls.h"
+#include "simulate/fluid/walls/walls.h"
 
 namespace sg::fluid {
 

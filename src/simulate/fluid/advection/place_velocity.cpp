@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulate/fluid/place_velocity.h"
+#include "simulate/fluid/advection/place_velocity.h"
 
 namespace sg::fluid {
 

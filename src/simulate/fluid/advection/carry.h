@@ -3,7 +3,7 @@
 #pragma once
 #include <span>
 
-#include "simulate/fluid/advect.h"
+#include "simulate/fluid/advection/advect.h"
 
 namespace sg::fluid {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulate/fluid/sides.h"
+#include "simulate/fluid/walls/sides.h"
 
 #include <fmt/core.h>
 

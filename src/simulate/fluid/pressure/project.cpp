@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulate/fluid/project.h"
+#include "simulate/fluid/pressure/project.h"
 
 #include <utility>
 #include <vector>

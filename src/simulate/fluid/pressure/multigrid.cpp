@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulate/fluid/multigrid.h"
+#include "simulate/fluid/pressure/multigrid.h"
 
 #include <algorithm>
 #include <utility>

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "simulate/fluid/project.h"
+#include "simulate/fluid/pressure/project.h"
 #include "simulate/fluid/smoke_params.h"
-#include "simulate/fluid/solids.h"
-#include "simulate/fluid/transfer.h"
+#include "simulate/fluid/walls/solids.h"
+#include "simulate/fluid/water/transfer.h"
 
 namespace sg {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulate/fluid/flip.h"
+#include "simulate/fluid/water/flip.h"
 
 #include <cmath>
 #include <random>

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "base/vector_targets.h"
-#include "simulate/fluid/carry.h"
-#include "simulate/fluid/place_velocity.h"
+#include "simulate/fluid/advection/carry.h"
+#include "simulate/fluid/advection/place_velocity.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "simulate/fluid/carry_simd.cpp"
+#define HWY_TARGET_INCLUDE "simulate/fluid/advection/carry_simd.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -120,7 +120,7 @@ class Mixed {
   HWY_INLINE static Int<D> index(const std::array<size_t, 3>& n, Float<D> i, Float<D> j, Float<D> k) {
     const hn::RebindToSigned<D> di;
     if constexpr (sizeof(T) == 8) return convert(di, i + T(n[0]) * (j + T(n[1]) * k));  // exact below 2^53
-    else return convert(di, i) + hn::Set(di, int32_t(n[0])) * (convert(di, j) + hn::Set(di, int32_t(n[1])) * convert(di, k));
+    else return convert(di, i) + set(di, int32_t(n[0])) * (convert(di, j) + set(di, int32_t(n[1])) * convert(di, k));
   }
   HWY_INLINE Float<D> line(const T* v) const {
     Float<D> a, b;
@@ -166,7 +166,7 @@ class Tracer {
     const Split<D> i(p.x, nx[0]), j(p.y, ny[1]), k(p.z, nz[2]);                                // among faces across the axis
     const Split<D> i2(p.x - T(0.5), ny[0]), j2(p.y - T(0.5), nx[1]), k2(p.z - T(0.5), nx[2]);  // among middles
     return {Mixed<D>(nx, i, j2, k2).sample(u_[0].values.data()), Mixed<D>(ny, i2, j, k2).sample(u_[1].values.data()),
-            flat_ ? hn::Zero(D()) : Mixed<D>(nz, i2, j2, k).sample(u_[2].values.data())};
+            flat_ ? set(D(), 0) : Mixed<D>(nz, i2, j2, k).sample(u_[2].values.data())};
   }
 
   const Faces<T>& u_;
@@ -185,7 +185,7 @@ HWY_INLINE void carry_some(const Carrier<T>& step, const Tracer<D>& tracer, int 
   const auto shift = MacGrid::shift(axis);
   const size_t first = i + row * n[0];
   const T sx = T(shift[0]), sy = T(shift[1]), sz = T(shift[2]);
-  const Place<D> here{hn::Iota(d, T(i)) + sx, hn::Set(d, T(row % n[1]) + sy), hn::Set(d, T(row / n[1]) + sz)};
+  const Place<D> here{hn::Iota(d, T(i)) + sx, set(d, T(row % n[1]) + sy), set(d, T(row / n[1]) + sz)};
   const Place<D> p = tracer.moved(here, {hn::LoadU(d, u[0] + i), hn::LoadU(d, u[1] + i), hn::LoadU(d, u[2] + i)});
   const Mixed<D> there(n, Split<D>(p.x - sx, n[0]), Split<D>(p.y - sy, n[1]), Split<D>(p.z - sz, n[2]));
   if (pass == Pass::back_marked) hn::StoreU(bit_cast(d, there.at()), d, marks + first);

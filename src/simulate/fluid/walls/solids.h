@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "base/context.h"
-#include "simulate/fluid/cover.h"
 #include "simulate/fluid/smoke_params.h"
-#include "simulate/fluid/walls.h"
+#include "simulate/fluid/walls/cover.h"
+#include "simulate/fluid/walls/walls.h"
 
 namespace sg::fluid {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulate/fluid/advect.h"
+#include "simulate/fluid/advection/advect.h"
 
 #include <vector>
 
 #include "base/parallel.h"
-#include "simulate/fluid/carry.h"
-#include "simulate/fluid/place_velocity.h"
+#include "simulate/fluid/advection/carry.h"
+#include "simulate/fluid/advection/place_velocity.h"
 
 namespace sg::fluid {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulate/fluid/cover.h"
+#include "simulate/fluid/walls/cover.h"
 
 #include <algorithm>
 #include <cmath>
