@@ -170,6 +170,14 @@ constexpr auto chooses_alike(std::string_view parameter) {
 }
 /// Hook: `time` chooses a moment of the input, see Operation::shows_moment.
 constexpr auto shows_moment = [](Operation& o) { o.shows_moment = true; };
+/// Hook: what a simulator will take, from its parameters alone: RunCost F(const P&).
+template <class P, auto F>
+constexpr auto costs = [](Operation& o) {
+  o.estimate = [](const ParamSet& params, std::span<const uint64_t>) {
+    const auto cost = F(params.as<P>());
+    return Estimate{cost.bytes, cost.seconds};
+  };
+};
 /// Hook: how many inputs a filter over a list takes; MAX -1 = any number.
 template <int MIN, int MAX>
 constexpr auto op_inputs = [](Operation& o) { o.min_inputs = MIN, o.max_inputs = MAX; };

@@ -43,6 +43,7 @@ struct MacGrid {
   double h = 1;
   Vec3 origin;
 
+  double count() const { return double(cells[0]) * double(cells[1]) * double(cells[2]); }
   bool flat() const { return cells[2] == 1; }
   int axes() const { return flat() ? 2 : 3; }
   std::array<size_t, 3> faces(int axis) const {

@@ -4,6 +4,7 @@
 #include "data/dataset.h"
 #include "simulate/fluid/pressure/project.h"
 #include "simulate/fluid/walls/solids.h"
+#include "simulate/run/frames.h"
 
 namespace sg {
 
@@ -72,6 +73,9 @@ class Smoke {
 /// Point fields density, temperature (f32 or f64), velocity (three components) and pressure of the air at the last frame before
 /// `time`. A call that goes on from the time before (a film) computes only the frames between; the result is the same in any order.
 DatasetPtr smoke(const SmokeParams& p, Context& context);
+
+/// One step a frame is reckoned with.
+RunCost cost_of_smoke(const SmokeParams& p);
 
 /// The same about a closed surface, or from inside of one; triangles of any mesh. Without bounds the box is twice as wide as the surface,
 /// and three times as high.

@@ -69,7 +69,7 @@ MacGrid smoke_grid(const SmokeParams& p, const Context& context) {
     cells *= double(g.cells[size_t(a)]);
   }
   const double bytes = cells * (p.type == FieldType::f64 ? 130 : 65);
-  if (cells > 4e9 || (context.memory_limit && bytes > double(context.memory_limit)))
+  if (cells > 2e9 || (context.memory_limit && bytes > double(context.memory_limit)))
     fail_usage(fmt::format("{:.3g} cells take about {}, more than there is", cells, human_bytes(uint64_t(std::min(bytes, 1e18)))), "smoke",
                "ask for a smaller size");
   return g;

@@ -58,6 +58,14 @@ void describe(Schema& s, SmokeRoundParams& p) {
 
 DatasetPtr smoke(const SmokeParams& p, Context& context) { return frame_of_any(p, nullptr, false, context); }
 
+RunCost cost_of_smoke(const SmokeParams& p) {
+  constexpr double seconds_a_cell = 2e-7;
+  const double cells = fluid::smoke_grid(p, Context()).count();
+  const size_t number = p.type == FieldType::f64 ? 8 : 4, fields = p.obstacle.empty() ? 6 : 7;
+  const double work = (number == 8 ? 2 : 1) * (p.reflect ? 2 : 1);
+  return {uint64_t(cells) * fields * number, cells * double(frame_at(p, "smoke")) * work * seconds_a_cell};
+}
+
 DatasetPtr smoke_round(const DatasetPtr& surface, const SmokeRoundParams& p, Context& context) {
   SmokeParams with_box = p;
   if (p.bounds.empty()) {  // room for the wake

@@ -77,5 +77,6 @@ class Heat {
 /// Point field temperature at the last frame before `time`; a uniform grid of the unknowns and the walls. Explicit steps beyond the limit
 /// are taken as they are asked for, with a warning. Throws Error(usage) and Error(data) as Heat and make_room do.
 DatasetPtr heat(const HeatParams& p, Context& context);
+RunCost cost_of_heat(const HeatParams& p);
 
 }  // namespace sg

@@ -98,6 +98,12 @@ DatasetPtr Wave::dataset(const Context& context) const {
 
 }  // namespace pde
 
+RunCost cost_of_wave(const WaveParams& p) {
+  const pde::Room room = pde::make_room(p, "wave", 80, true, Context());
+  const double steps = double(frame_at(p, "wave")) * std::max(1.0, std::ceil(p.frame / p.step.value_or(0.98 * pde::wave_limit(p, room))));
+  return {room.count() * (p.type == FieldType::f64 ? 8 : 4), double(room.count()) * steps * 3e-9};
+}
+
 DatasetPtr wave(const WaveParams& p, Context& context) {
   const double limit = pde::wave_limit(p, pde::make_room(p, "wave", 80, true, context));
   if (p.step && std::min(*p.step, p.frame) > limit * (1 + 1e-9))

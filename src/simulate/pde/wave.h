@@ -65,5 +65,6 @@ class Wave {
 /// Point field height at the last frame before `time`. Steps beyond the limit are taken as they are asked for, with a warning, until the
 /// values are beyond all numbers: Error(data) names the step.
 DatasetPtr wave(const WaveParams& p, Context& context);
+RunCost cost_of_wave(const WaveParams& p);
 
 }  // namespace sg

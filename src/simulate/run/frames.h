@@ -27,6 +27,12 @@ void describe(Schema& s, FrameParams& p);
 /// The last whole frame before p.time. Throws Error(usage) beyond a million frames.
 size_t frame_at(const FrameParams& p, const std::string& who);
 
+/// What it will about take to show a frame from the beginning, on two cores.
+struct RunCost {
+  uint64_t bytes = 0;  ///< of the result
+  double seconds = 0;
+};
+
 /// Whether a run that takes so much is kept for the next call: at most a quarter of the memory allowed.
 bool may_keep(size_t bytes, const Context& context);
 

@@ -261,6 +261,12 @@ void describe(Schema& s, FlipLiquidParams& p) {
   s("show", p.show, "grid: the share of each cell that is full (a surface lies at 0.5). particles: points.");
 }
 
+RunCost cost_of_flip(const FlipLiquidParams& p) {
+  constexpr double seconds_a_cell = 1.5e-6;
+  const double cells = fluid::smoke_grid(fluid::as_smoke(p), Context()).count();
+  return {uint64_t(cells) * 4 * sizeof(float), cells * double(frame_at(p, "flip_liquid")) * seconds_a_cell};
+}
+
 DatasetPtr flip_liquid(const FlipLiquidParams& p, Context& context) {
   using Run = fluid::FlipLiquid;
   return frame_of_run<Run>(

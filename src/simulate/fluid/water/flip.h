@@ -71,5 +71,7 @@ class FlipLiquid {
 
 /// Water that begins as the boxes `water` at rest, at the last frame before `time`.
 DatasetPtr flip_liquid(const FlipLiquidParams& p, Context& context);
+/// Two steps a frame are reckoned with.
+RunCost cost_of_flip(const FlipLiquidParams& p);
 
 }  // namespace sg
