@@ -98,7 +98,10 @@ void attach_recipe(Image& image, const PipelineFile& file, const std::string& pi
   const std::string folder = folder_of(picture_path);
   std::string inputs;
   for (auto& step : recipe.steps) {
-    if (!step.reads()) continue;
+    if (!step.reads()) {  // the picture is the same without what is written beside it
+      std::erase_if(step.words, [](const std::string& w) { return w.starts_with("store="); });
+      continue;
+    }
     const auto stated = word_value(step.words, "path");
     if (!stated) continue;
     const std::string path = series_beside(file.origin, *stated);
