@@ -109,7 +109,8 @@ def test_an_operation_gives_what_the_command_line_gives(name, files, tmp_path):
 
 @pytest.mark.parametrize("name", [entry["name"] for entry in CATALOG["sources"]])
 def test_a_source_gives_what_the_command_line_gives(name, files, tmp_path):
-    stated: dict = {"size": 9}
+    (source,) = (entry for entry in CATALOG["sources"] if entry["name"] == name)
+    stated: dict = {small: 9 for small in ("size", "count") if small in source["params"]["properties"]}
     if name == "gradient_images":
         for i in range(3):
             sg.uniform(np.full((2, 2, 2), float(i)), name="signal").save(tmp_path / f"volume_{i}.vti")
