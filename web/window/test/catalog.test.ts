@@ -14,7 +14,8 @@ const run = (...args: string[]): string => execFileSync(program, args, { maxBuff
 // What is free text, and why no other control would do.
 const free: Record<string, string> = {
   "as name names title caption note x_title y_title z_title legend_title legend_unit unit": "a name or a sentence that a person makes up",
-  "expr function": "an expression",
+  "expr function initial initial_u initial_v held value source diffusivity velocity kinetic potential coordinates places": "an expression",
+  "sides x0 x1 y0 y1 z0 z1": "what lies at a side of a box: words with velocities, or an expression",
   "component": "a number or a letter",
   "times": "first:last:count, or a list",
   "layout size views": "of whole pictures; the window has its own views and sizes",
