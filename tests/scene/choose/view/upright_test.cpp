@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/choose/view/upright.h"
 
+#include <cmath>
+
 #include "scene/look/look.h"
 #include "support/test.h"
 
@@ -50,6 +52,34 @@ TEST_CASE("upright: a shape stands on the hull of its feet, and topples where it
   CHECK(stands(d, 2) == doctest::Approx(3.5 * 1.1 / shadow));
   CHECK(stands(d, 1) == 0);  // on its side it lies on the cheek
   CHECK(stability({}, 2) == 0);
+}
+
+TEST_CASE("upright: a cone of many points stands on its base as wide as its shadow, and on its tip on the ring above it") {
+  const int around = 96, rings = 60;
+  std::vector<float> xyz;
+  std::vector<int32_t> ids;
+  for (int k = 0; k <= rings; ++k)  // the tip at 0, the base at 0.9
+    for (int i = 0; i < around; ++i) {
+      const double h = 0.015 * k, a = 2 * M_PI * i / around;
+      for (const double c : {0.5 * h * std::cos(a), 0.5 * h * std::sin(a), h}) xyz.push_back(float(c));
+    }
+  for (int k = 0; k < rings; ++k)
+    for (int i = 0; i < around; ++i) {
+      const int j = (i + 1) % around;
+      for (const int id : {k * around + i, k * around + j, (k + 1) * around + j, (k + 1) * around + i}) ids.push_back(id);
+    }
+  const auto cone = [&](double sign) {
+    std::vector<float> turned = xyz;
+    for (size_t i = 2; i < turned.size(); i += 3) turned[i] *= float(sign);
+    SurfaceMesh m;
+    m.points.xyz = Array::from_vector(std::move(turned), 3);
+    m.polygons = {Array::from_vector(ids), {}, 4};
+    DatasetParts parts;
+    parts.mesh = m;
+    return stands(make_dataset(std::move(parts)), 2);
+  };
+  CHECK(cone(-1) == doctest::Approx(1).epsilon(1e-6));
+  CHECK(cone(1) == doctest::Approx(1.0 / rings / rings).epsilon(1e-4));  // 0.015 of 0.9; the next ring is above a fiftieth of the height
 }
 
 TEST_CASE("upright: up is where a shape stands, whatever is customary in files of its kind") {
