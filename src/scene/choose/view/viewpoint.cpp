@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "filter/mesh/surface_builder.h"
+
 namespace sg {
 
 namespace {
@@ -58,29 +60,46 @@ class DepthBuffer {
 
 using Parts = std::span<const SurfaceMesh* const>;
 
-// Every `step`-th polygon of all parts: use(its points, their number); point k is at(k).
-template <class Use>
-void for_polygons(Parts parts, size_t step, Use use) {
+// Polygons by the places of their corners.
+struct Polygons {
+  std::vector<Vec3> corners;
+  std::vector<size_t> end;  // of each polygon's corners
+
+  // Calls use(first corner, their number) for each.
+  template <class Use>
+  void each(Use use) const {
+    size_t begin = 0;
+    for (const size_t e : end) use(corners.data() + begin, e - begin), begin = e;
+  }
+};
+
+// Every `step`-th polygon of all parts.
+Polygons some_polygons(Parts parts, size_t step) {
+  Polygons out;
   for (const SurfaceMesh* mesh : parts) {
     const CellsView polygons = cells_view(mesh->polygons);
-    for (size_t c = 0; c < polygons.count; c += step)
-      use(polygons.size(c), [&](size_t k) { return mesh->points.at(size_t(polygons.point(c, k))); });
+    const PointReader at(mesh->points);
+    for (size_t c = 0; c < polygons.count; c += step) {
+      for (size_t k = 0; k < polygons.size(c); ++k) out.corners.push_back(at[size_t(polygons.point(c, k))]);
+      out.end.push_back(out.corners.size());
+    }
   }
+  return out;
 }
 
-// How many of every `step`-th polygon are seen.
-size_t polygons_seen(Parts parts, const Box3& box, size_t step, Vec3 direction, Vec3 up) {
+// How many are seen.
+size_t polygons_seen(const Polygons& polygons, const Box3& box, Vec3 direction, Vec3 up) {
   DepthBuffer buffer(box, direction, up);
-  for_polygons(parts, step, [&](size_t n, auto at) {
-    for (size_t k = 1; k + 1 < n; ++k) buffer.cover(buffer.corner(at(0)), buffer.corner(at(k)), buffer.corner(at(k + 1)));
+  polygons.each([&](const Vec3* at, size_t n) {
+    for (size_t k = 1; k + 1 < n; ++k) buffer.cover(buffer.corner(at[0]), buffer.corner(at[k]), buffer.corner(at[k + 1]));
   });
   constexpr double least_cosine = 0.2;
   size_t seen = 0;
-  for_polygons(parts, step, [&](size_t n, auto at) {
+  polygons.each([&](const Vec3* at, size_t n) {
     if (n < 3) return;
     Vec3 middle;
-    for (size_t k = 0; k < n; ++k) middle += at(k) * (1 / double(n));
-    const Vec3 normal = cross(at(1) - at(0), at(2) - at(0));
+    for (size_t k = 0; k < n; ++k) middle += at[k] * (1 / double(n));
+    const Vec3 normal = cross(at[1] - at[0], at[2] - at[0]);
     const bool edge_on = !(std::abs(dot(normal, buffer.towards())) > least_cosine * length(normal));
     seen += !edge_on && buffer.seen(buffer.corner(middle));  // the far side of a solid lies behind its near one
   });
@@ -95,15 +114,16 @@ Vec3 telling_direction(Parts parts, Vec3 direction, Vec3 up) {
   Box3 box;
   for (const SurfaceMesh* mesh : parts) {
     polygons += mesh->polygons.size();
-    for (size_t i = 0; i < mesh->points.count(); ++i) box.add(mesh->points.at(i));
+    const PointReader at(mesh->points);
+    for (size_t i = 0; i < mesh->points.count(); ++i) box.add(at[i]);
   }
   if (polygons == 0 || !(box.diagonal() > 0)) return direction;
-  const size_t step = std::max<size_t>(1, polygons / most_polygons);
+  const Polygons some = some_polygons(parts, std::max<size_t>(1, polygons / most_polygons));
   const Vec3 axis = normalize(up), along = axis * dot(direction, axis), across = direction - along, aside = cross(axis, across);
   const Vec3 turned[] = {direction, along + aside, along - across, along - aside};
   size_t best = 0, seen[4];
   for (size_t i = 0; i < 4; ++i) {
-    seen[i] = polygons_seen(parts, box, step, turned[i], axis);
+    seen[i] = polygons_seen(some, box, turned[i], axis);
     if (double(seen[i]) > 1.1 * double(seen[0]) && seen[i] > seen[best]) best = i;
   }
   return turned[best];
