@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/parallel.h"
 #include "filter/mesh/surface_builder.h"
 
 namespace sg {
@@ -122,10 +123,11 @@ Vec3 telling_direction(Parts parts, Vec3 direction, Vec3 up) {
   const Vec3 axis = normalize(up), along = axis * dot(direction, axis), across = direction - along, aside = cross(axis, across);
   const Vec3 turned[] = {direction, along + aside, along - across, along - aside};
   size_t best = 0, seen[4];
-  for (size_t i = 0; i < 4; ++i) {
-    seen[i] = polygons_seen(some, box, turned[i], axis);
+  parallel_for(4, 1, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) seen[i] = polygons_seen(some, box, turned[i], axis);
+  });
+  for (size_t i = 0; i < 4; ++i)
     if (double(seen[i]) > 1.1 * double(seen[0]) && seen[i] > seen[best]) best = i;
-  }
   return turned[best];
 }
 
