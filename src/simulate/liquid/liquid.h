@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A liquid with a free surface in a box, by smoothed particles (SPH): the break of a dam.
 #pragma once
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -36,6 +38,14 @@ class Liquid {
   /// Throws Error(data), naming the frame, where the liquid flies apart.
   void advance(const Context& context);
   DatasetPtr dataset(const Context& context) const;
+  /// What the next frame depends on; see simulate/run/frames.h.
+  template <class F>
+  void each_part(F&& f) {
+    std::array<uint64_t, 1> count{frame_};
+    std::array<double, 1> fastest{fastest_};
+    f(count), f(fastest), f(x_), f(v_), f(density_), f(pressure_), f(a_);
+    frame_ = count[0], fastest_ = fastest[0];
+  }
   double spacing() const { return spacing_; }
   double sound() const { return sound_; }
   size_t count() const { return x_.size(); }  ///< of the liquid

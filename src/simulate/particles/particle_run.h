@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A run of particles that appear, are moved by forces, and bounce off obstacles.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -27,6 +28,24 @@ class ParticleRun {
   void advance(const Context& context);
   void step(double t, double h, const Context& context);
   DatasetPtr dataset(const Context& context) const;
+  /// What the next frame depends on; see simulate/run/frames.h.
+  template <class F>
+  void each_part(F&& f) {
+    std::array<uint64_t, 3> counts{frame_, steps_, uint64_t(emitted_)};
+    f(counts);
+    frame_ = counts[0], steps_ = counts[1], emitted_ = int64_t(counts[2]);
+    for (std::vector<Vec3>* l : {&x_, &v_, &home_}) {
+      Growing<std::vector<Vec3>> growing{*l};
+      f(growing);
+    }
+    Growing<std::vector<double>> born{born_};
+    Growing<std::vector<int64_t>> id{id_};
+    f(born), f(id);
+  }
+  bool consistent() const {
+    const size_t n = x_.size();
+    return v_.size() == n && born_.size() == n && id_.size() == n && home_.size() == (params_.tether > 0 ? n : 0);
+  }
   std::span<const Vec3> places() const { return x_; }
   std::span<const Vec3> velocities() const { return v_; }
 

@@ -2,6 +2,7 @@
 // Runs: simulations whose frames are computed one from another. A run's state is a function of its parameters and the number of the frame
 // alone, so that it does not matter who asked for which time before.
 #pragma once
+#include <concepts>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -37,7 +38,8 @@ struct RunCost {
 bool may_keep(size_t bytes, const Context& context);
 
 /// A Run that can be stored lists what its frame depends on: each_part(f) calls f(list) for lists of numbers, whose lengths follow from the
-/// parameters. resume(context), where there is one, then finds again what follows from them.
+/// parameters, or for a Growing list, whose lengths consistent() checks. resume(context), where there is one, then finds again what follows
+/// from them.
 template <class Run>
 concept Storable = requires(Run& run) {
   run.each_part([](auto&) {});
@@ -52,6 +54,11 @@ bool go_on(Run& run, const std::string& path, const std::string& key, size_t fra
   if (file.key() != key) fail_usage("is the state of another run", "'" + path + "'", "remove it, or name another file as store");
   if (file.frame() > frame) return false;
   run.each_part([&](auto& list) { file.fill(list); });
+  if constexpr (requires {
+                  { run.consistent() } -> std::convertible_to<bool>;
+                })
+    if (!run.consistent()) file.fail_length();
+  if (run.frame() != file.frame()) file.fail_length();
   if constexpr (requires { run.resume(context); }) run.resume(context);
   return true;
 }

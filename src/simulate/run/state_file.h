@@ -13,6 +13,12 @@
 
 namespace sg {
 
+/// A list of a state whose length is part of it. A run checks such lengths when it resumes.
+template <class List>
+struct Growing {
+  List& list;
+};
+
 /// Parts of a state, as bytes. A file holds the text that tells runs apart, the number of the frame, the parts, and a sum of all that.
 class StateFile {
  public:
@@ -28,12 +34,21 @@ class StateFile {
     static_assert(std::is_trivially_copyable_v<T>);
     const std::span<const std::byte> part = next();
     if (part.size() != list.size() * sizeof(T)) fail_length();
-    std::memcpy(list.data(), part.data(), part.size());
+    if (!part.empty()) std::memcpy(static_cast<void*>(list.data()), part.data(), part.size());
   }
+  template <class List>
+  void fill(Growing<List>& growing) {
+    using T = typename List::value_type;
+    static_assert(std::is_trivially_copyable_v<T>);
+    const std::span<const std::byte> part = next();
+    if (part.size() % sizeof(T) != 0) fail_length();
+    growing.list.resize(part.size() / sizeof(T));
+    if (!part.empty()) std::memcpy(static_cast<void*>(growing.list.data()), part.data(), part.size());
+  }
+  [[noreturn]] void fail_length() const;
 
  private:
   std::span<const std::byte> next();
-  [[noreturn]] void fail_length() const;
 
   MappedFile file_;
   std::string key_;
@@ -50,6 +65,10 @@ class StateWriter {
   void add(const List& list) {
     static_assert(std::is_trivially_copyable_v<typename List::value_type>);
     add(list.data(), list.size() * sizeof(typename List::value_type));
+  }
+  template <class List>
+  void add(const Growing<List>& growing) {
+    add(growing.list);
   }
   void commit();
 

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every simulator that stores its state goes on from it to the same bytes.
+#include <cstdint>
 #include <string>
+#include <vector>
 
+#include "base/error.h"
 #include "simulate/fluid/water/flip.h"
+#include "simulate/liquid/liquid.h"
+#include "simulate/particles/bodies/nbody.h"
+#include "simulate/particles/particle_run.h"
 #include "simulate/pde/advection_diffusion.h"
 #include "simulate/pde/heat.h"
 #include "simulate/pde/mesh/heat_on_mesh.h"
@@ -96,4 +102,52 @@ TEST_CASE("runs: heat on a mesh and water go on from their stored states") {
       goes_on("flip_liquid", p, other, [&](const FlipLiquidParams& q) { return flip_liquid(q, context); });
     }
   }
+}
+
+TEST_CASE("runs: particles, stars and smoothed particles go on from their stored states") {
+  Context context;
+  {
+    ParticleParams p, other;
+    p.rate = 300, p.frame = 0.1, p.life = 0.45, p.tether = 2, p.spread = 0.5, other.count = 3;
+    goes_on("particle_system", p, other, [&](const ParticleParams& q) { return particle_system(q, context); });
+  }
+  {
+    NbodyParams p, other;
+    p.count = 60, other.count = 2;
+    for (const double angle : {0.0, 0.5}) {
+      p.angle = angle;
+      goes_on("nbody", p, other, [&](const NbodyParams& q) { return nbody(q, context); });
+    }
+  }
+  {
+    LiquidParams p, other;
+    p.size = 24, p.frame = 0.05, other.size = 8;
+    goes_on("liquid", p, other, [&](const LiquidParams& q) { return liquid_source(q, context); });
+  }
+}
+
+TEST_CASE("runs: a state whose sum is right and whose lengths do not fit together is refused") {
+  Context context;
+  ParticleParams p;
+  p.rate = 100, p.frame = 0.1, p.store = test::fresh_folder("stored_lengths") + "run", p.time = 0.2;
+  particle_system(p, context);
+  const std::string key = StateFile(p.store).key();
+  ParticleParams other;
+  for (const size_t velocities : {2u, 3u, 4u})
+    for (const uint64_t frame : {1u, 2u}) {
+      {
+        StateWriter file(p.store, key, frame);
+        file.add(std::vector<uint64_t>{1, 0, 3}), file.add(std::vector<Vec3>(3)), file.add(std::vector<Vec3>(velocities));
+        file.add(std::vector<Vec3>()), file.add(std::vector<double>(3)), file.add(std::vector<int64_t>(3));
+        file.commit();
+      }
+      particle_system(other, context);
+      if (velocities == 3 && frame == 1) CHECK_NOTHROW(particle_system(p, context));
+      else CHECK_THROWS_WITH_AS(particle_system(p, context), doctest::Contains("other sizes"), Error);
+    }
+  StateWriter short_file(p.store, key, 1);
+  short_file.add(std::vector<uint64_t>{1, 0, 3});
+  short_file.commit();
+  particle_system(other, context);
+  CHECK_THROWS_WITH_AS(particle_system(p, context), doctest::Contains("other sizes"), Error);
 }

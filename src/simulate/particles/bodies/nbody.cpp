@@ -134,6 +134,17 @@ void NbodyRun::note(const Context& context) {
   for (int c = 0; c < 3; ++c) momentum_.push_back(momentum[c]), angular_.push_back(angular[c]);
 }
 
+bool NbodyRun::consistent() const {
+  const size_t n = moment_.size();
+  return n > 0 && kinetic_.size() == n && potential_.size() == n && total_.size() == n && momentum_.size() == 3 * n &&
+         angular_.size() == 3 * n;
+}
+
+void NbodyRun::resume(const Context& context) {
+  std::vector<Vec3> a(x_.size());
+  pull(x_, a, context);
+}
+
 DatasetPtr NbodyRun::dataset(const Context&) const {
   std::vector<double> xyz, velocity;
   for (size_t i = 0; i < x_.size(); ++i)

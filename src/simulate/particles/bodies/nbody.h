@@ -34,6 +34,17 @@ class NbodyRun {
   void advance(const Context& context);
   void step(double h, const Context& context);
   DatasetPtr dataset(const Context& context) const;
+  /// What the next frame depends on, and what is shown of the frames before; see simulate/run/frames.h.
+  template <class F>
+  void each_part(F&& f) {
+    f(x_), f(v_);
+    for (std::vector<double>* l : {&moment_, &kinetic_, &potential_, &total_, &momentum_, &angular_}) {
+      Growing<std::vector<double>> growing{*l};
+      f(growing);
+    }
+  }
+  bool consistent() const;
+  void resume(const Context& context);
   std::span<const Vec3> places() const { return x_; }
   std::span<const Vec3> velocities() const { return v_; }
 
