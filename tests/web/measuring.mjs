@@ -136,6 +136,7 @@ export async function measuring(test, o, browser) {
 export async function overTime(test, o, page) {
   await test("values at a clicked place are plotted over time, and saved", async () => {
     await page.click("#tab-plot");
+    await settled(page);  // what is clicked is what is seen
     await page.mouse.click(...(await middleOf(page.locator(".view-surface").first())));
     await page.locator("button:has-text('At the clicked place'):not([disabled])").click();
     await page.waitForSelector(".over-time .uplot canvas");
