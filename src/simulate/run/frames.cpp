@@ -22,6 +22,12 @@ size_t frame_at(const FrameParams& p, const std::string& who) {
   return size_t(frames);
 }
 
+StateFile state_of_run(const std::string& path, const std::string& key) {
+  StateFile file(path);
+  if (file.key() != key) fail_usage("is the state of another run", "'" + path + "'", "remove it, or name another file as store");
+  return file;
+}
+
 bool may_keep(size_t bytes, const Context& context) { return context.memory_limit == 0 || bytes <= context.memory_limit / 4; }
 
 }  // namespace sg

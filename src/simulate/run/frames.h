@@ -45,13 +45,15 @@ concept Storable = requires(Run& run) {
   run.each_part([](auto&) {});
 };
 
+/// What is stored at the path. Throws Error(usage) where it belongs to another run than `key`, Error(data) where it is damaged.
+StateFile state_of_run(const std::string& path, const std::string& key);
+
 /// Goes on from what is stored at the path for the run `key`, unless that lies beyond `frame`; returns whether it does. Throws Error(usage)
 /// where something else is there.
 template <Storable Run>
 bool go_on(Run& run, const std::string& path, const std::string& key, size_t frame, const Context& context) {
   if (!file_exists(path)) return false;
-  StateFile file(path);
-  if (file.key() != key) fail_usage("is the state of another run", "'" + path + "'", "remove it, or name another file as store");
+  StateFile file = state_of_run(path, key);
   if (file.frame() > frame) return false;
   run.each_part([&](auto& list) { file.fill(list); });
   if constexpr (requires {
@@ -72,23 +74,27 @@ void store(Run& run, const std::string& path, const std::string& key) {
 /// A frame of the run of these parameters: `make()` begins it, or the run that was shown last goes on where it is the same one and has not
 /// gone beyond, or the one stored. A Run has size_t frame() const, void advance(const Context&) to the next frame,
 /// DatasetPtr dataset(const Context&) const, and, where it takes much memory, size_t bytes() const. `params` may say any time. What else
-/// the run depends on, such as the meshes given to it, is told apart by `of`.
+/// the run depends on, such as the meshes given to it, is told apart by `of`, in memory alone: such runs cannot be stored.
 template <class Run, class Params, class Make>
 DatasetPtr frame_of_run(const std::string& who, Params params, Make&& make, Context& context, const std::string& of = {}) {
   static std::mutex mutex;
-  static std::string kept_key;
+  static std::string kept_key, kept_store;  // and where it was stored
   static std::unique_ptr<Run> kept;
   const size_t frame = frame_at(params, who);
   const FrameParams frames = params;
   params.time = 0, params.store.clear(), params.store_every = FrameParams().store_every;
   const std::string text = who + " " + params_text(schema_of(params)), key = text + " " + of;
+  if (!frames.store.empty() && !of.empty())
+    fail_usage("the state of a run in given data cannot be stored", who, "leave store out: nothing in it would tell which data it was");
   if (!frames.store.empty() && !Storable<Run>) fail_usage("its state cannot be stored", who, "leave store out");
   std::unique_ptr<Run> run;
+  bool stored_here = false;
   {
     const std::lock_guard lock(mutex);
-    if (kept && kept_key == key && kept->frame() <= frame) run = std::move(kept);
+    if (kept && kept_key == key && kept->frame() <= frame) run = std::move(kept), stored_here = kept_store == frames.store;
   }
   bool stores = !frames.store.empty();
+  if (run && stores && !stored_here && file_exists(frames.store)) stores = state_of_run(frames.store, text).frame() <= frame;
   if (!run) {
     run = make();
     if constexpr (Storable<Run>)
@@ -107,7 +113,7 @@ DatasetPtr frame_of_run(const std::string& who, Params params, Make&& make, Cont
   kept.reset();
   size_t bytes = 0;
   if constexpr (requires { run->bytes(); }) bytes = run->bytes();
-  if (may_keep(bytes, context)) kept_key = key, kept = std::move(run);
+  if (may_keep(bytes, context)) kept_key = key, kept_store = stores ? frames.store : std::string(), kept = std::move(run);
   return result;
 }
 

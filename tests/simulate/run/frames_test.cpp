@@ -78,6 +78,13 @@ TEST_CASE("runs: a state of another run, a damaged and a cut one are refused") {
   SmokeParams other = p;
   other.lift = 1;
   CHECK_THROWS_WITH_AS(afresh(other), doctest::Contains("another run"), Error);
+  Context context;
+  smoke(plume(), context);  // the other one's run is no longer kept
+  SmokeParams same = other;
+  same.store.clear(), same.time = 0.05;
+  smoke(same, context);  // kept in memory, not stored
+  CHECK_THROWS_WITH_AS(smoke(other, context), doctest::Contains("another run"), Error);
+  CHECK(StateFile(p.store).frame() == 1);
   const std::string whole = contents(p.store);
   std::string damaged = whole;
   damaged[damaged.size() / 2] ^= 1;

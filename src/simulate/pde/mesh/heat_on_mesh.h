@@ -54,13 +54,6 @@ class MeshHeat {
   const Stiffness& stiffness() const { return stiffness_; }
   /// The mesh with the field.
   DatasetPtr dataset(const Context& context) const;
-  /// What the next frame depends on; see simulate/run/frames.h.
-  template <class F>
-  void each_part(F&& f) {
-    std::array<uint64_t, 1> count{frame_};
-    f(count), f(u_), f(source_);
-    frame_ = count[0];
-  }
 
  private:
   /// At the points; those that count must be finite.
