@@ -284,6 +284,7 @@ const char* const general_help =
     "  sightglass serve FOLDER                                       the same for a team, with all files of a folder\n"
     "  sightglass info IN [--json] [--quick] [--all-times]           describe what is in a file\n"
     "  sightglass convert IN [-f ...]... -o OUT.vtu                  filter data and write it to another file\n"
+    "  sightglass convert --source 'smoke' --times 0:5:0.1 -o OUT.vtkhdf   the steps of a run, as they are made\n"
     "  sightglass run PIPELINE.yaml                                  run a pipeline file\n"
     "  sightglass open PICTURE.png                                   remake a picture from the recipe stored in it\n"
     "  sightglass ops [NAME] [--json]                                list operations and their parameters\n"
@@ -326,6 +327,13 @@ void declare_info(CLI::App& a, Options& o, RawText& raw) {
 void declare_convert(CLI::App& a, Options& o, RawText& raw) {
   a.add_option("input", o.inputs, "File to read");
   a.add_option("-o,--output", o.output, "File to write")->required();
+  a.add_option(
+      "--times", o.times,
+      "Write a series: the times of its steps, e.g. 0:10:101 (first:last:count), 0:10:0.1 (first:last:step), 0,0.5,1, or of a file "
+      "0:114 (its steps in between). -o takes .vtkhdf, .ome.zarr, .pvd, or numbered files of any format: flow_{n}.vtu. Each step is "
+      "in its place when it has been made");
+  a.add_flag("--all-times", o.all_times, "The same with all steps of the file");
+  a.add_flag("--resume", o.resume, "With --times: go on behind the steps that are there already");
   add_writing(a, o);
   add_reading(a, o, raw), add_pipeline(a, o);
 }

@@ -40,6 +40,7 @@ struct Options {
   std::vector<std::string> picture;  ///< key=value for the picture, from the flags above and --picture
   ReadOptions read;
   std::vector<std::string> written;  ///< convert: key=value for the writer
+  std::string times;                 ///< convert: those of a series
   std::vector<std::string> film;     ///< key=value of FilmParams, checked
   std::vector<std::string> serve;    ///< view, serve: key=value of ServeParams, checked
   std::string add_user;              ///< serve: "NAME RIGHTS"
@@ -49,7 +50,8 @@ struct Options {
   bool read_anywhere = false;  ///< files and recipes may name any file
   bool json = false, cpp = false, other_names = false, no_browser = false, quick = false, all_times = false, quiet = false, verbose = false,
        explain = false, recipe = false,
-       series = false;  ///< series: all inputs are one
+       series = false,  ///< series: all inputs are one
+      resume = false;   ///< convert: go on with a series
 };
 
 /// Parses; for --help and --version prints to stdout and sets command to none. Throws Error(usage).

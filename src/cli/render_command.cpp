@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// render, run, open and convert: each makes a PipelineFile and hands it on.
+// render, run and open: each makes a PipelineFile and hands it on.
 #include <fmt/core.h>
 #include <unistd.h>
 
@@ -19,6 +19,7 @@
 #include "cli/cli.h"
 #include "cli/hints/step_files.h"
 #include "cli/info.h"
+#include "cli/outputs.h"
 #include "cli/say.h"
 #include "color/legend_content.h"
 #include "filter/mesh/select/piece.h"
@@ -56,46 +57,6 @@ void check_output(const std::string& path) {
                fmt::format("supported: {}{}", list, ext.empty() ? "" : "; data is written by: sightglass convert IN -o NAME." + ext));
   }
   AtomicFile probe(path);  // missing folder, no permission, a folder of that name: removed again at once
-}
-
-std::string stem_of(const std::string& path) {
-  std::string name = file_name_of(names_series(path) ? path.substr(0, path.find(',')) : path);
-  for (const std::string_view mark : {"{n}", "*", "?"})  // of the pattern of a series
-    if (names_series(path))
-      for (size_t at = name.find(mark); at != name.npos; at = name.find(mark)) name.erase(at, mark.size());
-  if (name.empty() || name[0] == '.') name = "series" + name;
-  const size_t dot = name.rfind('.');
-  return dot == std::string::npos || dot == 0 ? name : name.substr(0, dot);
-}
-
-// The name with the input's in the place of {name}.
-std::string output_name(std::string pattern, const std::string& stem) {
-  replace_all(pattern, "{name}", stem);
-  return pattern;
-}
-
-std::vector<Target> targets_of(const PipelineGraph& built) {
-  std::vector<Target> targets;
-  for (NodeId n : built.show) targets.push_back({n, {}});
-  if (targets.empty()) targets.push_back({built.last, {}});
-  return targets;
-}
-
-void print_explanation(const PipelineFile& file, bool drawn = false) {
-  const PipelineGraph built = build_graph(file);
-  say(built.graph.explain(targets_of(built)) + (drawn ? explain_drawing(file, built) : ""));
-}
-
-// With --memory, what the steps are expected to hold together is known before any of them runs. Files in formats of which parts can be
-// read do not count here: they are mapped or cut, and arrays are counted while they are made.
-void check_memory(const PipelineGraph& built, const Options& o) {
-  if (o.memory == 0) return;
-  uint64_t bytes = 0;
-  for (const PlannedStep& step : built.graph.plan(targets_of(built)))
-    if (!step.reads_parts) bytes += step.bytes;
-  if (bytes > o.memory)
-    fail_usage(fmt::format("the steps are expected to need {}, more than the {} allowed", human_bytes(bytes), human_bytes(o.memory)),
-               "--memory", "--explain shows which; allow more, or read a smaller part");
 }
 
 // When the program began, about: before main().
@@ -286,66 +247,6 @@ int run_info_of_pipeline(const Options& o, Context& context) {
   const Data data = built.graph.evaluate(built.last, {}, context);
   const std::string name = o.inputs.empty() ? o.source : o.inputs[0];
   say(o.json ? info_json(data, o.quick) : info_text(data, name, o.quick));
-  return 0;
-}
-
-namespace {
-
-// Without filters a volume goes to a Zarr folder slab by slab, so that it need not fit into memory.
-int convert_slabs(const PipelineFile& file, const Options& o, const WriteOptions& write, Context& context) {
-  ZarrOptions options;
-  options.chunk = size_t(write.chunk);
-  if (write.compression) options.compression = word_of(*write.compression);
-  const SlabSource source = with_context(fmt::format("writing '{}'", o.output), [&] {
-    return o.source.empty() ? slabs_of_file(o.inputs[0], o.read, context)
-                            : slabs_of_source(file.steps[0].operation, file.steps[0].words, context);
-  });
-  write_zarr_slabs(o.output, source, options, context);
-  const auto& n = source.grid.dims;
-  if (!o.quiet) say(fmt::format("{}: uniform {}x{}x{}, field '{}'\n", printable(o.output), n[0], n[1], n[2], printable(source.field)));
-  return 0;
-}
-
-}  // namespace
-
-int run_convert(const Options& given, Context& context) {
-  Options o = given;
-  if (!o.inputs.empty()) o.output = output_name(o.output, stem_of(o.inputs[0]));
-  PipelineFile file = pipeline_of(o);
-  if (o.inputs.size() > 1) {
-    const std::string series = as_series(o.inputs);
-    fail_usage(
-        "converts one file at a time", "sightglass convert",
-        fmt::format("each by itself: for f in FILES; do sightglass convert \"$f\" -o '{{name}}.{}'; done{}", extension_of(given.output),
-                    series.empty() ? "; one mesh of all: -f 'append with=FILE'"
-                                   : fmt::format("; one step of the series: --step K and {}", series)));
-  }
-  if (o.explain) {
-    print_explanation(file);
-    return 0;
-  }
-  const std::string target = o.output.substr(0, o.output.find_last_not_of('/') + 1);
-  const Format& format = format_to_write(target);
-  const WriteOptions write = writing(o, format);
-  if (format.write == write_zarr && o.filters.empty() && o.read.pieces == 1) return convert_slabs(file, o, write, context);
-  const PipelineGraph built = build_graph(file);
-  check_memory(built, o);
-  Data data = built.graph.evaluate(built.last, {}, context);
-  if (!(format.honours & writes_parts)) {
-    std::string last = file.steps.back().name;
-    std::vector<std::string> notes;
-    leave_out_sets(file, last, data, {}, notes, context);
-    for (const std::string& note : notes) context.info(note);
-  }
-  const StopWatch watch;
-  write_data(o.output, in_pieces(data, write.pieces, context), write, context);
-  context.log(LogLevel::debug, fmt::format("writing '{}': {}", o.output, watch.text()));
-  if (!o.quiet)
-    for_each_dataset(data, [&](const std::string& part, const DatasetPtr& d) {
-      say(fmt::format("{}: {}{}\n", printable(o.output), part.empty() ? "" : printable(part) + ": ", summary(*d)));
-    });
-  if (auto* t = std::get_if<TablePtr>(&data); t && !o.quiet)
-    say(fmt::format("{}: table of {} columns\n", printable(o.output), (*t)->columns.size()));
   return 0;
 }
 

@@ -19,6 +19,7 @@
 #include "io/plugin.h"
 #include "io/reading_budget.h"
 #include "io/stated_format.h"
+#include "io/steps/steps.h"
 #include "io/y_up.h"
 
 namespace sg {
@@ -32,6 +33,11 @@ constexpr Format reads_with(void (*describe)(Schema&, ReadOptions&), Format f) {
 }
 constexpr Format writes_with(void (*describe)(Schema&, WriteOptions&), Format f) {
   f.describe_write = describe;
+  return f;
+}
+
+constexpr Format in_steps(std::unique_ptr<StepsWriter> (*write)(const std::string&, StepsPlan, const WriteOptions&, Context&), Format f) {
+  f.write_steps = write;
   return f;
 }
 

@@ -132,6 +132,13 @@ void write_vtk_multiblock(const std::string& path, const Data& data, const Write
 bool sniff_pvd(std::span<const std::byte> head);
 Data read_pvd(const std::string& path, const ReadOptions& options, Context& context);
 std::vector<double> times_of_pvd(const std::string& path, const ReadOptions& options, Context& context);
+/// Steps go into a folder of the file's name without its extension.
+void write_pvd(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
+std::unique_ptr<StepsWriter> write_pvd_steps(const std::string& path, StepsPlan plan, const WriteOptions& options, Context& context);
+
+bool sniff_file_series(std::span<const std::byte> head);
+Data read_file_series(const std::string& path, const ReadOptions& options, Context& context);
+std::vector<double> times_of_file_series(const std::string& path, const ReadOptions& options, Context& context);
 bool sniff_vtk_amr(std::span<const std::byte> head);
 Data read_vtk_amr(const std::string& path, const ReadOptions& options, Context& context);
 /// Patches go into a folder of the file's name without its extension.
@@ -164,5 +171,7 @@ Data read_zarr(const std::string& path, const ReadOptions& options, Context& con
 std::vector<double> times_of_zarr(const std::string& path, const ReadOptions& options, Context& context);
 /// One point field of a uniform grid as OME-Zarr; see io/zarr/zarr.h.
 void write_zarr(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
+/// The same with time as the first axis; steps lie at equal distances.
+std::unique_ptr<StepsWriter> write_zarr_steps(const std::string& path, StepsPlan plan, const WriteOptions& options, Context& context);
 
 }  // namespace sg

@@ -2,6 +2,7 @@
 // Files in and out. A format is chosen by content first, by extension second; one file per format.
 #pragma once
 #include <array>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,6 +16,8 @@
 namespace sg {
 
 class Schema;
+struct StepsPlan;
+class StepsWriter;
 
 /// Part of a lattice: points lo..hi (inclusive, counted from 0 in the file's lattice), every stride-th along each axis.
 struct LatticeRegion {
@@ -120,6 +123,8 @@ struct Format {
   /// Content test for files whose name says nothing (standard input); asked last, as what it looks for is no magic number. `whole` is
   /// mapped: touch little of it.
   bool (*recognize)(std::span<const std::byte> whole) = nullptr;
+  /// Writes a series step by step (io/steps/steps.h); null = a file holds one step.
+  std::unique_ptr<StepsWriter> (*write_steps)(const std::string& path, StepsPlan plan, const WriteOptions&, Context&) = nullptr;
 };
 std::span<const Format> formats();
 /// The format of a file or folder: the stated one, else by content, then by extension. Throws Error(data) when none knows it.

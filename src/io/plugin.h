@@ -14,6 +14,7 @@
 #include "data/memory/memory_budget.h"
 #include "io/film/movie.h"
 #include "io/io.h"
+#include "io/steps/steps.h"
 
 namespace sg {
 
@@ -35,6 +36,7 @@ struct PluginFormat {
   std::vector<double> (*times)(const std::string& path, const ReadOptions&, Context&) = nullptr;
   PluginArray (*array)(const std::string& path, const PluginSelection&, Context&) = nullptr;
   MovieEncoder (*movie)(const MovieSettings&) = nullptr;
+  std::unique_ptr<StepsWriter> (*steps)(const std::string& path, StepsPlan plan, const WriteOptions&, Context&) = nullptr;
 };
 
 /// How plug-ins learn of set_memory_limit() when they are loaded.
@@ -60,6 +62,11 @@ void plugin_write(const std::string& path, const Data& data, const WriteOptions&
 template <PluginName PLUGIN, PluginName FORMAT>
 std::vector<double> plugin_times(const std::string& path, const ReadOptions& options, Context& context) {
   return plugin_format(PLUGIN.text, FORMAT.text).times(path, options, context);
+}
+
+template <PluginName PLUGIN, PluginName FORMAT>
+std::unique_ptr<StepsWriter> plugin_steps(const std::string& path, StepsPlan plan, const WriteOptions& options, Context& context) {
+  return plugin_format(PLUGIN.text, FORMAT.text).steps(path, std::move(plan), options, context);
 }
 
 }  // namespace sg

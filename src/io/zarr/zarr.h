@@ -34,6 +34,17 @@ struct ZarrOptions {
 /// when context.memory_limit requires it. Throws Error(data) for a full disk.
 void write_zarr_slabs(const std::string& path, const SlabSource& source, const ZarrOptions& options, Context& context);
 
+namespace zarr {
+/// A step of a series in one folder, whose first axis is time.
+struct SeriesStep {
+  size_t step = 0;
+  double first = 0, interval = 1;  ///< the time of step 0, and between two
+  std::string recipe;              ///< see StepsPlan
+};
+/// Writes the chunks of a step into the folder, which has those before it, and then says that they are there.
+void write_step(const std::string& path, const SlabSource& source, const ZarrOptions& options, const SeriesStep& step, Context& context);
+}  // namespace zarr
+
 /// The field of a file as slabs: read part by part where the format can, else whole. One field: options.fields, or the active one. Throws
 /// Error(usage) for what is not a uniform grid.
 SlabSource slabs_of_file(const std::string& path, const ReadOptions& options, Context& context);

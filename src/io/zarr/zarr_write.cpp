@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 
 #include "base/error.h"
 #include "base/file/file.h"
@@ -82,7 +83,7 @@ void put_text(const std::string& path, std::string_view text) { put_file(path, s
 
 constexpr const char* dtypes[] = {"|u1", "|i1", "<u2", "<i2", "<u4", "<i4", "<u8", "<i8", "<f4", "<f8"};  // in the order of ElementType
 
-std::string list(std::initializer_list<size_t> numbers) {
+std::string list(const std::vector<size_t>& numbers) {
   std::string s;
   for (const size_t n : numbers) s += (s.empty() ? "" : ", ") + std::to_string(n);
   return "[" + s + "]";
@@ -92,16 +93,19 @@ struct Level {
   std::array<size_t, 3> dims{}, chunk{};
   Vec3 spacing, origin;
   std::array<bool, 3> halved{};  // along which axes the next level is coarser
-  std::string folder;
-  Array slab;  // slices that wait until a layer of chunks is full
+  std::string folder, chunks;    // where its description and its chunks are
+  Array slab;                    // slices that wait until a layer of chunks is full
   std::byte* values = nullptr;
   size_t filled = 0, layer = 0;
 };
 
 class Writer {
  public:
-  Writer(const std::string& folder, const SlabSource& source, const ZarrOptions& options, Context& context)
+  /// `step`: of a series, whose steps before it are there.
+  Writer(const std::string& folder, const SlabSource& source, const ZarrOptions& options, std::optional<zarr::SeriesStep> step,
+         Context& context)
       : source_(source),
+        step_(step),
         direction_(source.grid.direction),
         packing_{options.compression},
         context_(context),
@@ -111,9 +115,14 @@ class Writer {
     for (int c = 0; c < source.components; ++c) extremes_.emplace_back(source.grid.dims);
     for (Level& l : levels_) {
       make_folder(l.folder);
+      if (step_) {
+        l.chunks += std::to_string(step_->step) + "/";
+        std::error_code ignored;
+        fs::remove_all(l.chunks, ignored);  // of a run that was broken off
+        make_folder(l.chunks);
+      }
       if (source.components > 1)
-        for (int c = 0; c < source.components; ++c) make_folder(fmt::format("{}{}", l.folder, c));
-      put_text(l.folder + ".zarray", array_text(l));
+        for (int c = 0; c < source.components; ++c) make_folder(fmt::format("{}{}", l.chunks, c));
     }
   }
 
@@ -128,9 +137,11 @@ class Writer {
   void finish() {
     for (size_t l = 0; l < levels_.size(); ++l)
       if (levels_[l].filled > 0) flush(l, levels_[l].values, std::exchange(levels_[l].filled, 0));
-    put_text(folder_ + "/.zgroup", "{\n  \"zarr_format\": 2\n}\n");
-    put_text(folder_ + "/.zattrs", attributes());
-    write_extremes();
+    // The finest level says how many steps there are: it comes last.
+    for (size_t l = levels_.size(); l-- > 0;) write_file(levels_[l].folder + ".zarray", array_text(levels_[l]));
+    write_file(folder_ + "/.zgroup", "{\n  \"zarr_format\": 2\n}\n");
+    write_file(folder_ + "/.zattrs", attributes());
+    if (!step_) write_extremes();
   }
 
  private:
@@ -160,7 +171,7 @@ class Writer {
         more = more || l.dims[a] > edge;
       }
       if (!more) l.halved = {};
-      l.folder = fmt::format("{}/{}/", folder_, levels_.size());
+      l.folder = l.chunks = fmt::format("{}/{}/", folder_, levels_.size());
       levels_.push_back(l);
       if (!more || levels_.size() == 60) break;
       for (size_t a = 0; a < 3; ++a)
@@ -207,7 +218,7 @@ class Writer {
     const size_t components = size_t(source_.components), element = element_size(source_.type);
     for (size_t c = 0; c < components; ++c) {
       const std::string top =
-          components > 1 ? fmt::format("{}{}/{}/", level.folder, c, level.layer) : fmt::format("{}{}/", level.folder, level.layer);
+          components > 1 ? fmt::format("{}{}/{}/", level.chunks, c, level.layer) : fmt::format("{}{}/", level.chunks, level.layer);
       make_folder(top);
       for (size_t j = 0; j < ny; ++j) make_folder(fmt::format("{}{}", top, j));
       parallel_for(
@@ -243,14 +254,19 @@ class Writer {
   }
 
   std::string array_text(const Level& l) const {
-    const auto shape = [&](const std::array<size_t, 3>& n, size_t c) {
-      return source_.components > 1 ? list({c, n[2], n[1], n[0]}) : list({n[2], n[1], n[0]});
+    const auto shape = [&](const std::array<size_t, 3>& n, size_t c, size_t steps) {
+      std::vector<size_t> all;
+      if (step_) all.push_back(steps);
+      if (source_.components > 1) all.push_back(c);
+      all.insert(all.end(), {n[2], n[1], n[0]});
+      return list(all);
     };
     return fmt::format(
         "{{\n  \"zarr_format\": 2,\n  \"shape\": {},\n  \"chunks\": {},\n  \"dtype\": \"{}\",\n  \"compressor\": {},\n  \"fill_value\": "
         "0,\n"
         "  \"filters\": null,\n  \"order\": \"C\",\n  \"dimension_separator\": \"/\"\n}}\n",
-        shape(l.dims, size_t(source_.components)), shape(l.chunk, 1), dtypes[size_t(source_.type)], packing_.json());
+        shape(l.dims, size_t(source_.components), step_ ? step_->step + 1 : 1), shape(l.chunk, 1, 1), dtypes[size_t(source_.type)],
+        packing_.json());
   }
 
   std::string attributes() const {
@@ -261,18 +277,21 @@ class Writer {
     for (const auto& [ours, name] : units)
       if (source_.length_unit == ours) unit = fmt::format(", \"unit\": \"{}\"", name);
     const bool many = source_.components > 1;
-    std::string axes = many ? "{\"name\": \"c\", \"type\": \"channel\"}, " : "";
+    std::string axes = step_ ? "{\"name\": \"t\", \"type\": \"time\"}, " : "";
+    if (many) axes += "{\"name\": \"c\", \"type\": \"channel\"}, ";
     for (const char* a : {"z", "y", "x"})
       axes += fmt::format("{}{{\"name\": \"{}\", \"type\": \"space\"{}}}", a[0] == 'z' ? "" : ", ", a, unit);
     std::string datasets;
     for (size_t l = 0; l < levels_.size(); ++l) {
-      const auto vec = [&](Vec3 v, const char* first) {
-        return fmt::format("[{}{}, {}, {}]", many ? first : "", exact_number(v.z), exact_number(v.y), exact_number(v.x));
+      const auto vec = [&](Vec3 v, const char* channel, double time) {
+        return fmt::format("[{}{}{}, {}, {}]", step_ ? exact_number(time) + ", " : "", many ? channel : "", exact_number(v.z),
+                           exact_number(v.y), exact_number(v.x));
       };
       datasets += fmt::format(
           "{}\n        {{\"path\": \"{}\", \"coordinateTransformations\": [{{\"type\": \"scale\", \"scale\": {}}}, "
           "{{\"type\": \"translation\", \"translation\": {}}}]}}",
-          l ? "," : "", l, vec(levels_[l].spacing, "1, "), vec(levels_[l].origin, "0, "));
+          l ? "," : "", l, vec(levels_[l].spacing, "1, ", step_ ? step_->interval : 0),
+          vec(levels_[l].origin, "0, ", step_ ? step_->first : 0));
     }
     std::string channels;
     for (int c = 0; c < source_.components; ++c) channels += fmt::format("{}{{\"label\": {}}}", c ? ", " : "", json_string(source_.field));
@@ -282,12 +301,14 @@ class Writer {
         for (int c = 0; c < 3; ++c) direction += (direction.empty() ? "" : ", ") + exact_number(direction_.m[r][c]);
       direction = fmt::format(", \"direction\": [{}]", direction);
     }
+    // The extremes are those of a lone volume.
+    const std::string ours = step_ ? fmt::format("\"recipe\": {}", json_string(step_->recipe)) : "\"minmax\": \"minmax\"";
     return fmt::format(
         "{{\n  \"multiscales\": [\n    {{\n      \"version\": \"0.4\",\n      \"name\": {},\n      \"type\": \"{}\",\n      \"axes\": "
         "[{}],\n"
         "      \"datasets\": [{}\n      ]\n    }}\n  ],\n  \"omero\": {{\"channels\": [{}]}},\n"
-        "  \"sightglass\": {{\"minmax\": \"minmax\", \"unit\": {}, \"vector\": {}, \"labels\": {}{}}}\n}}\n",
-        json_string(source_.title), source_.role == Role::labels ? "most frequent" : "mean", axes, datasets, channels,
+        "  \"sightglass\": {{{}, \"unit\": {}, \"vector\": {}, \"labels\": {}{}}}\n}}\n",
+        json_string(source_.title), source_.role == Role::labels ? "most frequent" : "mean", axes, datasets, channels, ours,
         json_string(source_.unit), many, source_.role == Role::labels, direction);
   }
 
@@ -311,6 +332,7 @@ class Writer {
   }
 
   const SlabSource& source_;
+  std::optional<zarr::SeriesStep> step_;
   Mat3 direction_;
   zarr::Packing packing_;
   Context& context_;
@@ -320,16 +342,15 @@ class Writer {
   std::vector<BlockExtremes> extremes_;
 };
 
-}  // namespace
-
-void write_zarr_slabs(const std::string& path, const SlabSource& source, const ZarrOptions& options, Context& context) {
+void check(const std::string& path, const SlabSource& source, const ZarrOptions& options) {
   zarr::check_packing({options.compression}, path);
   if (options.chunk < 8 || options.chunk > 512 || options.chunk % 2)
     fail_usage(fmt::format("chunks of {} samples", options.chunk), path, "give an even number from 8 to 512, e.g. 64");
   for (const size_t n : source.grid.dims)
     if (n == 0) fail_usage("there are no points to write", path);
-  AtomicFolder folder(path);
-  Writer writer(folder.partial(), source, options, context);
+}
+
+void write_all(Writer& writer, const std::string& path, const SlabSource& source, Context& context) {
   const size_t all = source.grid.dims[2], at_once = source.best_slab ? source.best_slab : std::min(writer.layer(), all);
   for (size_t first = 0; first < all; first += at_once) {
     context.check();
@@ -342,7 +363,23 @@ void write_zarr_slabs(const std::string& path, const SlabSource& source, const Z
     context.progress(double(first + count) / double(all), "writing chunks");
   }
   writer.finish();
+}
+
+}  // namespace
+
+void write_zarr_slabs(const std::string& path, const SlabSource& source, const ZarrOptions& options, Context& context) {
+  check(path, source, options);
+  AtomicFolder folder(path);
+  Writer writer(folder.partial(), source, options, {}, context);
+  write_all(writer, path, source, context);
   folder.commit();
+}
+
+void zarr::write_step(const std::string& path, const SlabSource& source, const ZarrOptions& options, const SeriesStep& step,
+                      Context& context) {
+  check(path, source, options);
+  Writer writer(path, source, options, step, context);
+  write_all(writer, path, source, context);
 }
 
 }  // namespace sg

@@ -96,6 +96,8 @@ File::File(const std::string& path, Unprobed) : path_(path) {
   H5Pset_file_locking(access, false, true);  // reading needs no lock, and some shared folders have none
   H5Pset_fclose_degree(access, H5F_CLOSE_SEMI);
   file_ = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access));
+  // One that is being written, or whose writer was broken off.
+  if (!file_.good()) file_ = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access));
   if (!file_.good()) fail_data("cannot be opened as HDF5" + said(), path, "the file is truncated, damaged or not HDF5");
   hsize_t size = 0;
   if (H5Fget_filesize(file_, &size) < 0) fail_data("cannot be measured" + said(), path);

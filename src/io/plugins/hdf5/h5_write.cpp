@@ -12,11 +12,7 @@
 
 namespace sg::h5 {
 
-namespace {
-
-constexpr int deflate_level = 4;
-
-// About a quarter of a mebibyte: the slowest dimensions are cut first.
+// The slowest dimensions are cut first.
 std::vector<hsize_t> chunk_of(std::vector<hsize_t> dims, size_t size) {
   for (size_t a = 0; a < dims.size(); ++a) {
     hsize_t row = size;
@@ -26,14 +22,19 @@ std::vector<hsize_t> chunk_of(std::vector<hsize_t> dims, size_t size) {
   return dims;
 }
 
-}  // namespace
+Writer::Writer(const std::string& path, bool compress, Context& context) : Writer(path, compress, context, false) {}
+Writer::Writer(const std::string& path, bool compress, Context& context, Latest) : Writer(path, compress, context, true) {}
 
-Writer::Writer(const std::string& path, bool compress, Context& context)
+Writer::Writer(const std::string& path, bool compress, Context& context, bool latest)
     : path_(path), partial_(path), compress_(compress), context_(context) {
   silence();
   errno = 0;
   const Handle access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_file_locking(access, false, true);
+  if (latest) {
+    H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
+    H5Pset_fclose_degree(access, H5F_CLOSE_SEMI);  // as readers in this process have it
+  }
   file_ = Handle(H5Fcreate(partial_.name().c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access));
   if (!file_.good()) fail("cannot be written");
 }

@@ -42,8 +42,18 @@ class Writer {
   void count(const std::string& path, size_t n) { list(path, Array::from_vector(std::vector<int64_t>{int64_t(n)})); }
   const std::string& path() const { return path_; }
 
- private:
+ protected:
+  struct Latest {};
+  /// In the newest form of the format, which can be read while it grows.
+  Writer(const std::string& path, bool compress, Context& context, Latest);
   [[noreturn]] void fail(const std::string& what) const;
+  void move_into_place() { partial_.commit(); }
+  const Handle& file() const { return file_; }
+  bool close() { return file_.close(); }
+  bool compresses() const { return compress_; }
+
+ private:
+  Writer(const std::string& path, bool compress, Context& context, bool latest);
   void attribute(const std::string& object, const char* name, hid_t type, hid_t space, const void* value);
   std::string path_;
   PartialFile partial_;
@@ -51,5 +61,9 @@ class Writer {
   Context& context_;
   Handle file_;
 };
+
+/// The chunk of an array of `dims` (slowest first) and elements of `size` bytes: about a quarter of a mebibyte.
+std::vector<hsize_t> chunk_of(std::vector<hsize_t> dims, size_t size);
+constexpr int deflate_level = 4;
 
 }  // namespace sg::h5

@@ -5,7 +5,7 @@
 #include "base/parallel.h"
 #include "io/plugins/hdf5/enzo.h"
 #include "io/plugins/hdf5/minc/minc_2.h"
-#include "io/plugins/hdf5/vtkhdf.h"
+#include "io/plugins/hdf5/vtkhdf/vtkhdf.h"
 #include "io/reading_budget.h"
 
 namespace {
@@ -49,5 +49,6 @@ std::vector<double> times_of_minc(const std::string& path, const sg::ReadOptions
 
 }  // namespace
 
-SG_PLUGIN_FORMATS({"vtkhdf", read_vtkhdf, sg::write_vtkhdf, sg::times_of_vtkhdf}, {"enzo", read_enzo, nullptr, sg::times_of_enzo},
-                  {"minc", read_minc, sg::minc::write_minc_2, times_of_minc}, {"array", nullptr, nullptr, nullptr, read_array})
+SG_PLUGIN_FORMATS({"vtkhdf", read_vtkhdf, sg::write_vtkhdf, sg::times_of_vtkhdf, nullptr, nullptr, sg::vtkhdf::write_steps},
+                  {"enzo", read_enzo, nullptr, sg::times_of_enzo}, {"minc", read_minc, sg::minc::write_minc_2, times_of_minc},
+                  {"array", nullptr, nullptr, nullptr, read_array})

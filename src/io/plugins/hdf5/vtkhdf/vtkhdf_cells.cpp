@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "base/bytes.h"
-#include "io/plugins/hdf5/vtkhdf.h"
+#include "io/plugins/hdf5/vtkhdf/vtkhdf.h"
 #include "io/vtk/vtk_cells.h"
 
 namespace sg::vtkhdf {

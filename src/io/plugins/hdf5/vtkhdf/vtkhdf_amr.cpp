@@ -4,7 +4,7 @@
 
 #include "base/bytes.h"
 #include "io/mesh/amr_cover.h"
-#include "io/plugins/hdf5/vtkhdf.h"
+#include "io/plugins/hdf5/vtkhdf/vtkhdf.h"
 #include "io/vtk/vtk_cells.h"
 
 namespace sg::vtkhdf {

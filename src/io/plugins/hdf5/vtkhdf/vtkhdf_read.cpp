@@ -7,7 +7,7 @@
 #include "base/bytes.h"
 #include "base/text/text.h"
 #include "io/plugins/hdf5/minc/minc_2.h"
-#include "io/plugins/hdf5/vtkhdf.h"
+#include "io/plugins/hdf5/vtkhdf/vtkhdf.h"
 #include "io/vtk/vtk_cells.h"
 
 namespace sg {

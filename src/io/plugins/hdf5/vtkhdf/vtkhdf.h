@@ -3,6 +3,7 @@
 #pragma once
 #include "io/io.h"
 #include "io/plugins/hdf5/h5.h"
+#include "io/steps/steps.h"
 
 namespace sg::vtkhdf {
 
@@ -45,6 +46,8 @@ void read_image(const Group& g, DatasetParts& parts);
 void read_unstructured(const Group& g, DatasetParts& parts);
 void read_polydata(const Group& g, DatasetParts& parts);
 void read_amr(const Group& g, DatasetParts& parts);
+
+std::unique_ptr<StepsWriter> write_steps(const std::string& path, StepsPlan plan, const WriteOptions& options, Context& context);
 
 }  // namespace sg::vtkhdf
 

@@ -9,12 +9,68 @@
 #include "base/text/text.h"
 #include "data/lattice.h"
 #include "io/plugins/hdf5/h5_write.h"
-#include "io/plugins/hdf5/vtkhdf.h"
+#include "io/plugins/hdf5/vtkhdf/vtkhdf.h"
+#include "io/plugins/hdf5/vtkhdf/vtkhdf_out.h"
 #include "io/write_losses.h"
 
 namespace sg {
 
 namespace vtkhdf {
+
+std::string safe_name(std::string name, std::vector<std::string>& used) {
+  for (char& c : name)
+    if (c == '/') c = '_';
+  if (name.empty() || name == ".") name = "unnamed";
+  while (std::find(used.begin(), used.end(), name) != used.end()) name += "_";
+  used.push_back(name);
+  return name;
+}
+
+const char* attribute_of(Role role) {
+  constexpr std::pair<Role, const char*> roles[] = {{Role::scalars, "Scalars"}, {Role::vectors, "Vectors"},
+                                                    {Role::normals, "Normals"}, {Role::tcoords, "TCoords"},
+                                                    {Role::tensors, "Tensors"}, {Role::global_ids, "GlobalIds"}};
+  for (const auto& [r, attribute] : roles)
+    if (r == role) return attribute;
+  return nullptr;
+}
+
+Array coordinates(const Points& p) {
+  if (p.origin == Vec3{0, 0, 0}) return p.xyz;
+  double* out = nullptr;
+  Array a = Array::make<double>(p.count(), 3, &out);
+  for (size_t i = 0; i < p.count(); ++i)
+    for (int c = 0; c < 3; ++c) out[3 * i + size_t(c)] = p.at(i)[c];
+  return a;
+}
+
+Array wide(const Array& ids) { return ids.converted(ElementType::i64); }
+
+void write_head(h5::Writer& w, const std::string& at, const char* type, int64_t major, int64_t minor) {
+  w.group(at);
+  w.numbers<int64_t>(at, "Version", {major, minor});
+  w.text(at, "Type", type);
+}
+
+void write_head(h5::Writer& w, const std::string& at, const UniformGrid& g) {
+  std::vector<int64_t> extent;
+  std::vector<double> direction;
+  Vec3 back{0, 0, 0};
+  for (size_t a = 0; a < 3; ++a) {
+    extent.insert(extent.end(), {g.extent_start[a], g.extent_start[a] + static_cast<long long>(g.dims[a]) - 1});
+    back[int(a)] = g.spacing[int(a)] * double(g.extent_start[a]);
+    for (size_t b = 0; b < 3; ++b) direction.push_back(g.direction.m[a][b]);
+  }
+  const Vec3 origin = g.origin - g.direction * back;  // of the point with index 0 0 0
+  w.numbers<int64_t>(at, "WholeExtent", extent);
+  w.numbers<double>(at, "Origin", {origin.x, origin.y, origin.z});
+  w.numbers<double>(at, "Spacing", {g.spacing.x, g.spacing.y, g.spacing.z});
+  w.numbers<double>(at, "Direction", direction);
+}
+
+void refuse_kind(const Dataset& d, const std::string& path) {
+  fail_usage(fmt::format("VTKHDF has no grids of kind {}", d.kind()), path, "write .vtr or .vts, or convert it to cells first");
+}
 
 namespace {
 
@@ -29,18 +85,7 @@ struct Out {
   std::string operator()(const std::string& name) const { return at + "/" + name; }
 };
 
-void head(const Out& o, const char* type, int64_t major, int64_t minor) {
-  o.w.group(o.at);
-  o.w.numbers<int64_t>(o.at, "Version", {major, minor});
-  o.w.text(o.at, "Type", type);
-}
-
-/// A name that a dataset can have: '/' would make groups.
-std::string safe_name(std::string name) {
-  for (char& c : name)
-    if (c == '/') c = '_';
-  return name.empty() || name == "." ? "unnamed" : name;
-}
+void head(const Out& o, const char* type, int64_t major, int64_t minor) { write_head(o.w, o.at, type, major, minor); }
 
 // Fields of one association; `lattice` has the dimensions of a grid (x first), or is empty for lists.
 void write_fields(const Out& o, const std::string& group, Association association, const std::vector<size_t>& lattice) {
@@ -51,20 +96,15 @@ void write_fields(const Out& o, const std::string& group, Association associatio
     if (a.components() > 1) dims.push_back(hsize_t(a.components()));
     o.w.array(o(group + "/" + name), a, dims);
   };
-  constexpr std::pair<Role, const char*> roles[] = {{Role::scalars, "Scalars"}, {Role::vectors, "Vectors"},
-                                                    {Role::normals, "Normals"}, {Role::tcoords, "TCoords"},
-                                                    {Role::tensors, "Tensors"}, {Role::global_ids, "GlobalIds"}};
   std::vector<std::string> used;
   for (const Field& f : o.d.fields()) {
     if (f.association != association) continue;
-    std::string name = safe_name(f.name);
-    while (std::find(used.begin(), used.end(), name) != used.end()) name += "_";
-    used.push_back(name);
+    const std::string name = safe_name(f.name, used);
     o.losses.renames(f, name);
     put(name, f.array);
     if (!f.unit.empty()) o.w.text(o(group + "/" + name), "units", f.unit);
-    for (const auto& [role, attribute] : roles)
-      if (f.role == role && o.d.fields().with_role(role) == &f) o.w.text(o(group), attribute, name);
+    if (const char* attribute = attribute_of(f.role); attribute && o.d.fields().with_role(f.role) == &f)
+      o.w.text(o(group), attribute, name);
   }
   // What shapes high-order cells: the mesh's own, unless the file that was read kept it as a field.
   const auto* u = o.d.as<UnstructuredMesh>();
@@ -77,17 +117,6 @@ void write_fields(const Out& o, const std::string& group, Association associatio
   const Array& ghost = association == Association::point ? o.d.point_ghost() : o.d.cell_ghost();
   if (association != Association::whole && !ghost.empty()) put("vtkGhostType", ghost);
 }
-
-Array coordinates(const Points& p) {
-  if (p.origin == Vec3{0, 0, 0}) return p.xyz;
-  double* out = nullptr;
-  Array a = Array::make<double>(p.count(), 3, &out);
-  for (size_t i = 0; i < p.count(); ++i)
-    for (int c = 0; c < 3; ++c) out[3 * i + size_t(c)] = p.at(i)[c];
-  return a;
-}
-
-Array wide(const Array& ids) { return ids.converted(ElementType::i64); }
 
 /// Offsets and ids of a list of cells, with their numbers.
 void write_list(const Out& o, const std::string& at, const CellArray& cells) {
@@ -110,21 +139,9 @@ void write_points(const Out& o, const Points& p) {
 
 void write(const Out& o, const UniformGrid& g) {
   head(o, "ImageData", 1, 0);
-  std::vector<int64_t> extent;
-  std::vector<double> direction;
-  Vec3 back{0, 0, 0};
-  std::vector<size_t> points(3), cells(3);
-  for (size_t a = 0; a < 3; ++a) {
-    extent.insert(extent.end(), {g.extent_start[a], g.extent_start[a] + static_cast<long long>(g.dims[a]) - 1});
-    back[int(a)] = g.spacing[int(a)] * double(g.extent_start[a]);
-    points[a] = g.dims[a], cells[a] = std::max<size_t>(g.dims[a] - 1, 1);
-    for (size_t b = 0; b < 3; ++b) direction.push_back(g.direction.m[a][b]);
-  }
-  const Vec3 origin = g.origin - g.direction * back;  // of the point with index 0 0 0
-  o.w.numbers<int64_t>(o.at, "WholeExtent", extent);
-  o.w.numbers<double>(o.at, "Origin", {origin.x, origin.y, origin.z});
-  o.w.numbers<double>(o.at, "Spacing", {g.spacing.x, g.spacing.y, g.spacing.z});
-  o.w.numbers<double>(o.at, "Direction", direction);
+  write_head(o.w, o.at, g);
+  std::vector<size_t> points(g.dims.begin(), g.dims.end()), cells;
+  for (const size_t n : points) cells.push_back(std::max<size_t>(n - 1, 1));
   write_fields(o, "PointData", Association::point, points);
   write_fields(o, "CellData", Association::cell, cells);
 }
@@ -200,10 +217,11 @@ void write(const Out& o, const AmrGrid& g) {
       const bool points = association == Association::point;
       const size_t from = level.patches.empty() ? 0 : points ? point : cell, to = level.patches.empty() ? 0 : points ? point_end : cell_end;
       o.w.group(at + "/" + data);
+      std::vector<std::string> used;
       for (const Field& f : o.d.fields())
         if (f.association == association) {
-          const std::string name = at + "/" + data + "/" + safe_name(f.name);
-          o.losses.renames(f, safe_name(f.name));
+          const std::string safe = safe_name(f.name, used), name = at + "/" + data + "/" + safe;
+          o.losses.renames(f, safe);
           o.w.list(name, f.array.slice(from, to));
           if (!f.unit.empty()) o.w.text(name, "units", f.unit);
         }
@@ -217,9 +235,7 @@ void write_kind(const Out& o) {
   std::visit(
       [&](const auto& mesh) {
         using M = std::remove_cvref_t<decltype(mesh)>;
-        if constexpr (std::is_same_v<M, RectilinearGrid> || std::is_same_v<M, CurvilinearGrid>)
-          fail_usage(fmt::format("VTKHDF has no grids of kind {}", o.d.kind()), o.w.path(),
-                     "write .vtr or .vts, or convert it to cells first");
+        if constexpr (std::is_same_v<M, RectilinearGrid> || std::is_same_v<M, CurvilinearGrid>) refuse_kind(o.d, o.w.path());
         else write(o, mesh);
       },
       o.d.mesh());

@@ -7,7 +7,7 @@
 
 #include "base/bytes.h"
 #include "data/lattice_crop.h"
-#include "io/plugins/hdf5/vtkhdf.h"
+#include "io/plugins/hdf5/vtkhdf/vtkhdf.h"
 
 namespace sg::vtkhdf {
 
