@@ -7,14 +7,18 @@ namespace sg::trace {
 
 namespace {
 
-// Mean over the normals seen from w of f(m): a grid of the square that visible() takes.
+// Mean over the normals seen from w of f(m): a grid of the square that visible() takes, closer towards u.y = 1, from where come the steep
+// normals of which most is lost.
 template <class F>
 float mean_over_visible(const Ggx& ggx, Vec3f w, F f) {
-  const int angles = 32, heights = 64;
-  double sum = 0;
-  for (int i = 0; i < angles; ++i)
-    for (int j = 0; j < heights; ++j) sum += double(f(ggx.visible(w, {(i + 0.5f) / angles, (j + 0.5f) / heights})));
-  return float(sum / (angles * heights));
+  const int angles = 32, heights = 96;
+  double sum = 0, whole = 0;
+  for (int j = 0; j < heights; ++j) {
+    const double v = (j + 0.5) / heights, weight = v * v;
+    for (int i = 0; i < angles; ++i)
+      sum += weight * double(f(ggx.visible(w, {(i + 0.5f) / angles, float(1 - v * v * v)}))), whole += weight;
+  }
+  return float(sum / whole);
 }
 
 // The largest over the directions about the normal: along both axes and between them.
@@ -34,6 +38,14 @@ float reflected_weight(const Ggx& ggx, Vec3f w, Vec3f m) {
   return to.z > 0 ? ggx.seen(w, to) / ggx.seen(w) : 0;
 }
 
+// Single reflections at mirrors that reflect f(cosine).
+template <class F>
+AlbedoCurve of_mirrors(const Ggx& ggx, F f) {
+  if (ggx.smooth()) return AlbedoCurve::of(f);
+  return largest(ggx,
+                 [&](Vec3f w) { return mean_over_visible(ggx, w, [&](Vec3f m) { return f(dot(w, m)) * reflected_weight(ggx, w, m); }); });
+}
+
 }  // namespace
 
 float AlbedoCurve::mean() const {
@@ -49,9 +61,14 @@ float AlbedoCurve::mean() const {
 }
 
 AlbedoCurve mirror_albedo(const Ggx& ggx) {
-  if (ggx.smooth()) return AlbedoCurve::of([](float) { return 1.f; });
-  return largest(ggx, [&](Vec3f w) { return mean_over_visible(ggx, w, [&](Vec3f m) { return reflected_weight(ggx, w, m); }); });
+  return of_mirrors(ggx, [](float) { return 1.f; });
 }
+
+AlbedoCurve conductor_albedo(const Ggx& ggx, float eta, float k) {
+  return of_mirrors(ggx, [&](float cosine) { return fresnel_conductor(cosine, eta, k); });
+}
+
+AlbedoCurve grazing_albedo(const Ggx& ggx) { return of_mirrors(ggx, schlick_share); }
 
 BoundaryAlbedo boundary_albedo(const Ggx& ggx, float eta, bool sheet) {
   auto reflectance = [&](float cosine) {
@@ -61,9 +78,7 @@ BoundaryAlbedo boundary_albedo(const Ggx& ggx, float eta, bool sheet) {
   if (ggx.smooth() || eta == 1)
     return {AlbedoCurve::of(reflectance), AlbedoCurve::of([&](float cosine) { return 1 - reflectance(cosine); })};
   BoundaryAlbedo albedo;
-  albedo.reflected = largest(ggx, [&](Vec3f w) {
-    return mean_over_visible(ggx, w, [&](Vec3f m) { return reflectance(dot(w, m)) * reflected_weight(ggx, w, m); });
-  });
+  albedo.reflected = of_mirrors(ggx, reflectance);
   albedo.passed = largest(ggx, [&](Vec3f w) {
     return mean_over_visible(ggx, w, [&](Vec3f m) {
       const float cosine = dot(w, m);

@@ -37,6 +37,10 @@ class AlbedoCurve {
 /// Of mirrors that reflect everything: 1 less what hits another one, which a single reflection loses. Of anisotropic ones the largest over
 /// the directions about the normal.
 AlbedoCurve mirror_albedo(const Ggx& ggx);
+/// Of mirrors of metal, fresnel_conductor().
+AlbedoCurve conductor_albedo(const Ggx& ggx, float eta, float k);
+/// Of mirrors that reflect (1 - cosine)^5, Schlick's rise towards grazing angles.
+AlbedoCurve grazing_albedo(const Ggx& ggx);
 
 /// Of a boundary of transparent matter, single reflections and refractions.
 struct BoundaryAlbedo {

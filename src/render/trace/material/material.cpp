@@ -39,7 +39,7 @@ Material::Material(const SurfaceMaterial& m) {
     coat_albedo = boundary_albedo(coat_ggx, coat_eta, false).reflected;
   }
   ggx = Ggx::of_roughness(float(m.specular_roughness), float(m.specular_anisotropy));
-  if (metalness > 0 || retro > 0) mirror = mirror_albedo(ggx);
+  if (metalness > 0 || retro > 0) mirror = mirror_albedo(ggx), mirror_grazing = grazing_albedo(ggx);
   mirror_lost = AlbedoCurve::of([&](float cosine) { return 1 - mirror(cosine); });
   if (metalness < 1 && retro < 1) {
     side[0].eta = weighted_ior(m.specular_ior, m.specular_weight);
@@ -56,11 +56,13 @@ Material::Material(const SurfaceMaterial& m) {
       side[1].lost_passes = from_outside / (from_outside + from_inside);
     }
   }
-  if (m.metal) {
+  if (m.metal && (metalness > 0 || retro > 0)) {
     conductor = index_of(*m.metal);
-    for (int i = 0; i < 3; ++i)
-      conductor_average_[i] =
-          AlbedoCurve::of([&](float cosine) { return fresnel_conductor(cosine, conductor->eta[i], conductor->k[i]); }).average();
+    for (int i = 0; i < 3; ++i) {
+      const float eta = conductor->eta[i], k = conductor->k[i];
+      conductor_average_[i] = trace::conductor_albedo(Ggx(), eta, k).average();
+      conductor_albedo[i] = trace::conductor_albedo(ggx, eta, k);
+    }
   }
 }
 
@@ -73,6 +75,13 @@ Vec3f Material::metal_fresnel(float cosine, Vec3f base) const {
 
 Vec3f Material::metal_average(Vec3f base) const {
   return conductor ? conductor_average_ : base + (Vec3f(1, 1, 1) - base) * (1.f / 21);  // integral of 2 c (1 - c)^5
+}
+
+Vec3f Material::metal_albedo(float cosine, Vec3f base) const {
+  if (ggx.smooth()) return metal_fresnel(cosine, base);
+  if (conductor) return {conductor_albedo[0](cosine), conductor_albedo[1](cosine), conductor_albedo[2](cosine)};
+  const float grazing = mirror_grazing(cosine);
+  return base * (mirror(cosine) - grazing) + Vec3f(grazing, grazing, grazing);
 }
 
 }  // namespace sg::trace

@@ -45,11 +45,13 @@ class Material {
   Vec3f coat_filter{1, 1, 1};  ///< of one passage
   // Of the boundary below it, metal and retroreflectors, which have the same roughness:
   Ggx ggx;
-  BoundarySide side[2];     ///< seen from outside and from inside; of thin walls and opaque bodies the first alone
-  AlbedoCurve mirror;       ///< of metal that reflects everything, single reflections
-  AlbedoCurve mirror_lost;  ///< 1 - mirror
+  BoundarySide side[2];        ///< seen from outside and from inside; of thin walls and opaque bodies the first alone
+  AlbedoCurve mirror;          ///< of metal that reflects everything, single reflections
+  AlbedoCurve mirror_grazing;  ///< what Schlick's rise adds to a black one
+  AlbedoCurve mirror_lost;     ///< 1 - mirror
   Vec3f clear_filter{1, 1, 1};
   std::optional<ConductorIndex> conductor;
+  AlbedoCurve conductor_albedo[3];  ///< of single reflections, red, green and blue
 
   /// Without roughness, or without a boundary at all.
   bool boundary_smooth() const { return ggx.smooth() || side[0].eta == 1; }
@@ -58,6 +60,8 @@ class Material {
   /// What metal reflects at a microscopic mirror, and on average over all directions, if its colour at normal incidence is `base`.
   Vec3f metal_fresnel(float cosine, Vec3f base) const;
   Vec3f metal_average(Vec3f base) const;
+  /// What metal reflects of single reflections, for light from a cosine.
+  Vec3f metal_albedo(float cosine, Vec3f base) const;
 
  private:
   Vec3f base_color_, emission_, absorption_, subsurface_radius_;

@@ -13,6 +13,7 @@ struct Case {
   SurfaceMaterial material;
   bool white = false;  ///< keeps all energy
   float opacity = 1;
+  bool preset = false;
 };
 
 inline std::vector<Case> cases() {
@@ -23,7 +24,8 @@ inline std::vector<Case> cases() {
     change(m);
     all.push_back({std::move(name), m, white, opacity});
   };
-  for (const auto& p : enum_words(MaterialPreset{})) all.push_back({"preset " + std::string(p.word), preset_material(p.value)});
+  for (const auto& p : enum_words(MaterialPreset{}))
+    all.push_back({"preset " + std::string(p.word), preset_material(p.value), false, 1, true});
   for (const double rough : {0., .2, .5, 1.}) {
     const std::string r = " of roughness " + std::to_string(rough);
     add("white plastic" + r, true, [&](SurfaceMaterial& m) { m.specular_roughness = rough; });
@@ -34,6 +36,7 @@ inline std::vector<Case> cases() {
     add("coat" + r, false, [&](SurfaceMaterial& m) { m.coat_weight = .8, m.coat_roughness = rough, m.coat_color = {.9, .6, .5}; });
     add("coated glass" + r, false, [&](SurfaceMaterial& m) { m.coat_weight = .8, m.coat_roughness = rough, m.transmission_weight = 1; });
   }
+  add("chromium", false, [](SurfaceMaterial& m) { m = preset_material(MaterialPreset::chromium); });
   add("white matte", true, [](SurfaceMaterial& m) { m.specular_weight = 0; });
   add("white paper", true, [](SurfaceMaterial& m) { m.specular_weight = 0, m.thin_walled = true, m.subsurface_weight = .5; });
   add("bubble", true, [](SurfaceMaterial& m) { m.transmission_weight = 1, m.specular_ior = 1; });

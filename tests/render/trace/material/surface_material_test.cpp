@@ -37,8 +37,8 @@ TEST_CASE("materials: parameters are set from words, as other parameters are") {
   CHECK(value_of_word<MaterialPreset>("aluminum") == MaterialPreset::aluminium);
 }
 
-TEST_CASE("materials: measured metals have their known colours: reflectances at normal incidence in linear sRGB, within .08") {
-  // Reference: conductors of a table in Hoffman's course notes (SIGGRAPH 2010), computed over the spectrum.
+TEST_CASE("materials: measured metals have their known colours, within an eighth: three wavelengths stand for the spectrum") {
+  // Linear sRGB at normal incidence, of the table in Hoffman's course notes (SIGGRAPH 2010), computed over the spectrum.
   const std::pair<MaterialPreset, Vec3> known[] = {{MaterialPreset::gold, {1.00, .71, .29}},
                                                    {MaterialPreset::silver, {.95, .93, .88}},
                                                    {MaterialPreset::copper, {.95, .64, .54}},
