@@ -28,6 +28,8 @@ float given_back(const AlbedoCurve& lost_of_o, float o, const AlbedoCurve& lost_
 Bsdf make_bsdf(const Material& material, Vec3f base_color, float opacity, bool walks) {
   Bsdf b;
   b.material_ = &material, b.base_ = clamped(base_color), b.opacity_ = std::clamp(opacity, 0.f, 1.f), b.walks_ = walks && !material.thin();
+  if (material.metalness > 0 || material.retro > 0)
+    b.again_ = multiple_mirrors(material.metal_average(b.base_), material.mirror.white.average());
   return b;
 }
 
@@ -62,9 +64,8 @@ Vec3f Bsdf::reflected_facing(Vec3f o, Vec3f i, bool inside) const {
   if (!m.ggx.smooth()) {
     const float mirrors = m.ggx.normals(h) * m.ggx.seen(o, i) / (4 * o.z * i.z);
     if (metal > 0) {
-      const Vec3f average = m.metal_average(base_);
       f += m.metal_fresnel(cosine, base_) * (metal * mirrors);
-      f += multiple_mirrors(average, m.mirror.average()) * (metal * given_back(m.mirror_lost, o.z, m.mirror_lost, i.z));
+      f += again_ * (metal * given_back(m.mirror_lost, o.z, m.mirror_lost, i.z));
     }
     if (rest > 0 && !m.boundary_smooth()) {
       const float again = m.clear * (1 - side.lost_passes) * given_back(side.lost, o.z, side.lost, i.z);
@@ -78,7 +79,7 @@ Vec3f Bsdf::reflected_facing(Vec3f o, Vec3f i, bool inside) const {
   if (m.retro > 0 && !m.ggx.smooth()) {
     const Vec3f back = normalize(o + turned_back(i));
     const float mirrors = m.ggx.normals(back) * m.ggx.seen(o, i) / (4 * o.z * i.z);
-    const Vec3f again = multiple_mirrors(m.metal_average(base_), m.mirror.average()) * given_back(m.mirror_lost, o.z, m.mirror_lost, i.z);
+    const Vec3f again = again_ * given_back(m.mirror_lost, o.z, m.mirror_lost, i.z);
     f += (m.metal_fresnel(dot(o, back), base_) * mirrors + again) * through_coat(o, i, false) * m.retro;
   }
   if (m.coat > 0 && !m.coat_ggx.smooth()) {

@@ -74,6 +74,7 @@ class Bsdf {
 
   const Material* material_ = nullptr;
   Vec3f base_;
+  Vec3f again_;  // what metal of this colour reflects twice or more (multiple_mirrors)
   float opacity_ = 1;
   bool walks_ = false;
 };

@@ -49,7 +49,7 @@ Bsdf::Shares Bsdf::shares(float z, bool inside) const {
   }
   if (metal > 0 || (m.retro > 0 && !inside)) {
     const Vec3f once = m.metal_albedo(z, base_);
-    const Vec3f again = multiple_mirrors(m.metal_average(base_), m.mirror.average()) * (m.ggx.smooth() ? 0 : m.mirror_lost(z));
+    const Vec3f again = again_ * (m.ggx.smooth() ? 0 : m.mirror_lost(z));
     s.albedo[of_metal] = layers * once * metal, s.albedo[of_metal_again] = layers * again * metal;
     if (!inside) s.albedo[of_retro] = layers * once * m.retro, s.albedo[of_retro_again] = layers * again * m.retro;
   }

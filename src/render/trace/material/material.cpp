@@ -39,8 +39,8 @@ Material::Material(const SurfaceMaterial& m) {
     coat_albedo = boundary_albedo(coat_ggx, coat_eta, false).reflected;
   }
   ggx = Ggx::of_roughness(float(m.specular_roughness), float(m.specular_anisotropy));
-  if (metalness > 0 || retro > 0) mirror = mirror_albedo(ggx), mirror_grazing = grazing_albedo(ggx);
-  mirror_lost = AlbedoCurve::of([&](float cosine) { return 1 - mirror(cosine); });
+  if (metalness > 0 || retro > 0) mirror = mirror_albedo(ggx);
+  mirror_lost = AlbedoCurve::of([&](float cosine) { return 1 - mirror.white(cosine); });
   if (metalness < 1 && retro < 1) {
     side[0].eta = weighted_ior(m.specular_ior, m.specular_weight);
     side[1].eta = 1 / side[0].eta;
@@ -58,11 +58,9 @@ Material::Material(const SurfaceMaterial& m) {
   }
   if (m.metal && (metalness > 0 || retro > 0)) {
     conductor = index_of(*m.metal);
-    for (int i = 0; i < 3; ++i) {
-      const float eta = conductor->eta[i], k = conductor->k[i];
-      conductor_average_[i] = trace::conductor_albedo(Ggx(), eta, k).average();
-      conductor_albedo[i] = trace::conductor_albedo(ggx, eta, k);
-    }
+    metal_curves = conductor_albedo(ggx, conductor->eta, conductor->k);
+    const auto smooth = conductor_albedo(Ggx(), conductor->eta, conductor->k);
+    for (int i = 0; i < 3; ++i) conductor_average_[i] = smooth[size_t(i)].average();
   }
 }
 
@@ -79,9 +77,9 @@ Vec3f Material::metal_average(Vec3f base) const {
 
 Vec3f Material::metal_albedo(float cosine, Vec3f base) const {
   if (ggx.smooth()) return metal_fresnel(cosine, base);
-  if (conductor) return {conductor_albedo[0](cosine), conductor_albedo[1](cosine), conductor_albedo[2](cosine)};
-  const float grazing = mirror_grazing(cosine);
-  return base * (mirror(cosine) - grazing) + Vec3f(grazing, grazing, grazing);
+  if (conductor) return {metal_curves[0](cosine), metal_curves[1](cosine), metal_curves[2](cosine)};
+  const float grazing = mirror.grazing(cosine);
+  return base * (mirror.white(cosine) - grazing) + Vec3f(grazing, grazing, grazing);
 }
 
 }  // namespace sg::trace

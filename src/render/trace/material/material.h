@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A material with all that does not depend on the point of the surface: made once, read by the Bsdf of each point.
 #pragma once
+#include <array>
 #include <optional>
 
 #include "render/trace/material/albedo.h"
@@ -19,7 +20,7 @@ struct BoundarySide {
 
 class Material {
  public:
-  /// Milliseconds: albedos of rough boundaries are integrated. Throws Error(usage) for values out of range (check()).
+  /// Some ten milliseconds: albedos of rough boundaries are integrated. Throws Error(usage) for values out of range (check()).
   explicit Material(const SurfaceMaterial& described);
 
   Vec3f base_color() const { return base_color_; }
@@ -45,13 +46,12 @@ class Material {
   Vec3f coat_filter{1, 1, 1};  ///< of one passage
   // Of the boundary below it, metal and retroreflectors, which have the same roughness:
   Ggx ggx;
-  BoundarySide side[2];        ///< seen from outside and from inside; of thin walls and opaque bodies the first alone
-  AlbedoCurve mirror;          ///< of metal that reflects everything, single reflections
-  AlbedoCurve mirror_grazing;  ///< what Schlick's rise adds to a black one
-  AlbedoCurve mirror_lost;     ///< 1 - mirror
+  BoundarySide side[2];     ///< seen from outside and from inside; of thin walls and opaque bodies the first alone
+  MirrorAlbedo mirror;      ///< of metal that reflects everything, single reflections
+  AlbedoCurve mirror_lost;  ///< 1 - mirror.white
   Vec3f clear_filter{1, 1, 1};
   std::optional<ConductorIndex> conductor;
-  AlbedoCurve conductor_albedo[3];  ///< of single reflections, red, green and blue
+  std::array<AlbedoCurve, 3> metal_curves;  ///< of its single reflections, red, green and blue
 
   /// Without roughness, or without a boundary at all.
   bool boundary_smooth() const { return ggx.smooth() || side[0].eta == 1; }

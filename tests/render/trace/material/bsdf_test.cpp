@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/trace/material/bsdf.h"
 
+#include <algorithm>
+#include <vector>
+
 #include "base/random.h"
 #include "render/trace/material/cases.h"
 #include "render/trace/material/fresnel.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/trace/sampling/sampler.h"
 
+#include <algorithm>
 #include <complex>
 #include <numbers>
 #include <vector>
