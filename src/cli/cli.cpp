@@ -80,8 +80,8 @@ void catch_signals() {
 constexpr size_t most_piped = size_t(1) << 30;
 
 Options with_streams(Options o, const Context& context) {
-  if (o.command == Command::ops || o.command == Command::demo || o.command == Command::complete || o.command == Command::serve ||
-      o.command == Command::completions)
+  if (o.command == Command::ops || o.command == Command::samples || o.command == Command::demo || o.command == Command::complete ||
+      o.command == Command::serve || o.command == Command::completions)
     return o;
   for (std::string& path : o.inputs) path = spooled(path, o.memory ? o.memory : most_piped, context);
   return o;
@@ -120,6 +120,7 @@ int dispatch_command(const Options& o, Context& context) {
     case Command::open: return run_open(o, context);
     case Command::ops: return run_ops(o, context);
     case Command::colormap: return run_colormap(o, context);
+    case Command::samples: return run_samples(o, context);
     case Command::demo: return run_demo(o, context);
     case Command::completions: return run_completions(o, context);
     case Command::complete: return run_complete(o, context);

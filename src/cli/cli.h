@@ -19,6 +19,7 @@ int run_pipeline_file(const Options& o, Context& context);
 int run_open(const Options& o, Context& context);
 int run_ops(const Options& o, Context& context);
 int run_colormap(const Options& o, Context& context);
+int run_samples(const Options& o, Context& context);
 int run_demo(const Options& o, Context& context);
 int run_completions(const Options& o, Context& context);
 int run_complete(const Options& o, Context& context);

@@ -16,6 +16,7 @@
 #include "io/options.h"
 #include "pipeline/film/film_params.h"
 #include "pipeline/picture/picture.h"
+#include "render/trace/sampling/sample_study.h"
 #include "scene/choose/coloring.h"
 #include "scene/show/other_names.h"
 #include "serve/serve.h"
@@ -289,6 +290,7 @@ const char* const general_help =
     "  sightglass open PICTURE.png                                   remake a picture from the recipe stored in it\n"
     "  sightglass ops [NAME] [--json]                                list operations and their parameters\n"
     "  sightglass colormap [NAME or FILE[:NAME]]                     list colour maps and analyse their lightness\n"
+    "  sightglass samples [--sampler sobol] [--count 256] [-o ...]   show how samples of the path tracer lie\n"
     "  sightglass demo                                               render sample pictures into out/\n"
     "  sightglass completions bash|zsh|fish                          print a shell's completion script\n"
     "  sightglass man                                                print the manual page: sightglass man | man -l -\n\n"
@@ -377,6 +379,22 @@ void declare_colormap(CLI::App& a, Options& o, RawText&) {
   a.add_flag("--json", o.json, "Print JSON, for programs");
 }
 
+void declare_samples(CLI::App& a, Options& o, RawText&) {
+  trace::SampleStudyParams params;
+  const Schema declared = schema_of(params);
+  for (const ParamDecl& d : declared.decls())
+    add_flag(a, d, d.name, d.doc, [&o, name = d.name](const std::string& text) {
+      trace::SampleStudyParams checked;
+      Schema schema = schema_of(checked);
+      schema.find(name)->name = "--" + name;
+      set_param(schema, "--" + name, text, "");
+      o.samples.push_back(name + "=" + text);
+    });
+  a.add_option("-o,--output", o.output,
+               "Write a picture: the points of one pixel, their power spectrum, the errors of 96 x 96 pixels with so many samples");
+  a.add_flag("--json", o.json, "Print JSON, for programs");
+}
+
 void declare_demo(CLI::App& a, Options& o, RawText&) {
   a.add_option("folder", o.inputs, "Instead, render every file below this folder onto the sheet")->expected(0, 1);
   a.add_option("-o,--out", o.output, "Folder for the pictures; default: out/");
@@ -404,6 +422,7 @@ constexpr Declaration declarations[] = {
     {Command::open, "Remake a picture from the recipe stored in it.", declare_open},
     {Command::ops, "List operations, or describe one.", declare_ops},
     {Command::colormap, "List colour maps, or print the lightness analysis of one.", declare_colormap},
+    {Command::samples, "Show how the samples of a sampler of the path tracer lie.", declare_samples},
     {Command::demo, "Render sample pictures of what Sightglass can do.", declare_demo},
     {Command::completions, "Print a shell's completion script, e.g. for: source <(sightglass completions bash). Packages install it.",
      declare_completions},

@@ -8,22 +8,13 @@
 
 namespace sg {
 
-enum class Command { none, render, view, serve, info, convert, run, open, ops, colormap, demo, completions, complete, man };
+enum class Command { none, render, view, serve, info, convert, run, open, ops, colormap, samples, demo, completions, complete, man };
 constexpr auto enum_words(Command) {
   using enum Command;
-  return std::array{Word{"render", render},
-                    Word{"view", view},
-                    Word{"serve", serve},
-                    Word{"info", info},
-                    Word{"convert", convert},
-                    Word{"run", run},
-                    Word{"open", open},
-                    Word{"ops", ops},
-                    Word{"colormap", colormap},
-                    Word{"demo", demo},
-                    Word{"completions", completions},
-                    Word{"complete", complete},
-                    Word{"man", man}};
+  return std::array{Word{"render", render},     Word{"view", view},       Word{"serve", serve}, Word{"info", info},
+                    Word{"convert", convert},   Word{"run", run},         Word{"open", open},   Word{"ops", ops},
+                    Word{"colormap", colormap}, Word{"samples", samples}, Word{"demo", demo},   Word{"completions", completions},
+                    Word{"complete", complete}, Word{"man", man}};
 }
 
 struct Options {
@@ -43,6 +34,7 @@ struct Options {
   std::string times;                 ///< convert: those of a series
   std::vector<std::string> film;     ///< key=value of FilmParams, checked
   std::vector<std::string> serve;    ///< view, serve: key=value of ServeParams, checked
+  std::vector<std::string> samples;  ///< key=value of SampleStudyParams, checked
   std::string add_user;              ///< serve: "NAME RIGHTS"
   std::string sheet;                 ///< demo: contact sheet
   int threads = 0;

@@ -125,6 +125,20 @@ TEST_CASE("ops, colormap and help: everything is explained, JSON is JSON") {
   CHECK(sightglass({"render", "--help"}).status == 0);
 }
 
+TEST_CASE("samples: points as JSON, numbers as text, a picture of both; unknown kinds are answered with the nearest") {
+  const auto sobol = nlohmann::json::parse(sightglass({"samples", "--count", "64", "--json"}).out);
+  CHECK(sobol["sampler"] == "sobol");
+  CHECK(sobol["points"].size() == 64);
+  CHECK(sobol["relative_error"].get<double>() < 0.2);
+  CHECK(sobol["discrepancy"] <
+        nlohmann::json::parse(sightglass({"samples", "--sampler", "independent", "--count", "64", "--json"}).out)["discrepancy"]);
+  must({"samples", "--sampler", "blue_noise", "--count", "4", "--seed", "3", "-o", "samples.png"});
+  const Image drawn = read_png(test::temp_folder() + "samples.png");
+  CHECK(drawn.width > 3 * drawn.height / 2);
+  CHECK(sightglass({"samples", "--sampler", "sobel"}).err.find("did you mean 'sobol'") != std::string::npos);
+  CHECK(sightglass({"samples", "--count", "0"}).status == 2);
+}
+
 TEST_CASE("pictures: jpg, webp and transparent png; odd and tiny sizes") {
   must({"render", "--source", "sphere size=16", "-f", "contour values=0", "--size", "333x17", "-o", "odd.jpg"});
   must({"render", "--source", "sphere size=16", "-f", "contour values=0", "--size", "64x48", "-o", "s.webp"});

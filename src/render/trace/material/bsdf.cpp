@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// What goes out along wo of light that arrives along wi. How directions are drawn: bsdf_sample.cpp.
+#include "render/trace/material/bsdf.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/trace/material/fresnel.h"
+#include "render/trace/material/refraction.h"
+#include "render/trace/sampling/warp.h"
+
+namespace sg::trace {
+
+namespace {
+
+constexpr Vec3f white{1, 1, 1};
+
+Vec3f clamped(Vec3f c) { return {std::clamp(c.x, 0.f, 1.f), std::clamp(c.y, 0.f, 1.f), std::clamp(c.z, 0.f, 1.f)}; }
+
+// Light that is lost by what it meets first and given back in all directions: reciprocal, and as much as is lost.
+float given_back(const AlbedoCurve& lost_of_o, float o, const AlbedoCurve& lost_of_i, float i) {
+  const float average = lost_of_i.average();
+  return average > 1e-6f ? lost_of_o(o) * lost_of_i(i) / (pi * average) : 0;
+}
+
+}  // namespace
+
+Bsdf make_bsdf(const Material& material, Vec3f base_color, float opacity, bool walks) {
+  Bsdf b;
+  b.material_ = &material, b.base_ = clamped(base_color), b.opacity_ = std::clamp(opacity, 0.f, 1.f), b.walks_ = walks && !material.thin();
+  if (material.metalness > 0 || material.retro > 0)
+    b.again_ = multiple_mirrors(material.metal_average(b.base_), material.mirror.white.average());
+  return b;
+}
+
+Vec3f Bsdf::through_coat(float z) const { return material_->coat_filter * (1 - material_->coat_albedo(z)); }
+
+// Of both directions, those of them that are outside.
+Vec3f Bsdf::through_coat(Vec3f o, Vec3f i, bool inside) const {
+  const float coat = material_->coat;
+  if (coat == 0) return white;
+  const bool o_outside = !inside, i_outside = material_->thin() || (i.z > 0) == o_outside;
+  const Vec3f passed = (o_outside ? through_coat(o.z) : white) * (i_outside ? through_coat(std::abs(i.z)) : white);
+  return white * (1 - coat) + passed * coat;
+}
+
+float Bsdf::reflectance(float cosine, bool inside) const {
+  const float r = fresnel_dielectric(std::min(cosine, 1.f), material_->side[inside].eta).reflected();
+  return material_->thin() ? sheet_reflectance(r) : r;
+}
+
+// What the boundary lets into the body.
+float Bsdf::below(float z) const { return 1 - material_->side[0].albedo.reflected(z); }
+
+// Of what enters the body, that which is diffuse.
+float Bsdf::body_share() const { return (1 - material_->clear) * (walks_ ? 1 - material_->subsurface : 1); }
+
+Vec3f Bsdf::reflected_facing(Vec3f o, Vec3f i, bool inside) const {
+  const Material& m = *material_;
+  const BoundarySide& side = m.side[inside];
+  const Vec3f h = normalize(o + i);
+  const float cosine = dot(o, h), under_retro = 1 - m.retro, metal = under_retro * m.metalness, rest = under_retro * (1 - m.metalness);
+  Vec3f f;
+  if (!m.ggx.smooth()) {
+    const float mirrors = m.ggx.normals(h) * m.ggx.seen(o, i) / (4 * o.z * i.z);
+    if (metal > 0) {
+      f += m.metal_fresnel(cosine, base_) * (metal * mirrors);
+      f += again_ * (metal * given_back(m.mirror_lost, o.z, m.mirror_lost, i.z));
+    }
+    if (rest > 0 && !m.boundary_smooth()) {
+      const float again = m.clear * (1 - side.lost_passes) * given_back(side.lost, o.z, side.lost, i.z);
+      f += white * (rest * (reflectance(cosine, inside) * mirrors + again));
+    }
+  }
+  if (!inside && rest > 0 && body_share() > 0)
+    f += base_ * (rest * body_share() * (1 - m.body_through()) * below(o.z) * below(i.z) / (pi * (1 - side.albedo.reflected.average())));
+  f = f * through_coat(o, i, inside);
+  if (inside) return f;
+  if (m.retro > 0 && !m.ggx.smooth()) {
+    const Vec3f back = normalize(o + turned_back(i));
+    const float mirrors = m.ggx.normals(back) * m.ggx.seen(o, i) / (4 * o.z * i.z);
+    const Vec3f again = again_ * given_back(m.mirror_lost, o.z, m.mirror_lost, i.z);
+    f += (m.metal_fresnel(dot(o, back), base_) * mirrors + again) * through_coat(o, i, false) * m.retro;
+  }
+  if (m.coat > 0 && !m.coat_ggx.smooth()) {
+    const float r = fresnel_dielectric(std::min(cosine, 1.f), m.coat_eta).reflected();
+    f += white * (m.coat * r * m.coat_ggx.normals(h) * m.coat_ggx.seen(o, i) / (4 * o.z * i.z));
+  }
+  return f;
+}
+
+Vec3f Bsdf::passed_facing(Vec3f o, Vec3f i, bool inside, Transport transport) const {
+  const Material& m = *material_;
+  const float rest = (1 - m.retro) * (1 - m.metalness), z = -i.z;
+  if (rest == 0 || (!m.thin() && !m.has_inside())) return {};
+  const BoundarySide &side = m.side[inside], &other = m.side[!inside];
+  Vec3f f;
+  if (m.clear > 0 && !m.boundary_smooth()) {
+    float passed = m.clear * side.lost_passes * given_back(side.lost, o.z, other.lost, z);
+    if (m.thin()) {
+      const Vec3f to(i.x, i.y, z), h = normalize(o + to);
+      passed += m.clear * (1 - reflectance(dot(o, h), false)) * m.ggx.normals(h) * m.ggx.seen(o, to) / (4 * o.z * z);
+    } else {
+      if (const auto r = Refraction::between(o, i, side.eta))
+        passed +=
+            m.clear * (1 - reflectance(r->cosine_o, inside)) * m.ggx.normals(r->m) * m.ggx.seen(o, i) * r->cosine_o * r->spread / (o.z * z);
+      if (transport == Transport::radiance) passed /= side.eta * side.eta;
+    }
+    f += m.clear_filter * (rest * passed);
+  }
+  if (m.body_through() > 0)
+    f += base_ * (rest * body_share() * m.body_through() * below(o.z) * below(z) / (pi * (1 - side.albedo.reflected.average())));
+  return f * through_coat(o, i, inside);
+}
+
+Vec3f Bsdf::evaluate_facing(Vec3f o, Vec3f i, bool inside, Transport transport) const {
+  if (!(o.z > 0) || i.z == 0) return {};
+  return (i.z > 0 ? reflected_facing(o, i, inside) : passed_facing(o, i, inside, transport)) * opacity_;
+}
+
+Vec3f Bsdf::evaluate(Vec3f wo, Vec3f wi, Transport transport) const {
+  const float turn = wo.z < 0 ? -1.f : 1.f;
+  return evaluate_facing({wo.x, wo.y, wo.z * turn}, {wi.x, wi.y, wi.z * turn}, inside_of(wo), transport);
+}
+
+Vec3f Bsdf::albedo(Vec3f wo) const {
+  Vec3f sum;
+  for (const Vec3f a : shares(std::abs(wo.z), inside_of(wo)).albedo) sum += a;
+  return sum;
+}
+
+Vec3f Bsdf::entering(Vec3f wo) const {
+  const Material& m = *material_;
+  if (!walks_ || inside_of(wo)) return {};
+  const float z = std::abs(wo.z), share = (1 - m.retro) * (1 - m.metalness) * (1 - m.clear) * m.subsurface * opacity_;
+  return (white * (1 - m.coat) + (m.coat > 0 ? through_coat(z) : white) * m.coat) * (share * below(z));
+}
+
+Vec3f Bsdf::leaving(Vec3f wi) const {
+  const Material& m = *material_;
+  const float z = std::abs(wi.z);
+  return (white * (1 - m.coat) + (m.coat > 0 ? through_coat(z) : white) * m.coat) * (below(z) / (1 - m.side[0].albedo.reflected.average()));
+}
+
+}  // namespace sg::trace

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// A material with all that does not depend on the point of the surface: made once, read by the Bsdf of each point.
+#pragma once
+#include <array>
+#include <optional>
+
+#include "render/trace/material/albedo.h"
+#include "render/trace/material/ggx.h"
+#include "render/trace/material/surface_material.h"
+
+namespace sg::trace {
+
+/// One side of the boundary between outside and body.
+struct BoundarySide {
+  float eta = 1;          ///< index of refraction beyond, by that on this side
+  BoundaryAlbedo albedo;  ///< of single reflections and refractions
+  AlbedoCurve lost;       ///< what these lose: light that meets the boundary again
+  float lost_passes = 0;  ///< the share of it that comes out on the other side; the same in both ways, by reciprocity
+};
+
+class Material {
+ public:
+  /// Some ten milliseconds: albedos of rough boundaries are integrated. Throws Error(usage) for values out of range (check()).
+  explicit Material(const SurfaceMaterial& described);
+
+  Vec3f base_color() const { return base_color_; }
+  Vec3f emission() const { return emission_; }
+  bool emits() const { return emission_ != Vec3f(); }
+  bool thin() const { return thin_; }
+  /// Whether rays go on inside: a body behind the surface, with an index of refraction and absorption of its own.
+  bool has_inside() const { return clear > 0 && metalness < 1 && retro < 1 && !thin_; }
+  float ior() const { return side[0].eta; }
+  /// Per length inside the clear body: light fades by exp(-absorption length).
+  Vec3f absorption() const { return absorption_; }
+  /// Mean free paths, share and mean cosine of scattering below the surface (subsurface.h).
+  Vec3f subsurface_radius() const { return subsurface_radius_; }
+  float subsurface_weight() const { return subsurface; }
+  float subsurface_anisotropy() const { return subsurface_anisotropy_; }
+
+  // For Bsdf. Shares:
+  float coat = 0, retro = 0, metalness = 0, clear = 0, subsurface = 0;
+  // Of the coat, seen from outside:
+  Ggx coat_ggx;
+  float coat_eta = 1;
+  AlbedoCurve coat_albedo;
+  Vec3f coat_filter{1, 1, 1};  ///< of one passage
+  // Of the boundary below it, metal and retroreflectors, which have the same roughness:
+  Ggx ggx;
+  BoundarySide side[2];     ///< seen from outside and from inside; of thin walls and opaque bodies the first alone
+  MirrorAlbedo mirror;      ///< of metal that reflects everything, single reflections
+  AlbedoCurve mirror_lost;  ///< 1 - mirror.white
+  Vec3f clear_filter{1, 1, 1};
+  std::optional<ConductorIndex> conductor;
+  std::array<AlbedoCurve, 3> metal_curves;  ///< of its single reflections, red, green and blue
+
+  /// Without roughness, or without a boundary at all.
+  bool boundary_smooth() const { return ggx.smooth() || side[0].eta == 1; }
+  /// What is diffuse of sheets, and comes out on the other side.
+  float body_through() const { return thin_ ? subsurface / 2 : 0; }
+  /// What metal reflects at a microscopic mirror, and on average over all directions, if its colour at normal incidence is `base`.
+  Vec3f metal_fresnel(float cosine, Vec3f base) const;
+  Vec3f metal_average(Vec3f base) const;
+  /// What metal reflects of single reflections, for light from a cosine.
+  Vec3f metal_albedo(float cosine, Vec3f base) const;
+
+ private:
+  Vec3f base_color_, emission_, absorption_, subsurface_radius_;
+  float subsurface_anisotropy_ = 0;
+  bool thin_ = false;
+  Vec3f conductor_average_;
+};
+
+}  // namespace sg::trace

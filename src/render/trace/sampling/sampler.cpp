@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/trace/sampling/sampler.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "render/trace/sampling/owen.h"
+#include "render/trace/sampling/radical_inverse.h"
+#include "render/trace/sampling/sobol.h"
+#include "render/trace/sampling/unit_float.h"
+
+namespace sg::trace {
+
+namespace {
+
+constexpr uint32_t upper(uint64_t bits) { return uint32_t(bits >> 32); }
+constexpr uint32_t lower(uint64_t bits) { return uint32_t(bits); }
+
+// The bits of v at every other place.
+constexpr uint64_t spread(uint32_t v) {
+  uint64_t s = v;
+  s = (s | s << 16) & 0x0000FFFF0000FFFFull;
+  s = (s | s << 8) & 0x00FF00FF00FF00FFull;
+  s = (s | s << 4) & 0x0F0F0F0F0F0F0F0Full;
+  s = (s | s << 2) & 0x3333333333333333ull;
+  return (s | s << 1) & 0x5555555555555555ull;
+}
+
+// The n-th of the 24 orders of four things, as where each of them goes.
+constexpr auto orders_of_four = [] {
+  struct Orders {
+    uint8_t to[24][4];
+  } all{};
+  for (int n = 0; n < 24; ++n) {
+    int left[4] = {0, 1, 2, 3}, rest = n;
+    for (int i = 0; i < 4; ++i) {
+      const int pick = rest % (4 - i);
+      rest /= 4 - i;
+      all.to[n][i] = uint8_t(left[pick]);
+      for (int k = pick; k < 3 - i; ++k) left[k] = left[k + 1];
+    }
+  }
+  return all;
+}();
+
+float in_stratum(uint32_t stratum, uint32_t count, uint32_t jitter) { return below_one((stratum + double(unit_float(jitter))) / count); }
+
+}  // namespace
+
+Sampler::Sampler(SamplerKind kind, uint64_t seed, int samples_per_pixel) : kind_(kind), seed_(random_bits(seed, uint64_t(kind))) {
+  if (samples_per_pixel < 1 || samples_per_pixel > 1 << 24)
+    fail_usage(fmt::format("{} samples per pixel", samples_per_pixel), "sampler", "give 1 to 16777216");
+  count_ = uint32_t(samples_per_pixel);
+  columns_ = uint32_t(std::sqrt(double(count_)));
+  rows_ = (count_ + columns_ - 1) / columns_;
+  while (count_ > 1u << curve_bits_) ++curve_bits_;
+}
+
+void Sampler::start(uint32_t x, uint32_t y, uint32_t sample, uint32_t dimension) {
+  dimension_ = dimension;
+  const uint64_t pixel = uint64_t(y) << 32 | x;
+  switch (kind_) {
+    case SamplerKind::independent: key_ = random_bits(random_bits(seed_, pixel), sample); return;
+    case SamplerKind::sobol:  // has no last index
+      key_ = random_bits(seed_, pixel), index_ = sample;
+      return;
+    case SamplerKind::blue_noise: {
+      const uint32_t pattern = sample >> curve_bits_, in_pattern = sample & ((1u << curve_bits_) - 1);
+      key_ = random_bits(seed_, pattern);
+      // Pixels on a Z-curve: pictures of up to 65536 x 65536, beyond which they repeat.
+      along_curve_ = (spread(x & 0xFFFF) | spread(y & 0xFFFF) << 1) << curve_bits_ | in_pattern;
+      return;
+    }
+    case SamplerKind::stratified:
+    case SamplerKind::halton:
+    case SamplerKind::hammersley: key_ = random_bits(random_bits(seed_, pixel), sample / count_), index_ = sample % count_; return;
+  }
+}
+
+// The place along the curve in an order that is shuffled within every square of 2^k pixels, and every 4^k samples of a pixel. The last bit
+// of an odd number of bits is flipped alone.
+uint64_t Sampler::curve_index(uint64_t key) const {
+  uint64_t shuffled = 0;
+  const int odd = curve_bits_ & 1;
+  for (int shift = curve_bits_ + 30; shift >= odd; shift -= 2) {
+    const uint64_t digit = along_curve_ >> shift & 3, above = along_curve_ >> (shift + 2);
+    const uint64_t drawn = random_bits(key + uint64_t(shift), above) >> 32;
+    shuffled |= uint64_t(orders_of_four.to[drawn * 24 >> 32][digit]) << shift;
+  }
+  if (odd) shuffled |= (along_curve_ ^ random_bits(key + 64, along_curve_ >> 1) >> 63) & 1;
+  return shuffled;
+}
+
+float Sampler::next() {
+  const uint32_t dimension = dimension_++;
+  const uint64_t key = random_bits(key_, dimension);
+  switch (kind_) {
+    case SamplerKind::independent: return unit_float(upper(key));
+    case SamplerKind::stratified:
+    case SamplerKind::hammersley: return in_stratum(permuted(index_, count_, upper(key)), count_, upper(random_bits(key, index_)));
+    case SamplerKind::halton: {
+      // From the last prime on from the first one, with the samples in another order.
+      const uint32_t index = dimension < prime_count ? index_ : permuted(index_, count_, upper(key));
+      return owen_radical_inverse(prime(dimension % prime_count), index, count_, key);
+    }
+    case SamplerKind::sobol: return unit_float(owen_scrambled(sobol_first(owen_scrambled(index_, upper(key))), lower(key)));
+    case SamplerKind::blue_noise: return unit_float(owen_scrambled(sobol_first(curve_index(key)), lower(key)));
+  }
+  return 0;
+}
+
+Vec2f Sampler::next2() {
+  const uint32_t dimension = dimension_;
+  const uint64_t key = random_bits(key_, dimension);
+  switch (kind_) {
+    case SamplerKind::independent: dimension_ += 2; return {unit_float(upper(key)), unit_float(lower(key))};
+    case SamplerKind::stratified: {
+      dimension_ += 2;
+      // A grid of columns and rows, the last of which may be short. Each column is as many thin ones as there are rows, which those of the
+      // column take in an order of its own; the same with rows.
+      const uint64_t orders = random_bits(key, 1), place = random_bits(key, uint64_t(2) + index_);
+      const uint32_t i = permuted(index_, count_, upper(key)), row = i / columns_, first = row * columns_;
+      const uint32_t column = permuted(i - first, columns_, upper(orders));
+      const uint32_t thin_column = column * rows_ + permuted(row, rows_, upper(random_bits(orders, column)));
+      const uint32_t thin_row = first + permuted(i - first, std::min(columns_, count_ - first), lower(random_bits(orders, row)));
+      return {in_stratum(thin_column, columns_ * rows_, upper(place)), in_stratum(thin_row, count_, lower(place))};
+    }
+    case SamplerKind::hammersley: {
+      dimension_ += 2;
+      const uint32_t i = permuted(index_, count_, upper(key));
+      return {in_stratum(i, count_, upper(random_bits(key, index_))), unit_float(owen_scrambled(reverse_bits(i), lower(key)))};
+    }
+    case SamplerKind::halton: {
+      const float x = next();
+      return {x, next()};
+    }
+    case SamplerKind::sobol:
+    case SamplerKind::blue_noise: {
+      dimension_ += 2;
+      const uint64_t index = kind_ == SamplerKind::sobol ? owen_scrambled(index_, upper(key)) : curve_index(key);
+      const uint64_t digits = random_bits(key, 1);
+      return {unit_float(owen_scrambled(sobol_first(index), upper(digits))),
+              unit_float(owen_scrambled(sobol_second(index), lower(digits)))};
+    }
+  }
+  return {};
+}
+
+}  // namespace sg::trace

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/trace/material/surface_material.h"
+
+#include "render/trace/material/fresnel.h"
+#include "render/trace/material/material.h"
+#include "support/test.h"
+
+using namespace sg;
+using namespace sg::trace;
+using doctest::Approx;
+
+TEST_CASE("materials: colours that reflect more than arrives and indices below one are refused, with what would be right") {
+  auto error = [](auto change) {
+    SurfaceMaterial m;
+    change(m);
+    return test::error_of([&] { Material{m}; });
+  };
+  CHECK(test::contains(error([](SurfaceMaterial& m) { m.base_color = {.5, 1.2, .5}; }), "base_color"));
+  CHECK(test::contains(error([](SurfaceMaterial& m) { m.base_color = {-.1, .2, .5}; }), "base_color"));
+  CHECK(test::contains(error([](SurfaceMaterial& m) { m.transmission_color = {1, 1, 1.01}; }), "transmission_color"));
+  CHECK(test::contains(error([](SurfaceMaterial& m) { m.specular_ior = .8; }), "specular_ior"));
+  CHECK(test::contains(error([](SurfaceMaterial& m) { m.coat_ior = .99; }), "coat_ior"));
+  CHECK(test::contains(error([](SurfaceMaterial& m) { m.specular_roughness = 1.5; }), "roughness"));
+  CHECK(test::contains(error([](SurfaceMaterial& m) { m.emission = {-1, 0, 0}; }), "emission"));
+  CHECK(test::contains(error([](SurfaceMaterial& m) { m.base_metalness = NAN; }), "base_metalness"));
+  for (const auto& p : enum_words(MaterialPreset{})) check(preset_material(p.value));
+}
+
+TEST_CASE("materials: parameters are set from words, as other parameters are") {
+  SurfaceMaterial m = preset_material(MaterialPreset::gold);
+  Schema schema = schema_of(m);
+  set_params(schema, {"specular_roughness=0.05", "metal=copper", "base_color=0.1,0.2,0.3", "thin_walled"}, "material");
+  CHECK(m.specular_roughness == .05);
+  CHECK(m.metal == Metal::copper);
+  CHECK(m.base_color == Vec3{.1, .2, .3});
+  CHECK(m.thin_walled);
+  CHECK(value_of_word<MaterialPreset>("aluminum") == MaterialPreset::aluminium);
+}
+
+TEST_CASE("materials: measured metals have their known colours, within an eighth: three wavelengths stand for the spectrum") {
+  // Linear sRGB at normal incidence, of the table in Hoffman's course notes (SIGGRAPH 2010), computed over the spectrum.
+  const std::pair<MaterialPreset, Vec3> known[] = {{MaterialPreset::gold, {1.00, .71, .29}},
+                                                   {MaterialPreset::silver, {.95, .93, .88}},
+                                                   {MaterialPreset::copper, {.95, .64, .54}},
+                                                   {MaterialPreset::aluminium, {.91, .92, .92}},
+                                                   {MaterialPreset::iron, {.56, .57, .58}}};
+  for (const auto& [preset, color] : known) {
+    const SurfaceMaterial described = preset_material(preset);
+    const Material m(described);
+    const Vec3f f = m.metal_fresnel(1, {});
+    for (int i = 0; i < 3; ++i) {
+      CHECK(std::abs(double(f[i]) - color[i]) < .125);
+      CHECK(described.base_color[i] == Approx(double(f[i])).epsilon(1e-4));
+    }
+    CHECK((m.metal_average({}).x > f.x - .06f && m.metal_average({}).x < 1));
+  }
+}
+
+TEST_CASE("materials: the clear body has its colour at its depth, or else at the boundary; a weight of 0 takes the boundary away") {
+  SurfaceMaterial described = preset_material(MaterialPreset::glass);
+  described.transmission_color = {.5, .25, 1}, described.transmission_depth = 2;
+  const Material deep(described);
+  CHECK(std::exp(-deep.absorption().x * 2) == Approx(.5));
+  CHECK(std::exp(-deep.absorption().y * 2) == Approx(.25));
+  CHECK(deep.absorption().z == 0);
+  CHECK(deep.clear_filter == Vec3f(1, 1, 1));
+  described.transmission_depth = 0;
+  CHECK(Material(described).clear_filter.y == .25f);
+  CHECK(Material(described).absorption() == Vec3f());
+  described.specular_weight = 0;
+  CHECK(Material(described).ior() == 1);
+  described.specular_weight = .5;
+  const float eta = Material(described).ior();
+  CHECK(fresnel_dielectric(1, eta).reflected() == Approx(.02).epsilon(1e-4));
+}
