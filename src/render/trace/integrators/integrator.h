@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Integrators: how much light comes along a ray.
+#pragma once
+#include <cstdint>
+#include <memory>
+
+#include "base/schema/enum_words.h"
+#include "render/trace/integrators/world.h"
+#include "render/trace/sampling/sampler.h"
+
+namespace sg::trace {
+
+/// An estimate of what is seen along a ray.
+struct Estimate {
+  Vec3f radiance;
+  float passed = 0;  ///< share that went straight on to the background, which is not in the radiance
+};
+
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+  /// Unbiased but for what each kind states. `ray` starts outside of everything.
+  virtual Estimate along(const World& world, const Ray& ray, Sampler& sampler) const = 0;
+};
+
+enum class IntegratorKind {
+  ambient_occlusion,  ///< white light from everywhere, of surfaces in reach alone
+  whitted,            ///< direct light, mirrors and glass (Whitted 1980): no light from surface to surface
+  path,               ///< all light (Kajiya 1986)
+};
+constexpr auto enum_words(IntegratorKind) {
+  using enum IntegratorKind;
+  return std::array{Word{"ambient_occlusion", ambient_occlusion}, Word{"whitted", whitted}, Word{"path", path}};
+}
+
+/// Paths from the camera that turn at surfaces, at most `bounces` times. At each turn one light is asked for directly (next-event
+/// estimation), and weighed against meeting it by chance (Veach 1997); paths that carry little are ended at random (Russian roulette).
+std::unique_ptr<Integrator> path_integrator(int bounces);
+/// The same where only mirrors and clear glass send paths on.
+std::unique_ptr<Integrator> whitted_integrator(int bounces);
+/// The share of light from everywhere that is not stopped within `reach`, traced coordinates, in the colours of the surfaces.
+std::unique_ptr<Integrator> occlusion_integrator(float reach);
+
+}  // namespace sg::trace

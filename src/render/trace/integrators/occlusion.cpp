@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/trace/integrators/integrator.h"
+#include "render/trace/integrators/surface_color.h"
+#include "render/trace/sampling/warp.h"
+
+namespace sg::trace {
+
+namespace {
+
+class OcclusionIntegrator : public Integrator {
+ public:
+  explicit OcclusionIntegrator(float reach) : reach_(reach) {}
+
+  Estimate along(const World& world, const Ray& first, Sampler& sampler) const override {
+    Estimate out;
+    float share = 1;  // that has not met anything
+    Ray ray = first;
+    for (Hit hit; share > 0 && world.geometry().nearest(ray, hit); hit = Hit()) {
+      const SurfacePoint point = world.geometry().at(ray, hit);
+      const Vec4f color = surface_color(world.scene().items[hit.object], hit);
+      const bool below = dot(point.face_normal, ray.direction) > 0;
+      const Vec3f normal = below ? -point.shading_normal : point.shading_normal;
+      const Vec3f direction = normalize(LocalFrame::about(normal).to_world(cosine_hemisphere(sampler.next2())));
+      const float side = below ? -1.f : 1.f;
+      // Directions below the face are those that the rounded normal would have, not the surface.
+      const bool open =
+          dot(direction, point.face_normal) * side > 0 && !world.geometry().blocked({leave(point, direction), direction, reach_});
+      if (open) out.radiance += Vec3f(color.x, color.y, color.z) * (share * color.w);
+      share *= 1 - color.w;
+      ray = {leave(point, ray.direction), ray.direction};
+    }
+    out.passed = share;
+    return out;
+  }
+
+ private:
+  float reach_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> occlusion_integrator(float reach) { return std::make_unique<OcclusionIntegrator>(reach); }
+
+}  // namespace sg::trace

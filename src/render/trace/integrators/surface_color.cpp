@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/trace/integrators/surface_color.h"
+
+#include <algorithm>
+#include <array>
+
+#include "render/prepare/glyph_set.h"
+
+namespace sg::trace {
+
+namespace {
+
+using raster::ColorSource;
+using raster::PreparedItem;
+
+/// Points whose values are mixed, or the cell.
+struct Places {
+  std::array<size_t, 3> points{};
+  std::array<float, 3> weights{};
+  int count = 0;
+  size_t cell = 0;
+};
+
+Places places_of(const PreparedItem& item, const Hit& hit) {
+  const size_t p = hit.primitive;
+  Places at;
+  if (item.glyphs) return {{p >> item.glyphs->shift}, {1}, 1, p >> item.glyphs->shift};
+  switch (item.kind) {
+    case PreparedItem::Kind::surface: {
+      const uint32_t* t = item.triangles.indices() + 3 * p;
+      return {{t[0], t[1], t[2]}, {1 - hit.u - hit.v, hit.u, hit.v}, 3, item.triangles.cell(p)};
+    }
+    case PreparedItem::Kind::lines: {
+      const auto& s = *item.segments;
+      return {{s.points[2 * p], s.points[2 * p + 1]}, {1 - hit.u, hit.u}, 2, s.cells.empty() ? p : s.cells[p]};
+    }
+    case PreparedItem::Kind::points: {
+      const size_t point = item.points ? (*item.points)[p] : p;
+      return {{point}, {1}, 1, point};
+    }
+  }
+  return at;
+}
+
+float value_at(const ColorSource& color, const Places& at, size_t stride, size_t k) {
+  const auto value = [&](size_t i) { return color.data()[i * stride + k]; };
+  if (color.per_cell) return value(at.cell);
+  const auto nearest = size_t(std::max_element(at.weights.begin(), at.weights.begin() + at.count) - at.weights.begin());
+  if (color.nearest || at.count == 1) return value(at.points[nearest]);
+  float sum = 0, lo = value(at.points[0]), hi = lo;
+  for (size_t i = 0; i < size_t(at.count); ++i) {
+    const float v = value(at.points[i]);
+    sum += v * at.weights[i], lo = std::min(lo, v), hi = std::max(hi, v);
+  }
+  // Rounding must not push it across an end of the scale that the corners lie on.
+  return sum != sum ? sum : std::clamp(sum, lo, hi);
+}
+
+}  // namespace
+
+Vec4f surface_color(const PreparedItem& item, const Hit& hit) {
+  const ColorSource& color = item.color;
+  Vec4f rgba = color.constant;
+  if (color.kind != ColorSource::Kind::constant) {
+    const Places at = places_of(item, hit);
+    if (color.kind == ColorSource::Kind::scalar) rgba = color.of(value_at(color, at, 1, 0));
+    else
+      for (size_t k = 0; k < 4; ++k) rgba[int(k)] = value_at(color, at, 4, k);
+  }
+  rgba.w *= item.opacity;
+  return rgba;
+}
+
+}  // namespace sg::trace

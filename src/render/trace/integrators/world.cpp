@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/trace/integrators/world.h"
+
+#include <cmath>
+
+#include "render/trace/integrators/surface_color.h"
+
+namespace sg::trace {
+
+namespace {
+
+// The triangles of items that shine are lights.
+void add_emitters(const PreparedScene& scene, const std::vector<std::shared_ptr<const Material>>& materials, const Placement& placement,
+                  std::vector<AnyLight>& lights) {
+  for (size_t i = 0; i < scene.items.size(); ++i) {
+    const raster::PreparedItem& item = scene.items[i];
+    if (!materials[i]->emits() || item.kind != raster::PreparedItem::Kind::surface || item.glyphs) continue;
+    const auto corner = [&](uint32_t point) {
+      const float* x = item.triangles.xyz() + 3 * size_t(point);
+      return placement.traced(Vec3{x[0], x[1], x[2]} + item.triangles.origin);
+    };
+    for (uint32_t t = 0; t < item.triangles.count; ++t) {
+      const uint32_t* p = item.triangles.indices() + 3 * size_t(t);
+      TriangleLight l{corner(p[0]), corner(p[1]), corner(p[2]), materials[i]->emission(), uint32_t(i), t};
+      const float area = length(cross(l.b - l.a, l.c - l.a));
+      if (area > 0 && std::isfinite(area)) lights.emplace_back(l);
+    }
+  }
+}
+
+float reach_of(const Geometry& geometry) {
+  const Box3f& b = geometry.bounds();
+  return b.empty() ? 1 : length(b.hi - b.lo) / 2;
+}
+
+std::vector<AnyLight> with_emitters(const PreparedScene& scene, const std::vector<std::shared_ptr<const Material>>& materials,
+                                    const Placement& placement, std::vector<AnyLight> lights) {
+  add_emitters(scene, materials, placement, lights);
+  return lights;
+}
+
+}  // namespace
+
+World::World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_ptr<const Material>> materials,
+             std::vector<AnyLight> lights, Environment environment)
+    : scene_(std::move(scene)),
+      geometry_(std::move(geometry)),
+      materials_(std::move(materials)),
+      lights_(with_emitters(*scene_, materials_, geometry_.placement(), std::move(lights)), std::move(environment), reach_of(geometry_)) {
+  for (const raster::PreparedItem& item : scene_->items)
+    translucent_ = translucent_ || item.translucent || item.opacity < 1 || item.color.translucent;
+}
+
+Vertex World::at(const Ray& ray, const Hit& hit) const {
+  Vertex v;
+  v.point = geometry_.at(ray, hit);
+  v.material = materials_[hit.object].get();
+  const Vec4f color = surface_color(scene_->items[hit.object], hit);
+  // At a silhouette the shading normal may look away from a viewer who sees the face.
+  const bool above = dot(ray.direction, v.point.face_normal) < 0, shaded_above = dot(ray.direction, v.point.shading_normal) < 0;
+  v.frame = LocalFrame::about(above == shaded_above ? v.point.shading_normal : v.point.face_normal, v.point.tangent);
+  v.bsdf = make_bsdf(*v.material, {color.x, color.y, color.z}, color.w);
+  v.emission = v.material->emission();
+  return v;
+}
+
+Vec3f World::passes(Ray ray) const {
+  if (!translucent_) return geometry_.blocked(ray) ? Vec3f() : Vec3f(1, 1, 1);
+  float share = 1;
+  for (Hit hit; share > 0 && geometry_.nearest(ray, hit); hit = Hit()) {
+    share *= 1 - surface_color(scene_->items[hit.object], hit).w;
+    ray.t_max -= hit.t;
+    ray.origin = leave(geometry_.at(ray, hit), ray.direction);
+    if (!(ray.t_max > 0)) break;
+  }
+  return {share, share, share};
+}
+
+}  // namespace sg::trace

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// World: all that integrators ask of a scene. What rays meet, of what it is made there, and what shines.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "base/context.h"
+#include "render/prepare/prepared.h"
+#include "render/trace/geometry/geometry.h"
+#include "render/trace/light/lights.h"
+#include "render/trace/material/bsdf.h"
+#include "render/trace/sampling/local_frame.h"
+
+namespace sg::trace {
+
+/// A place where a path turns.
+struct Vertex {
+  SurfacePoint point;
+  LocalFrame frame;  ///< z along the shading normal, on the side of the face normal
+  Bsdf bsdf;
+  Vec3f emission;  ///< radiance that the surface gives off itself, to both sides
+  const Material* material = nullptr;
+};
+
+class World {
+ public:
+  /// `lights` in traced coordinates of `geometry`; triangles of emissive items are added to them. One material an item.
+  World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_ptr<const Material>> materials, std::vector<AnyLight> lights,
+        Environment environment);
+
+  const Geometry& geometry() const { return geometry_; }
+  const Lights& lights() const { return lights_; }
+  const PreparedScene& scene() const { return *scene_; }
+  Vertex at(const Ray& ray, const Hit& hit) const;
+  /// Whether an item lets some light pass straight on, so that shadows have shades.
+  bool translucent() const { return translucent_; }
+  /// Share of light that passes along the ray up to t_max: 0 behind anything opaque.
+  Vec3f passes(Ray ray) const;
+
+ private:
+  PreparedScenePtr scene_;
+  Geometry geometry_;
+  std::vector<std::shared_ptr<const Material>> materials_;
+  Lights lights_;
+  bool translucent_ = false;
+};
+
+}  // namespace sg::trace

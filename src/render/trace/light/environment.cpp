@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/trace/light/environment.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <vector>
+
+#include "base/error.h"
+#include "render/trace/light/luminance.h"
+#include "render/trace/sampling/local_frame.h"
+#include "render/trace/sampling/warp.h"
+
+namespace sg::trace {
+
+struct Environment::Picture {
+  std::vector<Vec3f> pixels;
+  size_t width, height;
+  LocalFrame frame;  // x in front, y to the left, z up
+  Distribution2D brightness;
+  Vec3f mean;
+};
+
+namespace {
+
+// A pixel's share of the sphere falls with its distance from the poles: by the mean sine over its row.
+double sine_of_row(size_t row, size_t height) {
+  const double step = double(pi) / double(height);
+  return (std::cos(step * double(row)) - std::cos(step * double(row + 1))) / step;
+}
+
+std::vector<float> weights(std::span<const Vec3f> pixels, size_t width) {
+  std::vector<float> w(pixels.size());
+  for (size_t i = 0; i < w.size(); ++i) w[i] = luminance(pixels[i]) * float(sine_of_row(i / width, pixels.size() / width));
+  return w;
+}
+
+}  // namespace
+
+Environment::Environment(std::span<const Vec3f> pixels, size_t width, Vec3 up, Vec3 front, float factor) {
+  if (width == 0 || pixels.empty() || pixels.size() % width != 0)
+    fail_usage("has no pixels", "environment", "give a picture of all directions");
+  std::vector<Vec3f> scaled;
+  Vec3 mean;
+  const size_t height = pixels.size() / width;
+  for (size_t i = 0; i < pixels.size(); ++i) {
+    const Vec3f p = pixels[i] * factor;
+    for (int c = 0; c < 3; ++c)
+      if (!(p[c] >= 0 && std::isfinite(p[c])))
+        fail_usage(fmt::format("pixel {},{} is {}", i % width, i / width, p[c]), "environment", "light is finite and not negative");
+    scaled.push_back(p);
+    mean += Vec3(p) * (sine_of_row(i / width, height) * double(pi) / (2 * double(pixels.size())));
+  }
+  Distribution2D brightness(weights(scaled, width), width);
+  const Vec3f z(normalize(up));
+  const LocalFrame about = LocalFrame::about(z, Vec3f(normalize(front)));
+  picture_ = std::make_shared<Picture>(Picture{std::move(scaled), width, height, about, std::move(brightness), Vec3f(mean)});
+}
+
+Vec2f Environment::place(Vec3f direction) const {
+  const Vec3f d = picture_->frame.to_local(direction);
+  // The left of the middle column is what lies to the left: y.
+  const float around = std::atan2(d.y, d.x), down = std::acos(std::clamp(d.z, -1.f, 1.f));
+  const auto below_one = [](float v) { return std::clamp(v, 0.f, 1 - 0x1p-24f); };
+  return {below_one(0.5f - around / (2 * pi)), below_one(down / pi)};
+}
+
+Vec3f Environment::radiance(Vec3f direction) const {
+  if (!picture_) return even_;
+  const Vec2f at = place(direction);
+  const size_t x = size_t(at.x * float(picture_->width)), y = size_t(at.y * float(picture_->height));
+  return picture_->pixels[std::min(y, picture_->height - 1) * picture_->width + std::min(x, picture_->width - 1)];
+}
+
+Vec3f Environment::mean() const { return picture_ ? picture_->mean : even_; }
+
+Environment::Sample Environment::sample(Vec2f u) const {
+  if (!picture_) return {uniform_sphere(u), even_, uniform_sphere_pdf()};
+  const Distribution2D::Sample s = picture_->brightness.sample(u);
+  const float around = (0.5f - s.point.x) * 2 * pi, down = s.point.y * pi, sine = std::sin(down);
+  const Vec3f d = picture_->frame.to_world({std::cos(around) * sine, std::sin(around) * sine, std::cos(down)});
+  // Per solid angle: the square is 2 pi wide and pi high, and rows are as long as their sine.
+  return {d, radiance(d), sine > 0 ? s.pdf / (2 * pi * pi * sine) : 0};
+}
+
+float Environment::pdf(Vec3f direction) const {
+  if (!picture_) return uniform_sphere_pdf();
+  const Vec2f at = place(direction);
+  const float sine = std::sin(at.y * pi);
+  return sine > 0 ? picture_->brightness.pdf(at) / (2 * pi * pi * sine) : 0;
+}
+
+}  // namespace sg::trace

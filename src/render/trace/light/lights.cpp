@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/trace/light/lights.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/overloaded.h"
+#include "render/trace/light/luminance.h"
+#include "render/trace/sampling/local_frame.h"
+#include "render/trace/sampling/mis.h"
+#include "render/trace/sampling/warp.h"
+
+namespace sg::trace {
+
+namespace {
+
+constexpr float infinite = std::numeric_limits<float>::infinity();
+
+float power(const AnyLight& light, float reach) {
+  const float disc = pi * reach * reach;
+  return std::visit(Overloaded{[&](const PointLight& l) { return 4 * pi * luminance(l.intensity); },
+                               [&](const DistantLight& l) { return disc * luminance(l.irradiance); },
+                               [&](const SphereLight& l) { return 4 * pi * l.radius * l.radius * pi * luminance(l.radiance); },
+                               [&](const DiscLight& l) { return pi * l.radius * l.radius * pi * luminance(l.radiance); },
+                               [&](const RectangleLight& l) { return length(cross(l.u, l.v)) * pi * luminance(l.radiance); },
+                               [&](const TriangleLight& l) { return length(cross(l.b - l.a, l.c - l.a)) * pi * luminance(l.radiance); }},
+                    light);
+}
+
+std::optional<LightSample> sharp(Vec3f direction, float distance, Vec3f irradiance) {
+  return LightSample{direction, distance, irradiance, 1, true};
+}
+
+/// A point of a flat light, drawn evenly with the density 1 / area.
+std::optional<LightSample> flat(Vec3f from, Vec3f at, Vec3f normal, float area, Vec3f radiance, bool both_sides) {
+  const Vec3f way = at - from;
+  const float d2 = dot(way, way), d = std::sqrt(d2);
+  if (!(d > 0)) return {};
+  const Vec3f direction = way / d;
+  const float cosine = -dot(direction, normal);
+  if (both_sides ? cosine == 0 : cosine <= 0) return {};
+  return LightSample{direction, d, radiance, solid_angle_pdf(1 / area, d2, cosine), false};
+}
+
+std::optional<LightSample> sample_one(const PointLight& l, Vec3f from, Vec2f) {
+  const Vec3f way = l.position - from;
+  const float d2 = dot(way, way), d = std::sqrt(d2);
+  if (!(d > 0)) return {};
+  return sharp(way / d, d, l.intensity / d2);
+}
+std::optional<LightSample> sample_one(const DistantLight& l, Vec3f, Vec2f u) {
+  if (l.rise == 0) return sharp(l.direction, infinite, l.irradiance);
+  const float pdf = uniform_cone_pdf(l.rise);
+  // The disc's even radiance; a surface that faces it gets L pi sin^2.
+  const Vec3f radiance = l.irradiance / (pi * l.rise * (2 - l.rise));
+  return LightSample{normalize(LocalFrame::about(l.direction).to_world(uniform_cone(u, l.rise))), infinite, radiance, pdf, false};
+}
+
+// The cone that a sphere fills, seen from outside; its rise without cancellation.
+float rise_of(const SphereLight& l, float d2) {
+  const float sine2 = l.radius * l.radius / d2;
+  return sine2 / (1 + std::sqrt(std::max(0.f, 1 - sine2)));
+}
+/// The first t > 0 at which a ray meets a sphere; infinite where it does not.
+float sphere_t(const SphereLight& l, Vec3f origin, Vec3f direction) {
+  const Vec3f o = l.middle - origin;
+  const float b = dot(o, direction);
+  const Vec3f across = o - direction * b;  // the nearest approach, which keeps what b * b - c would lose
+  const float h2 = l.radius * l.radius - dot(across, across);
+  if (!(h2 >= 0)) return infinite;
+  const float h = std::sqrt(h2);
+  return b - h > 0 ? b - h : b + h > 0 ? b + h : infinite;
+}
+std::optional<LightSample> sample_one(const SphereLight& l, Vec3f from, Vec2f u) {
+  const Vec3f way = l.middle - from;
+  const float d2 = dot(way, way);
+  if (d2 <= l.radius * l.radius) {
+    // From inside all directions meet it.
+    const Vec3f direction = uniform_sphere(u);
+    return LightSample{direction, sphere_t(l, from, direction), l.radiance, uniform_sphere_pdf(), false};
+  }
+  const float rise = rise_of(l, d2);
+  const Vec3f direction = normalize(LocalFrame::about(way / std::sqrt(d2)).to_world(uniform_cone(u, rise)));
+  float t = sphere_t(l, from, direction);
+  if (t == infinite) t = dot(way, direction);  // at its very rim
+  return LightSample{direction, t, l.radiance, uniform_cone_pdf(rise), false};
+}
+float pdf_seen(const SphereLight& l, Vec3f from) {
+  const Vec3f way = l.middle - from;
+  const float d2 = dot(way, way);
+  return d2 <= l.radius * l.radius ? uniform_sphere_pdf() : uniform_cone_pdf(rise_of(l, d2));
+}
+
+std::optional<LightSample> sample_one(const DiscLight& l, Vec3f from, Vec2f u) {
+  const Vec2f d = concentric_disc(u);
+  const LocalFrame frame = LocalFrame::about(l.normal);
+  return flat(from, l.middle + frame.x * (d.x * l.radius) + frame.y * (d.y * l.radius), l.normal, pi * l.radius * l.radius, l.radiance,
+              false);
+}
+std::optional<LightSample> sample_one(const RectangleLight& l, Vec3f from, Vec2f u) {
+  const Vec3f n = cross(l.u, l.v);
+  const float area = length(n);
+  return flat(from, l.corner + l.u * u.x + l.v * u.y, n / area, area, l.radiance, false);
+}
+std::optional<LightSample> sample_one(const TriangleLight& l, Vec3f from, Vec2f u) {
+  const Vec3f w = uniform_triangle(u), n = cross(l.b - l.a, l.c - l.a);
+  const float twice = length(n);
+  return flat(from, l.a * w.x + l.b * w.y + l.c * w.z, n / twice, twice / 2, l.radiance, true);
+}
+
+/// What a ray sees of a light, and the density with which sample_one() draws its direction.
+struct Seen {
+  Vec3f radiance;
+  float pdf;
+};
+
+/// Where a ray meets a flat light from its shining side.
+std::optional<Seen> meet(const Ray& r, Vec3f middle, Vec3f normal, float area, Vec3f radiance, float t_min, auto&& inside) {
+  const float cosine = -dot(r.direction, normal);
+  if (!(cosine > 0)) return {};
+  const float t = dot(r.origin - middle, normal) / cosine;
+  if (!(t > t_min && t <= r.t_max) || !inside(r.origin + r.direction * t - middle)) return {};
+  return Seen{radiance, solid_angle_pdf(1 / area, t * t, cosine)};
+}
+std::optional<Seen> seen_one(const SphereLight& l, const Ray& r, float t_min) {
+  const float t = sphere_t(l, r.origin, r.direction);
+  if (!(t > t_min && t <= r.t_max) || t == infinite) return {};
+  return Seen{l.radiance, pdf_seen(l, r.origin)};
+}
+std::optional<Seen> seen_one(const DiscLight& l, const Ray& r, float t_min) {
+  return meet(r, l.middle, l.normal, pi * l.radius * l.radius, l.radiance, t_min,
+              [&](Vec3f p) { return dot(p, p) <= l.radius * l.radius; });
+}
+std::optional<Seen> seen_one(const RectangleLight& l, const Ray& r, float t_min) {
+  const Vec3f n = cross(l.u, l.v);
+  const float area = length(n);
+  return meet(r, l.corner, n / area, area, l.radiance, t_min, [&](Vec3f p) {
+    const float u = dot(p, l.u) / dot(l.u, l.u), v = dot(p, l.v) / dot(l.v, l.v);
+    return u >= 0 && u <= 1 && v >= 0 && v <= 1;
+  });
+}
+std::optional<Seen> seen_one(const DistantLight& l, const Ray& r, float) {
+  if (l.rise == 0 || r.t_max != infinite || !(1 - dot(r.direction, l.direction) < l.rise)) return {};
+  return Seen{l.irradiance / (pi * l.rise * (2 - l.rise)), uniform_cone_pdf(l.rise)};
+}
+std::optional<Seen> seen_one(const PointLight&, const Ray&, float) { return {}; }     // without a size
+std::optional<Seen> seen_one(const TriangleLight&, const Ray&, float) { return {}; }  // an item
+
+uint64_t key_of(uint32_t object, uint32_t primitive) { return uint64_t(object) << 32 | primitive; }
+
+}  // namespace
+
+Lights::Lights(std::vector<AnyLight> lights, Environment environment, float reach)
+    : lights_(std::move(lights)), environment_(std::move(environment)) {
+  std::vector<float> powers;
+  for (const AnyLight& l : lights_) {
+    const float p = power(l, reach);
+    if (!(p > 0 && std::isfinite(p)))
+      fail_usage("a light has no size or no power", "lights", "give every light a size and a brightness above 0");
+    if (const auto* t = std::get_if<TriangleLight>(&l)) triangles_.emplace_back(key_of(t->object, t->primitive), uint32_t(powers.size()));
+    powers.push_back(p);
+  }
+  std::sort(triangles_.begin(), triangles_.end());
+  const float around = pi * reach * reach * pi * luminance(environment_.mean());
+  if (around > 0) {
+    // Light from everywhere is half of what is asked for, however bright single lights are: all shadows are filled by it.
+    float sum = 0;
+    for (const float p : powers) sum += p;
+    powers.push_back(std::max(around, sum));
+  }
+  if (!powers.empty()) choice_.emplace(powers);
+}
+
+std::optional<LightSample> Lights::sample(Vec3f from, float choice, Vec2f u) const {
+  if (!choice_) return {};
+  const Distribution1D::Sample chosen = choice_->sample(choice);
+  const float chance = choice_->probability(chosen.cell);
+  std::optional<LightSample> s;
+  if (chosen.cell == lights_.size()) {
+    const Environment::Sample e = environment_.sample(u);
+    if (e.pdf > 0) s = LightSample{e.direction, infinite, e.radiance, e.pdf, false};
+  } else {
+    s = std::visit([&](const auto& l) { return sample_one(l, from, u); }, lights_[chosen.cell]);
+  }
+  if (s) s->pdf *= chance;
+  return s;
+}
+
+Vec3f Lights::seen(const Ray& ray, float t_min, float pdf) const {
+  Vec3f sum;
+  for (size_t i = 0; i < lights_.size(); ++i)
+    if (const auto s = std::visit([&](const auto& l) { return seen_one(l, ray, t_min); }, lights_[i]))
+      sum += s->radiance * power_weight(pdf, choice_->probability(i) * s->pdf);
+  if (ray.t_max == infinite && choice_ && choice_->cells() > lights_.size())
+    sum += environment_.radiance(ray.direction) * power_weight(pdf, choice_->probability(lights_.size()) * environment_.pdf(ray.direction));
+  return sum;
+}
+
+float Lights::triangle_pdf(uint32_t object, uint32_t primitive, float distance, float cosine) const {
+  const auto at = std::lower_bound(triangles_.begin(), triangles_.end(), std::pair(key_of(object, primitive), uint32_t(0)));
+  if (at == triangles_.end() || at->first != key_of(object, primitive)) return 0;
+  const auto& l = std::get<TriangleLight>(lights_[at->second]);
+  return choice_->probability(at->second) * solid_angle_pdf(2 / length(cross(l.b - l.a, l.c - l.a)), distance * distance, cosine);
+}
+
+}  // namespace sg::trace

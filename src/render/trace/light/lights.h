@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lights: all that shines in a scene, of which a point asks for one at random, or what it sees of them. Traced coordinates; radiance and
+// irradiance in linear RGB, of which 1 is a white surface in full light.
+#pragma once
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "render/trace/geometry/ray.h"
+#include "render/trace/light/environment.h"
+#include "render/trace/sampling/distribution.h"
+
+namespace sg::trace {
+
+struct PointLight {
+  Vec3f position, intensity;  ///< power per solid angle
+};
+/// As far away as the sun: a disc in the sky, or a point of it.
+struct DistantLight {
+  Vec3f direction;   ///< towards it, unit
+  Vec3f irradiance;  ///< of a surface that faces it
+  float rise = 0;    ///< 1 - cos of half of the angle that it fills; 0 = sharp shadows
+};
+struct SphereLight {
+  Vec3f middle;
+  float radius;
+  Vec3f radiance;
+};
+struct DiscLight {
+  Vec3f middle, normal;  ///< shines to the side of the unit normal
+  float radius;
+  Vec3f radiance;
+};
+struct RectangleLight {
+  Vec3f corner, u, v;  ///< shines to the side of u x v, which are square to each other
+  Vec3f radiance;
+};
+/// A triangle of an item's surface; shines to both sides.
+struct TriangleLight {
+  Vec3f a, b, c;
+  Vec3f radiance;
+  uint32_t object = 0, primitive = 0;  ///< as in Hit
+};
+using AnyLight = std::variant<PointLight, DistantLight, SphereLight, DiscLight, RectangleLight, TriangleLight>;
+
+/// One light seen from a point.
+struct LightSample {
+  Vec3f direction;
+  float distance;  ///< to where nothing may stand in the way; infinite for distant ones
+  Vec3f radiance;  ///< of a delta: irradiance, to be divided by pdf alike
+  float pdf;       ///< per solid angle, with the chance of this light; of a delta that chance
+  bool delta;
+};
+
+class Lights {
+ public:
+  Lights() = default;
+  /// `reach`: radius of a ball about the scene, for the power of what is far away. Throws Error(usage) for a light without size or power.
+  Lights(std::vector<AnyLight> lights, Environment environment, float reach);
+
+  bool any() const { return choice_.has_value(); }
+  size_t count() const { return lights_.size(); }
+  /// One of all lights, drawn by their power. Nothing where it does not shine on the point.
+  std::optional<LightSample> sample(Vec3f from, float choice, Vec2f u) const;
+  /// Radiance of all lights that are no items along the ray between t_min and t_max, and of what is infinitely far if that is infinite.
+  /// Lights hide nothing, each other neither. `pdf`: with which the ray's direction was drawn at its origin; each light gets the share of
+  /// that way (power heuristic) beside sample() from there. Infinite: all of it.
+  Vec3f seen(const Ray& ray, float t_min, float pdf) const;
+  /// The density with which sample() draws a triangle that is an item, seen from that far at that cosine; 0 for others.
+  float triangle_pdf(uint32_t object, uint32_t primitive, float distance, float cosine) const;
+  const Environment& environment() const { return environment_; }
+
+ private:
+  std::vector<AnyLight> lights_;
+  Environment environment_;
+  std::optional<Distribution1D> choice_;                  // the environment is the last one
+  std::vector<std::pair<uint64_t, uint32_t>> triangles_;  // (object, primitive) to number, sorted
+};
+
+}  // namespace sg::trace

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/trace/trace.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "render/trace/light/luminance.h"
+#include "render/trace/studio.h"
+
+namespace sg {
+
+namespace {
+
+using namespace trace;
+
+constexpr int side = 8;        // of the squares of pixels that are finished together
+constexpr uint32_t pass = 16;  // paths a pixel between two looks at the error
+
+/// From a pixel into traced coordinates, beginning where the ray enters a ball about the scene, so that it loses no digits on the way
+/// there.
+class Eye {
+ public:
+  Eye(const Projection& projection, const Geometry& geometry)
+      : projection_(projection), placement_(geometry.placement()), reach_(2 / placement_.scale) {}
+
+  Ray ray(Vec2f pixel, double& start, double& per_depth) const {
+    const Projection::Ray r = projection_.ray(pixel.x, pixel.y);
+    start = std::max(dot(placement_.middle - r.origin, r.direction) - reach_, projection_.near_plane * r.per_depth);
+    per_depth = r.per_depth;
+    return {placement_.traced(r.origin + r.direction * start), normalize(Vec3f(r.direction))};
+  }
+  double world_length(float traced) const { return double(traced) / placement_.scale; }
+
+ private:
+  const Projection& projection_;
+  const Placement& placement_;
+  double reach_;
+};
+
+/// Sums over the paths of a pixel.
+struct PixelSum {
+  Vec3 light;
+  double passed = 0, square = 0;  // of the luminance
+
+  void add(const Estimate& e) {
+    const double y = luminance(e.radiance);
+    light += Vec3(e.radiance), passed += e.passed, square += y * y;
+  }
+  /// The variance of the mean of n, as displayed: by the slope of sRGB's curve there, at least that of a dark grey.
+  double variance(uint32_t n) const {
+    const double mean = (0.2126 * light.x + 0.7152 * light.y + 0.0722 * light.z) / n, v = std::max(0.0, square / n - mean * mean) / (n - 1);
+    const double y = std::clamp(mean, 0.02, 1.0), slope = 1.055 / 2.4 * std::pow(y, 1 / 2.4 - 1);
+    return v * slope * slope;
+  }
+};
+
+struct SquareReport {
+  uint64_t paths = 0;
+  double variance = 0;
+  bool reached = true;
+};
+
+void check(const TraceOptions& o) {
+  if (!(o.noise > 0)) fail_usage(fmt::format("noise {}", o.noise), "trace", "give a share of full scale above 0, e.g. 0.02");
+  if (o.paths < 1 || o.paths > 1 << 24) fail_usage(fmt::format("{} paths a pixel", o.paths), "trace", "give 1 to 16777216");
+  if (o.bounces < 0 || o.bounces > 1000) fail_usage(fmt::format("{} bounces", o.bounces), "trace", "give 0 to 1000");
+}
+
+std::unique_ptr<Integrator> make_integrator(const TraceOptions& o) {
+  switch (o.integrator) {
+    case IntegratorKind::ambient_occlusion: return occlusion_integrator(0.5f);
+    case IntegratorKind::whitted: return whitted_integrator(o.bounces);
+    case IntegratorKind::path: return path_integrator(o.bounces);
+  }
+  return nullptr;
+}
+
+World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Projection& projection, Context& context) {
+  GeometryOptions size;
+  const double depth = projection.to_eye(scene_bounds(scene).center()).z;
+  size.pixel = projection.parallel ? 1 / projection.scale : std::max(depth, projection.near_plane) / projection.scale;
+  Geometry geometry = Geometry::make(*prepared, size, context);
+  SurfaceMaterial plain;
+  plain.specular_roughness = 0.45, plain.specular_weight = 0.6;
+  const auto material = std::make_shared<const trace::Material>(plain);
+  Studio studio = studio_of(scene, projection);
+  return {prepared, std::move(geometry), std::vector(prepared->items.size(), material), std::move(studio.lights),
+          std::move(studio.environment)};
+}
+
+}  // namespace
+
+Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Projection& projection, const TraceOptions& options,
+                  TraceReport& report, Context& context) {
+  check(options);
+  for (const Item& item : scene.items)
+    if (std::holds_alternative<VolumeItem>(item))
+      fail_usage("volumes are not lit by paths yet", "integrator", "leave integrator out, or show surfaces: contour, slice");
+  const World world = world_of(scene, prepared, projection, context);
+  const auto integrator = make_integrator(options);
+  Frame frame(projection.width, projection.height);
+  if (world.geometry().bounds().empty()) return frame;
+  const Eye eye(projection, world.geometry());
+
+  const auto across = size_t(projection.width + side - 1) / side, down = size_t(projection.height + side - 1) / side;
+  std::vector<SquareReport> squares(across * down);
+  std::atomic<size_t> finished{0};
+  parallel_for(
+      across * down, 1,
+      [&](size_t begin, size_t end) {
+        for (size_t square = begin; square < end; ++square) {
+          const int x0 = int(square % across) * side, y0 = int(square / across) * side;
+          const int w = std::min(side, projection.width - x0), h = std::min(side, projection.height - y0);
+          PixelSum sums[side * side];
+          Sampler sampler(options.sampler, options.seed, options.paths);
+          SquareReport& told = squares[square];
+          uint32_t n = 0;
+          do {
+            const uint32_t to = std::min(n + pass, uint32_t(options.paths));
+            for (int p = 0; p < w * h; ++p) {
+              const int x = x0 + p % w, y = y0 + p / w;
+              for (uint32_t k = n; k < to; ++k) {
+                sampler.start(uint32_t(x), uint32_t(y), k);
+                const Vec2f in_pixel = sampler.next2();
+                double start = 0, per_depth = 1;
+                const Ray ray = eye.ray({float(x) + in_pixel.x, float(y) + in_pixel.y}, start, per_depth);
+                sums[p].add(integrator->along(world, ray, sampler));
+              }
+            }
+            n = to;
+            told.variance = 0;
+            for (int p = 0; p < w * h && n > 1; ++p) told.variance += sums[p].variance(n) / (w * h);
+            told.reached = n > 1 && told.variance <= options.noise * options.noise;
+          } while (!told.reached && n < uint32_t(options.paths));
+          told.paths = n;
+          for (int p = 0; p < w * h; ++p) {
+            const int x = x0 + p % w, y = y0 + p / w;
+            const size_t at = size_t(y) * size_t(frame.width) + size_t(x);
+            for (int c = 0; c < 3; ++c) frame.rgba[4 * at + size_t(c)] = float(sums[p].light[c] / n);
+            frame.rgba[4 * at + 3] = float(1 - sums[p].passed / n);
+            // What the middle of the pixel sees.
+            double start = 0, per_depth = 1;
+            const Ray ray = eye.ray({float(x) + 0.5f, float(y) + 0.5f}, start, per_depth);
+            if (Hit hit; world.geometry().nearest(ray, hit)) {
+              frame.depth[at] = float((start + eye.world_length(hit.t)) / per_depth);
+              frame.ids[at] = prepared->items[hit.object].id;
+            }
+          }
+          context.progress(double(++finished) / double(squares.size()), "tracing");
+        }
+      },
+      &context);
+  report = {};
+  double variance = 0;
+  for (const SquareReport& s : squares) {
+    report.paths += double(s.paths) / double(squares.size()), variance += s.variance / double(squares.size());
+    report.reached = report.reached && s.reached;
+  }
+  report.noise = std::sqrt(variance);
+  return frame;
+}
+
+}  // namespace sg

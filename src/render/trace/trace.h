@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scene + Camera -> Frame by paths of light.
+#pragma once
+#include "base/context.h"
+#include "image/image.h"
+#include "render/prepare/prepare.h"
+#include "render/trace/integrators/integrator.h"
+#include "scene/scene.h"
+
+namespace sg {
+
+struct TraceOptions {
+  trace::IntegratorKind integrator = trace::IntegratorKind::path;
+  trace::SamplerKind sampler = trace::SamplerKind::blue_noise;
+  double noise = 0.02;  ///< standard error at which a part of the picture is finished, as a share of full scale as displayed
+  int paths = 256;      ///< most paths a pixel
+  int bounces = 8;      ///< most turns of a path
+  uint64_t seed = 0;
+};
+
+/// What it took.
+struct TraceReport {
+  double paths = 0;  ///< a pixel, on average
+  double noise = 0;  ///< the standard error, as above: root mean square over the picture
+  bool reached = true;
+};
+
+/// Surfaces, lines, points and glyphs in the light of the scene: linear and premultiplied, without the background. Pixels are drawn by
+/// squares, each until its error is below `noise`; a path belongs to a pixel by where it starts (box filter). The same bytes for any number
+/// of threads. Throws Error(usage) for a scene with volumes, and for options out of range.
+Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Projection& projection, const TraceOptions& options,
+                  TraceReport& report, Context& context);
+
+}  // namespace sg
