@@ -126,7 +126,7 @@ CellTree::CellTree(DatasetPtr dataset, Context& context) {
         if (reader.hidden(c)) set_empty(records[c]);
     });
   remove_empty(records);
-  build(std::move(records), context);
+  tree_ = build_box_tree(std::move(records), {}, context);
 }
 
 CellTree::CellTree(std::span<const Box3> boxes, Context& context) {
@@ -148,7 +148,7 @@ CellTree::CellTree(std::span<const Box3> boxes, Context& context) {
     for (size_t i = begin; i < end; ++i) set_record(records[i], boxes[i].lo, boxes[i].hi, center_, i);
   });
   remove_empty(records);
-  build(std::move(records), context);
+  tree_ = build_box_tree(std::move(records), {}, context);
 }
 
 }  // namespace sg

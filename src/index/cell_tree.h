@@ -11,27 +11,14 @@
 #include "base/context.h"
 #include "base/huge_allocator.h"
 #include "data/dataset.h"
+#include "index/box_tree.h"
 
 namespace sg {
-
-/// 32 bytes. Inner: count == 0, children at `first` and `first`+1 (`first` is even: both lie in one cache line). Leaf: count > 0, cells
-/// order[first .. first+count).
-struct TreeNode {
-  float lo[3], hi[3];
-  uint32_t first;
-  uint32_t count;
-};
-
-/// A box and its owner while the tree is built.
-struct TreeRecord {
-  float lo[3], hi[3];
-  uint32_t cell;
-};
 
 class CellTree {
  public:
   /// No path from the root is longer: what a traversal needs as its stack.
-  static constexpr int max_depth = 88;
+  static constexpr int max_depth = BoxTree::max_depth;
 
   /// Over all cells that are not hidden, refined or duplicate and have a finite box. Each box is grown by 1e-7 of its size, so that a
   /// cell is found from a place that is outside by less than a locator's tolerance. O(n log n); under 60 bytes per cell at its peak,
@@ -41,10 +28,10 @@ class CellTree {
   CellTree(std::span<const Box3> boxes, Context& context);
 
   /// Empty when no cell is in the tree; else the root is 0 (and 1 is unused).
-  std::span<const TreeNode> nodes() const { return nodes_; }
-  std::span<const uint32_t> order() const { return order_; }
+  std::span<const TreeNode> nodes() const { return tree_.nodes; }
+  std::span<const uint32_t> order() const { return tree_.order; }
   Vec3 center() const { return center_; }
-  size_t bytes() const { return nodes_.size() * sizeof(TreeNode) + order_.size() * 4; }
+  size_t bytes() const { return tree_.nodes.size() * sizeof(TreeNode) + tree_.order.size() * 4; }
 
   /// Calls f(cell) at least for each cell whose box holds x (grown by `slack`), in any order; f returns true to stop.
   template <class F>
@@ -63,9 +50,7 @@ class CellTree {
  private:
   template <class Meets, class F>
   bool descend(Meets&& meets, F&& f) const;
-  void build(Plane<TreeRecord> records, Context& context);
-  Plane<TreeNode> nodes_;
-  Plane<uint32_t> order_;
+  BoxTree tree_;
   Vec3 center_{0, 0, 0};
 };
 
@@ -131,25 +116,25 @@ struct BoxRay {
 
 template <class Meets, class F>
 bool CellTree::descend(Meets&& meets, F&& f) const {
-  if (nodes_.empty() || !meets(nodes_[0])) return false;
+  if (tree_.nodes.empty() || !meets(tree_.nodes[0])) return false;
   uint32_t stack[max_depth];
   int top = 0;
-  const TreeNode* n = &nodes_[0];
+  const TreeNode* n = &tree_.nodes[0];
   for (;;) {
     if (n->count) {
       for (uint32_t i = n->first; i < n->first + n->count; ++i)
-        if (f(order_[i])) return true;
+        if (f(tree_.order[i])) return true;
     } else {
       const uint32_t child = n->first;
-      const bool a = meets(nodes_[child]), b = meets(nodes_[child + 1]);
+      const bool a = meets(tree_.nodes[child]), b = meets(tree_.nodes[child + 1]);
       if (a && b) stack[top++] = child + 1;
       if (a || b) {
-        n = &nodes_[a ? child : child + 1];
+        n = &tree_.nodes[a ? child : child + 1];
         continue;
       }
     }
     if (top == 0) return false;
-    n = &nodes_[stack[--top]];
+    n = &tree_.nodes[stack[--top]];
   }
 }
 
@@ -168,23 +153,23 @@ void CellTree::overlapping(const Box3& box, F&& f) const {
 
 template <class F>
 void CellTree::nearest(Vec3 x, double limit2, F&& f) const {
-  if (nodes_.empty()) return;
+  if (tree_.nodes.empty()) return;
   struct Entry {
     double distance2;
     uint32_t node;
   } stack[max_depth];
   const Vec3 y = x - center_;
   int top = 0;
-  stack[top++] = {detail::box_distance2(nodes_[0], y), 0};
+  stack[top++] = {detail::box_distance2(tree_.nodes[0], y), 0};
   while (top > 0) {
     const Entry e = stack[--top];
     if (!(e.distance2 <= limit2)) continue;
-    const TreeNode& n = nodes_[e.node];
+    const TreeNode& n = tree_.nodes[e.node];
     if (n.count) {
-      for (uint32_t i = n.first; i < n.first + n.count; ++i) limit2 = f(order_[i]);
+      for (uint32_t i = n.first; i < n.first + n.count; ++i) limit2 = f(tree_.order[i]);
       continue;
     }
-    const double a = detail::box_distance2(nodes_[n.first], y), b = detail::box_distance2(nodes_[n.first + 1], y);
+    const double a = detail::box_distance2(tree_.nodes[n.first], y), b = detail::box_distance2(tree_.nodes[n.first + 1], y);
     const bool first = a <= b;
     if (std::max(a, b) <= limit2) stack[top++] = first ? Entry{b, n.first + 1} : Entry{a, n.first};
     if (std::min(a, b) <= limit2) stack[top++] = first ? Entry{a, n.first} : Entry{b, n.first + 1};
@@ -193,23 +178,23 @@ void CellTree::nearest(Vec3 x, double limit2, F&& f) const {
 
 template <class F>
 void CellTree::along_ray(Vec3 x, Vec3 d, double t0, double t1, F&& f) const {
-  if (nodes_.empty()) return;
+  if (tree_.nodes.empty()) return;
   struct Entry {
     double t;
     uint32_t node;
   } stack[max_depth];
   const detail::BoxRay ray(x - center_, d);
   int top = 0;
-  stack[top++] = {ray.enter(nodes_[0], t0, t1), 0};
+  stack[top++] = {ray.enter(tree_.nodes[0], t0, t1), 0};
   while (top > 0) {
     const Entry e = stack[--top];
     if (!(e.t <= t1) || e.t == HUGE_VAL) continue;
-    const TreeNode& n = nodes_[e.node];
+    const TreeNode& n = tree_.nodes[e.node];
     if (n.count) {
-      for (uint32_t i = n.first; i < n.first + n.count; ++i) t1 = f(order_[i]);
+      for (uint32_t i = n.first; i < n.first + n.count; ++i) t1 = f(tree_.order[i]);
       continue;
     }
-    const double a = ray.enter(nodes_[n.first], t0, t1), b = ray.enter(nodes_[n.first + 1], t0, t1);
+    const double a = ray.enter(tree_.nodes[n.first], t0, t1), b = ray.enter(tree_.nodes[n.first + 1], t0, t1);
     const bool first = a <= b;
     if (std::max(a, b) < HUGE_VAL) stack[top++] = first ? Entry{b, n.first + 1} : Entry{a, n.first};
     if (std::min(a, b) < HUGE_VAL) stack[top++] = first ? Entry{a, n.first} : Entry{b, n.first + 1};

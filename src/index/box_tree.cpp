@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tree from boxes. Large nodes are split one after the other by all threads; what is left becomes one task per subtree. Every choice
 // depends only on the boxes, so the tree is the same for any number of threads.
+#include "index/box_tree.h"
+
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <vector>
 
 #include "base/parallel.h"
-#include "index/cell_tree.h"
 
 namespace sg {
 
@@ -13,8 +17,6 @@ namespace {
 using V4 = float __attribute__((vector_size(16)));
 using V4i = int32_t __attribute__((vector_size(16)));
 
-constexpr uint32_t max_leaf = 8;        // a node of more cells is always split
-constexpr float cost_of_node = 1.5f;    // in units of one cell's test
 constexpr uint32_t task_cells = 32768;  // nodes of more cells are split by all threads
 constexpr size_t boxes_per_chunk = 16384;
 constexpr int sah_depth = 52;  // deeper nodes are halved: at most 32 more levels, whatever the boxes are
@@ -142,8 +144,8 @@ size_t halve(TreeRecord* r, size_t n, const Bounds& centers) {
   return n / 2;
 }
 
-bool worth_splitting(const Split& s, float half_area, size_t n) {
-  return n > max_leaf || s.cost + cost_of_node * half_area < half_area * float(n);
+bool worth_splitting(const TreeLimits& limits, const Split& s, float half_area, size_t n) {
+  return n > limits.most || s.cost + limits.of_node * half_area < half_area * float(n);
 }
 
 struct NodeRange {
@@ -152,7 +154,7 @@ struct NodeRange {
 };
 
 // All of a subtree below nodes[0] by one thread. Children are numbered from 2 on.
-void build_subtree(TreeRecord* records, NodeRange root, std::vector<TreeNode>& nodes) {
+void build_subtree(TreeRecord* records, NodeRange root, const TreeLimits& limits, std::vector<TreeNode>& nodes) {
   nodes.assign(2, TreeNode{});
   std::vector<NodeRange> stack{{root.begin, root.end, 0, root.depth}};
   while (!stack.empty()) {
@@ -163,16 +165,16 @@ void build_subtree(TreeRecord* records, NodeRange root, std::vector<TreeNode>& n
     const Extent e = extent_of(first, n);
     set_box(nodes[r.node], e.box);
     size_t left = 0;
-    if (n > 2) {
+    if (n > limits.least) {
       if (r.depth < sah_depth) {
         const Binning binning(e.centers, n);
         Bins bins;
         binning.fill(first, n, bins);
         const Split s = best_split(bins, binning);
-        if (s.axis >= 0 && worth_splitting(s, e.box.half_area(), n))
+        if (s.axis >= 0 && worth_splitting(limits, s, e.box.half_area(), n))
           left = size_t(std::partition(first, first + n, [&](const TreeRecord& t) { return binning.bin(t)[s.axis] <= s.bin; }) - first);
       }
-      if ((left == 0 || left == n) && n > max_leaf) left = halve(first, n, e.centers);
+      if ((left == 0 || left == n) && n > limits.most) left = halve(first, n, e.centers);
     }
     if (left == 0 || left == n) {
       nodes[r.node].first = r.begin, nodes[r.node].count = uint32_t(n);
@@ -279,8 +281,9 @@ void build_top(TreeRecord* records, uint32_t count, std::vector<TreeNode>& nodes
 
 }  // namespace
 
-void CellTree::build(Plane<TreeRecord> records, Context& context) {
-  if (records.empty()) return;
+BoxTree build_box_tree(Plane<TreeRecord> records, const TreeLimits& limits, Context& context) {
+  BoxTree tree;
+  if (records.empty()) return tree;
   std::vector<TreeNode> top;
   std::vector<NodeRange> tasks;
   build_top(records.data(), uint32_t(records.size()), top, tasks, context);
@@ -288,14 +291,14 @@ void CellTree::build(Plane<TreeRecord> records, Context& context) {
   parallel_for(
       tasks.size(), 1,
       [&](size_t t, size_t) {
-        build_subtree(records.data(), tasks[t], parts[t]);
+        build_subtree(records.data(), tasks[t], limits, parts[t]);
         parts[t].shrink_to_fit();
       },
       &context);
 
-  order_.resize(records.size());
+  tree.order.resize(records.size());
   parallel_for(records.size(), 1 << 16, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) order_[i] = records[i].cell;
+    for (size_t i = begin; i < end; ++i) tree.order[i] = records[i].cell;
   });
   records = {};
 
@@ -303,17 +306,18 @@ void CellTree::build(Plane<TreeRecord> records, Context& context) {
   std::vector<size_t> start(parts.size());
   for (size_t t = 0; t < parts.size(); ++t) start[t] = parts[t].size() - 2;
   const size_t below = exclusive_scan(start);
-  nodes_.resize(top.size() + below);
-  std::copy(top.begin(), top.end(), nodes_.begin());
+  tree.nodes.resize(top.size() + below);
+  std::copy(top.begin(), top.end(), tree.nodes.begin());
   parallel_for(parts.size(), 1, [&](size_t t, size_t) {
     const uint32_t shift = uint32_t(top.size() + start[t]) - 2;
     std::vector<TreeNode>& part = parts[t];
     for (TreeNode& n : part)
       if (n.count == 0) n.first += shift;
-    nodes_[tasks[t].node] = part[0];
-    std::copy(part.begin() + 2, part.end(), nodes_.begin() + ptrdiff_t(part.size() > 2 ? shift + 2 : 0));
+    tree.nodes[tasks[t].node] = part[0];
+    std::copy(part.begin() + 2, part.end(), tree.nodes.begin() + ptrdiff_t(part.size() > 2 ? shift + 2 : 0));
     part = {};
   });
+  return tree;
 }
 
 }  // namespace sg

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/trace/geometry/geometry.h"
+
+#include <utility>
+
+#include "base/error.h"
+#include "render/trace/geometry/bvh.h"
+#include "render/trace/geometry/object.h"
+#include "render/trace/geometry/triangles.h"
+
+namespace sg::trace {
+
+namespace {
+
+/// The scene's diagonal without what it depends on: the boxes of the arrays, lines and points without their radius.
+double diagonal_of(const PreparedScene& scene) {
+  Box3 box;
+  for (const raster::PreparedItem& p : scene.items)
+    if (p.data) box.add(p.data->bounds());
+  const double d = box.diagonal();
+  return d > 0 && std::isfinite(d) ? d : 1;
+}
+
+Box3 world_box(const Geometry::Object& o) {
+  Box3 b;
+  const Box3f local = o.bounds();
+  if (!local.empty()) b.add(o.local.world(local.lo)), b.add(o.local.world(local.hi));
+  return b;
+}
+
+}  // namespace
+
+Geometry::Geometry() = default;
+Geometry::Geometry(Geometry&&) noexcept = default;
+Geometry& Geometry::operator=(Geometry&&) noexcept = default;
+Geometry::~Geometry() = default;
+
+Geometry Geometry::make(const PreparedScene& scene, const GeometryOptions& options, Context& context) {
+  const double pixel = options.pixel > 0 ? options.pixel : diagonal_of(scene) / 1000;
+  Geometry g;
+  Box3 box;
+  for (size_t i = 0; i < scene.items.size(); ++i) {
+    context.check();
+    ObjectPtr o = make_object(scene.items[i], options, pixel, context);
+    if (!o || o->bounds().empty()) continue;
+    o->item = uint32_t(i);
+    box.add(world_box(*o));
+    g.objects_.push_back(std::move(o));
+  }
+  g.placement_ = g.objects_.size() == 1 ? g.objects_[0]->local : Placement::of(box);  // alone it need not be moved
+  for (const auto& o : g.objects_) {
+    o->place(g.placement_);
+    for (int a = 0; a < 3; ++a) {
+      g.bounds_.lo[a] = std::min(g.bounds_.lo[a], o->box().lo[a]);
+      g.bounds_.hi[a] = std::max(g.bounds_.hi[a], o->box().hi[a]);
+    }
+  }
+  return g;
+}
+
+bool Geometry::nearest(const Ray& ray, Hit& hit) const {
+  const BoxRay boxes(ray);
+  bool found = false;
+  float t_max = ray.t_max;
+  for (const auto& o : objects_) {
+    if (!(boxes.enter(&o->box().lo.x, &o->box().hi.x, t_max) <= t_max)) continue;
+    const Ray inner = o->inward(ray);
+    Hit h;
+    h.t = t_max * float(o->ratio());
+    if (!o->nearest(inner, h)) continue;
+    h.t = h.t / float(o->ratio());
+    if (found && h.t == t_max) continue;  // the lower object's
+    hit = h, hit.object = o->item, t_max = h.t, found = true;
+  }
+  return found;
+}
+
+uint32_t Geometry::nearest(const Ray* rays, int count, Hit* hits) const {
+  if (count < 1 || count > packet_rays) fail_internal("a packet holds 1 to 16 rays");
+  uint32_t found = 0;
+  Ray inner[packet_rays];
+  Hit h[packet_rays];
+  float t_max[packet_rays];
+  for (int i = 0; i < count; ++i) t_max[i] = rays[i].t_max;
+  for (const auto& o : objects_) {
+    for (int i = 0; i < count; ++i) inner[i] = o->inward(rays[i]), h[i] = {}, h[i].t = t_max[i] * float(o->ratio());
+    const uint32_t met = o->nearest_packet(inner, count, h);
+    for (int i = 0; i < count; ++i) {
+      const float t = h[i].t / float(o->ratio());
+      if (!(met >> i & 1) || ((found >> i & 1) && t == t_max[i])) continue;
+      hits[i] = h[i], hits[i].t = t_max[i] = t, hits[i].object = o->item;
+      found |= 1u << i;
+    }
+  }
+  return found;
+}
+
+bool Geometry::blocked(const Ray& ray) const {
+  const BoxRay boxes(ray);
+  for (const auto& o : objects_)
+    if (boxes.enter(&o->box().lo.x, &o->box().hi.x, ray.t_max) <= ray.t_max && o->blocked(o->inward(ray))) return true;
+  return false;
+}
+
+SurfacePoint Geometry::at(const Ray& ray, const Hit& hit) const {
+  for (const auto& o : objects_) {
+    if (o->item != hit.object) continue;
+    Hit h = hit;
+    h.t = hit.t * float(o->ratio());
+    const Object::Place p = o->at(o->inward(ray), h);
+    const Rounded r = rounded(o->outward(p.place), p.error * (1 / o->ratio()) + o->moving_error(p.place));
+    SurfacePoint s;
+    s.position = r.position, s.error = r.error, s.face_normal = Vec3f(p.normal);
+    s.shading_normal = dot(p.shading, p.normal) < 0 ? -Vec3f(p.shading) : Vec3f(p.shading);
+    s.tangent = tangent_of(s.shading_normal, Vec3f(normalize(p.along)));
+    s.object = hit.object, s.primitive = hit.primitive, s.u = hit.u, s.v = hit.v;
+    return s;
+  }
+  fail_internal("a hit of no object of this scene");
+}
+
+size_t Geometry::bytes() const {
+  size_t sum = 0;
+  for (const auto& o : objects_) sum += o->bytes();
+  return sum;
+}
+
+}  // namespace sg::trace

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// The way of a ray, or of a packet of rays, through a wide tree. For files that are compiled once for each target and have included
+// Highway. Which boxes are met, and in which order, is the same for every width of vectors.
+#if defined(SG_TRACE_WIDE_BVH_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef SG_TRACE_WIDE_BVH_INL
+#undef SG_TRACE_WIDE_BVH_INL
+#else
+#define SG_TRACE_WIDE_BVH_INL
+#endif
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <utility>
+
+#include "base/simd/vector-inl.h"
+#include "render/trace/geometry/wide_bvh.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sg::trace::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+using namespace simd::HWY_NAMESPACE;
+
+using D8 = hn::CappedTag<float, wide>;
+using F8 = hn::Vec<D8>;
+constexpr int lanes8 = int(hn::MaxLanes(D8()));
+
+/// One bit a lane.
+template <class M>
+HWY_INLINE uint32_t bits_of(D8 d, M m) {
+  uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, plain(m), bytes);
+  return bytes[0] & ((1u << lanes8) - 1);
+}
+
+HWY_INLINE void prefetch_lines(const void* p, int lines) {
+  for (int i = 0; i < lines; ++i) __builtin_prefetch(static_cast<const char*>(p) + 64 * i);
+}
+HWY_INLINE void prefetch_node(const WideNode* n) { prefetch_lines(n, 4); }
+
+/// The boxes of a node against rays that start and point within some bounds (BoxRay; of one ray the bounds are one number): one bit for each
+/// that some ray may meet by t_max, and where, at the least.
+struct NodeRay {
+  float near_origin[3], far_origin[3], near_inverse[3], far_inverse[3];
+  int near_side[3], far_side[3];
+
+  HWY_INLINE explicit NodeRay(const BoxRay& r) {
+    for (int a = 0; a < 3; ++a) {
+      near_origin[a] = far_origin[a] = r.origin[a];
+      near_inverse[a] = r.near_inverse[a], far_inverse[a] = r.far_inverse[a];
+      near_side[a] = 2 * a + r.backwards[a], far_side[a] = 2 * a + !r.backwards[a];
+    }
+  }
+  /// Takes in another one of the same signs: a box that it meets is met.
+  HWY_INLINE void widen(const BoxRay& r) {
+    for (int a = 0; a < 3; ++a) {
+      auto smaller = [](float& to, float v) { to = v < to ? v : to; };
+      auto larger = [](float& to, float v) { to = v > to ? v : to; };
+      if (r.backwards[a]) {
+        smaller(near_origin[a], r.origin[a]), larger(far_origin[a], r.origin[a]);
+        larger(near_inverse[a], r.near_inverse[a]), smaller(far_inverse[a], r.far_inverse[a]);
+      } else {
+        larger(near_origin[a], r.origin[a]), smaller(far_origin[a], r.origin[a]);
+        smaller(near_inverse[a], r.near_inverse[a]), larger(far_inverse[a], r.far_inverse[a]);
+      }
+    }
+  }
+  HWY_INLINE uint32_t meet(const WideNode& n, float t_max, float* near_out) const {
+    const D8 d;
+    uint32_t bits = 0;
+    for (int i = 0; i < wide; i += lanes8) {
+      F8 near = set(d, 0), far = set(d, t_max);
+      for (int a = 0; a < 3; ++a) {
+        near = max((hn::Load(d, n.side[near_side[a]] + i) - near_origin[a]) * near_inverse[a], near);
+        far = min((hn::Load(d, n.side[far_side[a]] + i) - far_origin[a]) * far_inverse[a], far);
+      }
+      hn::Store(near, d, near_out + i);
+      bits |= bits_of(d, near <= far) << i;
+    }
+    return bits;
+  }
+};
+
+/// Calls leaf(number) for each leaf that may be met by t_max (read again after each call), near ones first where that is `ordered`; it
+/// returns true to stop. fetch(number) tells that a leaf will be needed soon.
+template <bool ordered, class Leaf, class Fetch>
+HWY_INLINE void walk(const WideNode* nodes, const NodeRay& ray, const float& t_max, Leaf&& leaf, Fetch&& fetch) {
+  // Where the box is entered in the upper half: t >= 0, whose bits are ordered like the numbers.
+  uint64_t stack[WideBvh::stack_size];
+  HWY_ALIGN float near[wide];
+  size_t top = 0;
+  uint32_t at = 0;
+  for (;;) {
+    while (!(at & leaf_bit)) {
+      const WideNode& n = nodes[at];
+      uint32_t bits = ray.meet(n, t_max, near);
+      auto entry = [&] {
+        const int i = std::countr_zero(bits);
+        bits &= bits - 1;
+        const uint32_t child = n.child[i];
+        if (child & leaf_bit) fetch(child & ~leaf_bit);
+        else prefetch_node(nodes + child);
+        return uint64_t(std::bit_cast<uint32_t>(near[i])) << 32 | child;
+      };
+      if (bits == 0) goto next;
+      uint64_t nearest = entry();
+      // The nearest is gone on with, the others wait, the nearer the higher.
+      for (const size_t base = top; bits; ++top) {
+        uint64_t e = entry();
+        if (e < nearest) std::swap(e, nearest);
+        size_t k = top;
+        if constexpr (ordered)
+          for (; k > base && stack[k - 1] < e; --k) stack[k] = stack[k - 1];
+        stack[k] = e;
+      }
+      at = uint32_t(nearest);
+    }
+    if (leaf(at & ~leaf_bit)) return;
+  next:
+    do {
+      if (top == 0) return;
+      --top;
+    } while (std::bit_cast<float>(uint32_t(stack[top] >> 32)) > t_max);
+    at = uint32_t(stack[top]);
+  }
+}
+
+}  // namespace sg::trace::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// WideBvh: a binary tree collapsed to nodes of eight boxes, which are tested at once.
+#pragma once
+#include <cstdint>
+#include <span>
+
+#include "base/huge_allocator.h"
+#include "render/trace/geometry/bvh.h"
+
+namespace sg::trace {
+
+constexpr int wide = 8;  ///< boxes of a node, and the most primitives of a leaf
+
+/// 256 bytes. A child is a node's number, or a leaf's with `leaf_bit`; free places have boxes that no ray meets.
+struct alignas(64) WideNode {
+  float side[6][wide];  ///< lo x, hi x, lo y, hi y, lo z, hi z
+  uint32_t child[wide];
+  uint32_t count;
+};
+constexpr uint32_t leaf_bit = 0x80000000u;
+
+/// order()[first .. first+count)
+struct WideLeaf {
+  uint32_t first, count;
+};
+
+class WideBvh {
+ public:
+  /// No path from the root is longer, and each node on it leaves up to seven others for later.
+  static constexpr int stack_size = 7 * BoxTree::max_depth + 8;
+
+  WideBvh() = default;
+  /// Leaves of the tree hold at most 8 primitives (TreeLimits::most).
+  explicit WideBvh(BoxTree tree);
+
+  bool empty() const { return nodes_.empty(); }
+  std::span<const WideNode> nodes() const { return nodes_; }  ///< the root is 0
+  std::span<const WideLeaf> leaves() const { return leaves_; }
+  std::span<const uint32_t> order() const { return order_; }
+  const Box3f& bounds() const { return bounds_; }
+  size_t bytes() const { return nodes_.size() * sizeof(WideNode) + leaves_.size() * sizeof(WideLeaf) + order_.size() * 4; }
+
+ private:
+  Plane<WideNode> nodes_;
+  Plane<WideLeaf> leaves_;
+  Plane<uint32_t> order_;
+  Box3f bounds_;
+};
+
+}  // namespace sg::trace

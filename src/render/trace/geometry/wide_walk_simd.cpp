@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/vector_targets.h"
+#include "render/trace/geometry/wide_walk.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/trace/geometry/wide_walk_simd.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "render/trace/geometry/wide_bvh-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sg::trace::HWY_NAMESPACE {
+
+void walk_tree(const WideBvh& tree, const Ray& ray, const float& t_max, bool ordered, detail::LeafFn leaf, void* caller) {
+  const WideLeaf* leaves = tree.leaves().data();
+  const auto look = [&](uint32_t i) { return leaf(caller, leaves[i].first, leaves[i].count); };
+  const auto nothing = [](uint32_t) {};
+  const NodeRay r{BoxRay(ray)};
+  if (ordered) walk<true>(tree.nodes().data(), r, t_max, look, nothing);
+  else walk<false>(tree.nodes().data(), r, t_max, look, nothing);
+}
+
+}  // namespace sg::trace::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sg::trace {
+
+HWY_EXPORT(walk_tree);
+
+void detail::walk_leaves(const WideBvh& tree, const Ray& ray, const float& t_max, bool ordered, LeafFn leaf, void* caller) {
+  if (!tree.empty() && can_trace(ray)) HWY_DYNAMIC_DISPATCH(walk_tree)(tree, ray, t_max, ordered, leaf, caller);
+}
+
+}  // namespace sg::trace
+#endif
