@@ -11,6 +11,7 @@
 #include "data/memory/memory_budget.h"
 #include "render/composite/background.h"
 #include "render/raster/raster.h"
+#include "render/trace/trace.h"
 #include "render/volume/volume.h"
 
 namespace sg {
@@ -75,6 +76,19 @@ std::vector<uint8_t> uneven_squares(const Frame& frame, int side, double thresho
 /// little. The bands depend on the size of the picture alone.
 constexpr size_t band_pixels = size_t(1) << 21;
 
+Frame render_light(const Scene& scene, const Camera& camera, const RenderOptions& options, Context& context) {
+  check_picture_memory(options.width, options.height, 2);
+  TraceReport report;
+  Frame frame = trace_scene(scene, prepare_scene(scene, context), make_projection(camera, options.width, options.height), *options.light,
+                            report, context);
+  composite_background(scene, frame);
+  context.info(fmt::format(
+      "light: {:.0f} paths a pixel on average, standard error {:.4f} of full scale{}", report.paths, report.noise,
+      report.reached ? ""
+                     : fmt::format("; noise={} was not reached everywhere with paths={}", options.light->noise, options.light->paths)));
+  return frame;
+}
+
 }  // namespace
 
 void check_picture_memory(int width, int height, int frames) {
@@ -90,6 +104,7 @@ Frame render(const Scene& scene, const Camera& camera, const RenderOptions& opti
                "each side must be 1 to 32768 pixels");
   if (options.samples < 0 || options.samples > 8)
     fail_usage(fmt::format("{} samples per pixel and axis", options.samples), "render", "give 1 to 8, or 0 for the default");
+  if (options.light) return render_light(scene, camera, options, context);
   const int n = chosen_samples(scene, options.samples);
   const Projection whole = make_projection(camera, options.width * n, options.height * n);
   const bool adaptive = options.adaptive > 0 && n > 1;

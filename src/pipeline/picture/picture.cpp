@@ -53,6 +53,15 @@ void describe(Schema& s, PictureParams& p) {
     "everywhere.")
       .range(0, 1);
   s("text", p.text, "Scale factor of all text.").range(0.2, 10);
+  s("integrator", p.integrator,
+    "Light by rays instead of the rasterizer: path follows all light from surface to surface, whitted direct light, mirrors and glass, "
+    "ambient_occlusion light from everywhere that is stopped by what is near. Default: none.");
+  s("noise", p.light.noise,
+    "With an integrator: a part of the picture is finished when its standard error is below this share of full scale.")
+      .range(0.0001, 1);
+  s("paths", p.light.paths, "With an integrator: most paths per pixel.").range(1, 1 << 20);
+  s("bounces", p.light.bounces, "With an integrator: most turns of a path.").range(0, 1000);
+  s("sampler", p.light.sampler, "With an integrator: how the random numbers of a pixel lie to each other (see: sightglass samples).");
 }
 
 void parse_size(const std::string& words, int& width, int& height) {

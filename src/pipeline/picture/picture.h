@@ -14,6 +14,7 @@
 #include "color/legend_content.h"
 #include "image/image.h"
 #include "pipeline/file/pipeline_file.h"
+#include "render/trace/trace_options.h"
 
 namespace sg {
 
@@ -33,6 +34,8 @@ struct PictureParams {
   int samples = 0;
   double adaptive = 0;
   double text = 1;
+  std::optional<trace::IntegratorKind> integrator;
+  TraceOptions light;
 };
 void describe(Schema& s, PictureParams& p);
 

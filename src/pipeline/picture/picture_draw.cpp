@@ -26,7 +26,7 @@ Frame placed(const Frame& part, const Scene& scene, const Camera& camera, const 
   Scene empty;
   empty.background = scene.background, empty.background_top = scene.background_top, empty.transparent = scene.transparent;
   RenderOptions column = options;
-  column.width = 1, column.height = height, column.samples = 1;
+  column.width = 1, column.height = height, column.samples = 1, column.light.reset();
   const Frame background = render(empty, camera, column, context);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
@@ -99,6 +99,7 @@ DrawnPicture draw_picture(const Scene& scene, const Camera& camera, const Stated
   RenderOptions options;
   options.width = int(area.width), options.height = int(area.height), options.samples = s.picture.samples;
   options.adaptive = s.picture.adaptive, options.coarser = coarser;
+  if (s.picture.integrator) options.light = s.picture.light, options.light->integrator = *s.picture.integrator;
   const bool beside = options.width < s.width || options.height < s.height;
   // The frame, one of single samples, and one of all pixels if a legend is next to it.
   check_picture_memory(s.width, s.height, 1 + (beside || options.adaptive > 0 ? 1 : 0));

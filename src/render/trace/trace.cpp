@@ -4,14 +4,15 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "render/trace/integrators/integrator.h"
 #include "render/trace/light/luminance.h"
 #include "render/trace/studio.h"
+#include "render/prepare/shared_progress.h"
 
 namespace sg {
 
@@ -110,7 +111,7 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
 
   const auto across = size_t(projection.width + side - 1) / side, down = size_t(projection.height + side - 1) / side;
   std::vector<SquareReport> squares(across * down);
-  std::atomic<size_t> finished{0};
+  SharedProgress progress(context, squares.size(), "following light");
   parallel_for(
       across * down, 1,
       [&](size_t begin, size_t end) {
@@ -152,7 +153,7 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
               frame.ids[at] = prepared->items[hit.object].id;
             }
           }
-          context.progress(double(++finished) / double(squares.size()), "tracing");
+          progress.step();
         }
       },
       &context);

@@ -4,19 +4,10 @@
 #include "base/context.h"
 #include "image/image.h"
 #include "render/prepare/prepare.h"
-#include "render/trace/integrators/integrator.h"
+#include "render/trace/trace_options.h"
 #include "scene/scene.h"
 
 namespace sg {
-
-struct TraceOptions {
-  trace::IntegratorKind integrator = trace::IntegratorKind::path;
-  trace::SamplerKind sampler = trace::SamplerKind::blue_noise;
-  double noise = 0.02;  ///< standard error at which a part of the picture is finished, as a share of full scale as displayed
-  int paths = 256;      ///< most paths a pixel
-  int bounces = 8;      ///< most turns of a path
-  uint64_t seed = 0;
-};
 
 /// What it took.
 struct TraceReport {

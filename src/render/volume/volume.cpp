@@ -15,7 +15,7 @@
 #include "render/volume/natural_units.h"
 #include "render/volume/prepare_cast.h"
 #include "render/volume/rays/split_rays.h"
-#include "render/volume/shared_progress.h"
+#include "render/prepare/shared_progress.h"
 
 namespace sg::volume {
 

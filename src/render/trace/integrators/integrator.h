@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <memory>
 
-#include "base/schema/enum_words.h"
 #include "render/trace/integrators/world.h"
 #include "render/trace/sampling/sampler.h"
 
@@ -22,16 +21,6 @@ class Integrator {
   /// Unbiased but for what each kind states. `ray` starts outside of everything.
   virtual Estimate along(const World& world, const Ray& ray, Sampler& sampler) const = 0;
 };
-
-enum class IntegratorKind {
-  ambient_occlusion,  ///< white light from everywhere, of surfaces in reach alone
-  whitted,            ///< direct light, mirrors and glass (Whitted 1980): no light from surface to surface
-  path,               ///< all light (Kajiya 1986)
-};
-constexpr auto enum_words(IntegratorKind) {
-  using enum IntegratorKind;
-  return std::array{Word{"ambient_occlusion", ambient_occlusion}, Word{"whitted", whitted}, Word{"path", path}};
-}
 
 /// Paths from the camera that turn at surfaces, at most `bounces` times. At each turn one light is asked for directly (next-event
 /// estimation), and weighed against meeting it by chance (Veach 1997); paths that carry little are ended at random (Russian roulette).

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// How light is followed.
+#pragma once
+#include <cstdint>
+
+#include "base/schema/enum_words.h"
+#include "render/trace/sampling/sampler.h"
+
+namespace sg {
+
+namespace trace {
+
+enum class IntegratorKind {
+  ambient_occlusion,  ///< white light from everywhere, of surfaces in reach alone
+  whitted,            ///< direct light, mirrors and glass (Whitted 1980): no light from surface to surface
+  path,               ///< all light (Kajiya 1986)
+};
+constexpr auto enum_words(IntegratorKind) {
+  using enum IntegratorKind;
+  return std::array{Word{"ambient_occlusion", ambient_occlusion}, Word{"whitted", whitted}, Word{"path", path}};
+}
+
+}  // namespace trace
+
+struct TraceOptions {
+  trace::IntegratorKind integrator = trace::IntegratorKind::path;
+  trace::SamplerKind sampler = trace::SamplerKind::blue_noise;
+  double noise = 0.02;  ///< standard error at which a part of the picture is finished, as a share of full scale as displayed
+  int paths = 256;      ///< most paths a pixel
+  int bounces = 8;      ///< most turns of a path
+  uint64_t seed = 0;
+};
+
+}  // namespace sg
