@@ -58,7 +58,7 @@ WideBvh::WideBvh(BoxTree tree) : order_(std::move(tree.order)) {
     for (int i = 0; i < n; ++i) inner += from[children[i]].count == 0;
     nodes_.resize(first + inner);
     WideNode& node = nodes_[o.to];
-    node.count = uint32_t(n);
+    node = WideNode{}, node.count = uint32_t(n);
     uint32_t next = uint32_t(first);
     for (int i = 0; i < wide; ++i) {
       if (i >= n) {

@@ -15,7 +15,7 @@ constexpr int wide = 8;  ///< boxes of a node, and the most primitives of a leaf
 struct alignas(64) WideNode {
   float side[6][wide];  ///< lo x, hi x, lo y, hi y, lo z, hi z
   uint32_t child[wide];
-  uint32_t count;
+  uint32_t count, unused[7];
 };
 constexpr uint32_t leaf_bit = 0x80000000u;
 

@@ -3,8 +3,7 @@
 #include "filter/glyph/geometry.h"
 #include "filter/glyph/shapes.h"
 #include "render/raster/raster_support.h"
-#include "render/trace/geometry/geometry.h"
-#include "trace_support.h"
+#include "trace_scene.h"
 
 using namespace sg;
 using namespace sg::trace;
@@ -12,16 +11,6 @@ using namespace sg::trace::test;
 using sg::test::line;
 
 namespace {
-
-Geometry geometry_of(const Scene& scene, const GeometryOptions& options = {}) {
-  Context context;
-  return Geometry::make(*prepare_scene(scene, context), options, context);
-}
-Geometry geometry_of(Item item, const GeometryOptions& options = {}) {
-  Scene scene;
-  scene.items.push_back(std::move(item));
-  return geometry_of(scene, options);
-}
 
 /// n points with vectors, some of which have no length or are no numbers.
 DatasetPtr places(size_t n) {
@@ -87,10 +76,10 @@ TEST_CASE("trace: hidden cells are not met, cells are numbered as drawn") {
   std::vector<uint8_t> ghost{0, ghost_hidden_cell};
   auto d = sg::test::surface({-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0}, {0, 1, 2, 0, 2, 3});
   SurfaceMesh m = *d->as<SurfaceMesh>();
-  FieldSet fields;
-  fields.add({"vtkGhostType", Association::cell, Array::from_vector(std::move(ghost)), "", Role::ghost});
   SurfaceItem item;
-  item.data = make_dataset(Mesh(std::move(m)), std::move(fields));
+  DatasetParts parts;
+  parts.mesh = std::move(m), parts.cell_ghost = Array::from_vector(std::move(ghost));
+  item.data = make_dataset(std::move(parts));
   const Geometry g = geometry_of(item);
   CHECK(g.blocked({{0.3f, -0.3f, 1}, {0, 0, -1}}));
   CHECK_FALSE(g.blocked({{-0.3f, 0.3f, 1}, {0, 0, -1}}));

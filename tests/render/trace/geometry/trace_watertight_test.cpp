@@ -40,12 +40,12 @@ TEST_CASE("trace: no ray slips between triangles that share an edge or a corner"
 }
 
 TEST_CASE("trace: nor does one through small and long triangles, near and far") {
-  TestMesh thin = ball_mesh(60);
+  TestMesh thin = ball_mesh(30);
   for (size_t i = 0; i < thin.xyz.size(); i += 3) thin.xyz[i] *= 1e-3f, thin.xyz[i + 1] *= 0.05f;  // a blade
   const Triangles blade = thin.tree();
   CHECK(leaks(blade, {0, 0, 0}) == 0);
   CHECK(leaks(blade, {1e-4f, 0.01f, -0.4f}) == 0);
-  TestMesh small = ball_mesh(60);
+  TestMesh small = ball_mesh(30);
   for (float& v : small.xyz) v = v * 1e-4f + 0.7f;
   const Triangles dot = small.tree();
   CHECK(leaks(dot, {0.7f, 0.7f, 0.7f}) == 0);
