@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "render/trace/material/bsdf.h"
+#include "render/trace/sampling/sampler.h"
 
 namespace sg::trace::test_cases {
 
@@ -67,6 +68,24 @@ inline Vec3f direction(double cosine, double angle) {
 inline std::vector<Vec3f> directions() {
   return {direction(1, 0),     direction(.8, 1),  direction(.35, 2.5), direction(.06, 4),
           direction(-.95, .3), direction(-.6, 5), direction(-.2, 3)};
+}
+
+/// Shares of uniform light that go out along wo, by samples.
+struct Furnace {
+  Vec3 energy;
+  double delta_chance = 0, nothing = 0;
+};
+inline Furnace furnace(const Bsdf& b, Vec3f wo, int n) {
+  Furnace f;
+  Sampler s(SamplerKind::sobol, 9, n);
+  for (int i = 0; i < n; ++i) {
+    s.start(0, 0, uint32_t(i));
+    const Vec2f u = s.next2();
+    const auto drawn = b.sample(wo, s.next(), u, Transport::importance);
+    if (!drawn) f.nothing += 1. / n;
+    else f.energy += Vec3(drawn->weight) * (1. / n), f.delta_chance += drawn->delta ? 1. / n : 0;
+  }
+  return f;
 }
 
 }  // namespace sg::trace::test_cases
