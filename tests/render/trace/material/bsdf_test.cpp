@@ -2,6 +2,8 @@
 #include "render/trace/material/bsdf.h"
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "base/random.h"
 #include "render/trace/material/cases.h"
@@ -34,6 +36,32 @@ TEST_CASE("bsdf: the weight of a sample is f |cos| / pdf, its direction is unit,
           const Vec3f weight = b.evaluate(wo, s->direction, t) * (std::abs(s->direction.z) / s->pdf);
           for (int k = 0; k < 3; ++k) CHECK(weight[k] == Approx(double(s->weight[k])).epsilon(2e-3));
         }
+  }
+}
+
+TEST_CASE("bsdf: nothing is infinite or no number at grazing angles, along the axes and at the ends of the random numbers") {
+  const float last = 0x1.fffffep-1f;
+  std::vector<Vec3f> all{{1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  for (const double z : {1e-7, 1e-4, 1e-2, .9999999}) all.insert(all.end(), {direction(z, 1), direction(-z, 1), direction(z, 1 + M_PI)});
+  auto sound = [](Vec3f v) { return v.x >= 0 && v.y >= 0 && v.z >= 0 && std::isfinite(v.x + v.y + v.z); };
+  for (const Case& c : cases()) {
+    CAPTURE(c.name);
+    const Material material(c.material);
+    const Bsdf b = make_bsdf(material, material.base_color(), c.opacity);
+    for (const Vec3f wo : all) {
+      CAPTURE(wo.z);
+      CHECK(sound(b.albedo(wo)));
+      for (const Vec3f wi : all) {
+        CHECK(sound(b.evaluate(wo, wi)));
+        CHECK((b.pdf(wo, wi) >= 0 && std::isfinite(b.pdf(wo, wi))));
+      }
+      for (const float choice : {0.f, .2f, .4f, .6f, .8f, last})
+        for (const Vec2f u : {Vec2f{0, 0}, {last, last}, {0, last}, {last, 0}, {.5f, .5f}}) {
+          const auto s = b.sample(wo, choice, u);
+          if (!s) continue;
+          CHECK((sound(s->weight) && std::isfinite(s->pdf) && std::abs(length(s->direction) - 1) < 1e-5f));
+        }
+    }
   }
 }
 
