@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How much rough boundaries reflect and let through in all directions together, as a function of where the light comes from.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -30,6 +31,7 @@ class AlbedoCurve {
   }
   /// Integral of 2 cosine f(cosine): of light from everywhere.
   float average() const { return average_; }
+  float least() const { return *std::min_element(at_.begin(), at_.end()); }
 
  private:
   float mean() const;

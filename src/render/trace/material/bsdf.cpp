@@ -17,10 +17,10 @@ constexpr Vec3f white{1, 1, 1};
 
 Vec3f clamped(Vec3f c) { return {std::clamp(c.x, 0.f, 1.f), std::clamp(c.y, 0.f, 1.f), std::clamp(c.z, 0.f, 1.f)}; }
 
-// Light that is lost by what it meets first and given back in all directions: reciprocal, and as much as is lost.
-float given_back(const AlbedoCurve& lost_of_o, float o, const AlbedoCurve& lost_of_i, float i) {
-  const float average = lost_of_i.average();
-  return average > 1e-6f ? lost_of_o(o) * lost_of_i(i) / (pi * average) : 0;
+// Light that is lost by what it meets first, or gets through it, and comes out again in all directions: reciprocal, and as much as it is.
+float given_back(const AlbedoCurve& of_o, float o, const AlbedoCurve& of_i, float i) {
+  const float average = of_i.average();
+  return average > 1e-6f ? of_o(o) * of_i(i) / (pi * average) : 0;
 }
 
 }  // namespace
@@ -41,16 +41,15 @@ Vec3f Bsdf::through_coat(Vec3f o, Vec3f i, bool inside) const {
   if (coat == 0) return white;
   const bool o_outside = !inside, i_outside = material_->thin() || (i.z > 0) == o_outside;
   const Vec3f passed = (o_outside ? through_coat(o.z) : white) * (i_outside ? through_coat(std::abs(i.z)) : white);
-  return white * (1 - coat) + passed * coat;
+  // What is sent back from below the coat to what is below it, and comes out later: as much as leaves it to the angle that lets most
+  // through.
+  return white * (1 - coat) + passed * (o_outside && i_outside ? coat / material_->coat_open : coat);
 }
 
 float Bsdf::reflectance(float cosine, bool inside) const {
   const float r = fresnel_dielectric(std::min(cosine, 1.f), material_->side[inside].eta).reflected();
   return material_->thin() ? sheet_reflectance(r) : r;
 }
-
-// What the boundary lets into the body.
-float Bsdf::below(float z) const { return 1 - material_->side[0].albedo.reflected(z); }
 
 // Of what enters the body, that which is diffuse.
 float Bsdf::body_share() const { return (1 - material_->clear) * (walks_ ? 1 - material_->subsurface : 1); }
@@ -72,9 +71,9 @@ Vec3f Bsdf::reflected_facing(Vec3f o, Vec3f i, bool inside) const {
       f += white * (rest * (reflectance(cosine, inside) * mirrors + again));
     }
   }
-  if (!inside && rest > 0 && body_share() > 0)
-    f += base_ * (rest * body_share() * (1 - m.body_through()) * below(o.z) * below(i.z) / (pi * (1 - side.albedo.reflected.average())));
   f = f * through_coat(o, i, inside);
+  if (!inside && rest > 0 && body_share() > 0)
+    f += base_ * m.body_filter * (rest * body_share() * (1 - m.body_through()) * given_back(m.open, o.z, m.open, i.z));
   if (inside) return f;
   if (m.retro > 0 && !m.ggx.smooth()) {
     const Vec3f back = normalize(o + turned_back(i));
@@ -108,9 +107,9 @@ Vec3f Bsdf::passed_facing(Vec3f o, Vec3f i, bool inside, Transport transport) co
     }
     f += m.clear_filter * (rest * passed);
   }
-  if (m.body_through() > 0)
-    f += base_ * (rest * body_share() * m.body_through() * below(o.z) * below(z) / (pi * (1 - side.albedo.reflected.average())));
-  return f * through_coat(o, i, inside);
+  f = f * through_coat(o, i, inside);
+  if (m.body_through() > 0) f += base_ * m.body_filter * (rest * body_share() * m.body_through() * given_back(m.open, o.z, m.open, z));
+  return f;
 }
 
 Vec3f Bsdf::evaluate_facing(Vec3f o, Vec3f i, bool inside, Transport transport) const {
@@ -132,14 +131,9 @@ Vec3f Bsdf::albedo(Vec3f wo) const {
 Vec3f Bsdf::entering(Vec3f wo) const {
   const Material& m = *material_;
   if (!walks_ || inside_of(wo)) return {};
-  const float z = std::abs(wo.z), share = (1 - m.retro) * (1 - m.metalness) * (1 - m.clear) * m.subsurface * opacity_;
-  return (white * (1 - m.coat) + (m.coat > 0 ? through_coat(z) : white) * m.coat) * (share * below(z));
+  return m.body_filter * ((1 - m.retro) * (1 - m.metalness) * (1 - m.clear) * m.subsurface * opacity_ * m.open(std::abs(wo.z)));
 }
 
-Vec3f Bsdf::leaving(Vec3f wi) const {
-  const Material& m = *material_;
-  const float z = std::abs(wi.z);
-  return (white * (1 - m.coat) + (m.coat > 0 ? through_coat(z) : white) * m.coat) * (below(z) / (1 - m.side[0].albedo.reflected.average()));
-}
+float Bsdf::leaving(Vec3f wi) const { return material_->open(std::abs(wi.z)) / material_->open.average(); }
 
 }  // namespace sg::trace

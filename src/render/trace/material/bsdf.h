@@ -45,7 +45,7 @@ class Bsdf {
   /// wo goes in, and the one, relative to a density of cos / pi, with which it comes out along wi. White bodies without a coat keep all
   /// energy.
   Vec3f entering(Vec3f wo) const;
-  Vec3f leaving(Vec3f wi) const;
+  float leaving(Vec3f wi) const;
 
  private:
   friend Bsdf make_bsdf(const Material&, Vec3f, float, bool);
@@ -67,7 +67,6 @@ class Bsdf {
   Vec3f through_coat(Vec3f o, Vec3f i, bool inside) const;
   float reflectance(float cosine, bool inside) const;
   float reflect_chance(float reflectance) const;
-  float below(float z) const;
   float body_share() const;
   bool is_delta(Way way) const;
   bool inside_of(Vec3f w) const { return w.z < 0 && material_->has_inside(); }

@@ -45,7 +45,7 @@ Bsdf::Shares Bsdf::shares(float z, bool inside) const {
   Vec3f layers = grey(1);
   if (m.coat > 0 && !inside) {
     s.albedo[of_coat] = grey(m.coat * m.coat_albedo(z));
-    layers = grey(1 - m.coat) + through_coat(z) * m.coat_filter * (m.coat * (1 - m.coat_albedo.average()));
+    layers = grey(1 - m.coat) + through_coat(z) * m.coat_filter * (m.coat * (1 - m.coat_albedo.average()) / m.coat_open);
   }
   if (metal > 0 || (m.retro > 0 && !inside)) {
     const Vec3f once = m.metal_albedo(z, base_);
@@ -61,7 +61,7 @@ Bsdf::Shares Bsdf::shares(float z, bool inside) const {
     if (m.clear > 0 && !smooth)
       s.albedo[of_boundary_again] =
           layers * (grey(1 - side.lost_passes) + m.clear_filter * side.lost_passes) * (rest * m.clear * side.lost(z));
-    if (!inside) s.albedo[of_body] = layers * base_ * (rest * body_share() * below(z));
+    if (!inside) s.albedo[of_body] = base_ * m.body_filter * (rest * body_share() * m.open(z));
   }
   float sum = 0;
   for (Vec3f& a : s.albedo) a *= opacity_;

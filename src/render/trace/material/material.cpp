@@ -37,6 +37,8 @@ Material::Material(const SurfaceMaterial& m) {
   if (coat > 0) {
     coat_ggx = Ggx::of_roughness(float(m.coat_roughness)), coat_eta = float(m.coat_ior);
     coat_albedo = boundary_albedo(coat_ggx, coat_eta, false).reflected;
+    coat_open = 1 - coat_albedo.least();
+    body_filter = Vec3f(1, 1, 1) * (1 - coat) + coat_filter * coat_filter * coat;
   }
   ggx = Ggx::of_roughness(float(m.specular_roughness), float(m.specular_anisotropy));
   if (metalness > 0 || retro > 0) mirror = mirror_albedo(ggx);
@@ -56,6 +58,7 @@ Material::Material(const SurfaceMaterial& m) {
       side[1].lost_passes = from_outside / (from_outside + from_inside);
     }
   }
+  open = AlbedoCurve::of([&](float cosine) { return (1 - coat * coat_albedo(cosine)) * (1 - side[0].albedo.reflected(cosine)); });
   if (m.metal && (metalness > 0 || retro > 0)) {
     conductor = index_of(*m.metal);
     metal_curves = conductor_albedo(ggx, conductor->eta, conductor->k);

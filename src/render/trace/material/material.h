@@ -44,12 +44,16 @@ class Material {
   float coat_eta = 1;
   AlbedoCurve coat_albedo;
   Vec3f coat_filter{1, 1, 1};  ///< of one passage
+  float coat_open = 1;         ///< what it lets through at most, of any angle
   // Of the boundary below it, metal and retroreflectors, which have the same roughness:
   Ggx ggx;
   BoundarySide side[2];     ///< seen from outside and from inside; of thin walls and opaque bodies the first alone
   MirrorAlbedo mirror;      ///< of metal that reflects everything, single reflections
   AlbedoCurve mirror_lost;  ///< 1 - mirror.white
   Vec3f clear_filter{1, 1, 1};
+  // Of the diffuse body, under both:
+  AlbedoCurve open;            ///< what gets there, and from there out again
+  Vec3f body_filter{1, 1, 1};  ///< of the way there and back
   std::optional<ConductorIndex> conductor;
   std::array<AlbedoCurve, 3> metal_curves;  ///< of its single reflections, red, green and blue
 

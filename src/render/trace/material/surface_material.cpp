@@ -7,14 +7,14 @@ namespace sg::trace {
 
 ConductorIndex index_of(Metal metal) {
   switch (metal) {
-    case Metal::gold: return {{0.221f, 0.428f, 1.335f}, {3.215f, 2.460f, 1.872f}};
-    case Metal::silver: return {{0.059f, 0.060f, 0.046f}, {4.111f, 3.589f, 2.792f}};
-    case Metal::copper: return {{0.355f, 1.016f, 1.246f}, {3.136f, 2.579f, 2.452f}};
-    case Metal::aluminium: return {{1.048f, 0.786f, 0.525f}, {6.487f, 5.841f, 4.932f}};
-    case Metal::iron: return {{2.889f, 2.950f, 2.642f}, {3.041f, 2.930f, 2.803f}};
-    case Metal::titanium: return {{2.660f, 2.540f, 2.303f}, {3.700f, 3.430f, 3.079f}};
-    case Metal::chromium: return {{3.177f, 3.180f, 2.447f}, {3.300f, 3.330f, 3.205f}};
-    case Metal::nickel: return {{1.986f, 1.920f, 1.763f}, {3.989f, 3.610f, 3.041f}};
+    case Metal::gold: return {{0.121f, 0.498f, 1.468f}, {9.765f, 2.266f, 1.776f}};
+    case Metal::silver: return {{0.057f, 0.055f, 0.043f}, {4.467f, 3.550f, 2.586f}};
+    case Metal::copper: return {{0.227f, 1.039f, 1.294f}, {3.301f, 2.627f, 2.360f}};
+    case Metal::aluminium: return {{1.190f, 0.770f, 0.466f}, {6.785f, 5.792f, 4.682f}};
+    case Metal::iron: return {{2.924f, 2.918f, 2.548f}, {3.074f, 2.939f, 2.750f}};
+    case Metal::titanium: return {{2.743f, 2.507f, 2.242f}, {3.835f, 3.399f, 3.015f}};
+    case Metal::chromium: return {{3.244f, 3.117f, 2.287f}, {3.286f, 3.337f, 3.117f}};
+    case Metal::nickel: return {{2.033f, 1.903f, 1.729f}, {4.187f, 3.574f, 2.895f}};
   }
   return {};
 }

@@ -13,8 +13,7 @@
 
 namespace sg::trace {
 
-/// Metals of measured indices of refraction: at 612, 549 and 464 nm, the dominant wavelengths of the primaries of sRGB, between the
-/// values of Johnson and Christy (1972, 1974) and of McPeak et al. (2015, aluminium).
+/// Metals of measured indices of refraction (Johnson, Christy 1972, 1974; McPeak et al. 2015 for aluminium).
 enum class Metal { gold, silver, copper, aluminium, iron, titanium, chromium, nickel };
 constexpr auto enum_words(Metal) {
   using enum Metal;
@@ -22,6 +21,9 @@ constexpr auto enum_words(Metal) {
                     Word{"aluminium", aluminium}, Word{"aluminum", aluminium}, Word{"iron", iron},
                     Word{"titanium", titanium},   Word{"chromium", chromium},  Word{"nickel", nickel}};
 }
+/// One index for red, green and blue each: those of a metal which at 0 and at 80 degrees reflects what the measured one does, integrated
+/// over the spectrum in daylight D65 to linear sRGB (colour matching functions of Wyman, Sloan, Shirley 2013; gold's red, which no screen
+/// shows, is 0.995).
 struct ConductorIndex {
   Vec3f eta, k;
 };

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "render/trace/material/bsdf.h"
+#include "render/trace/sampling/sampler.h"
 
 namespace sg::trace::test_cases {
 
@@ -34,6 +35,7 @@ inline std::vector<Case> cases() {
     add("thin glass" + r, true, [&](SurfaceMaterial& m) { m.transmission_weight = 1, m.thin_walled = true, m.specular_roughness = rough; });
     add("retroreflector" + r, true, [&](SurfaceMaterial& m) { m.retro_weight = 1, m.specular_roughness = rough; });
     add("coat" + r, false, [&](SurfaceMaterial& m) { m.coat_weight = .8, m.coat_roughness = rough, m.coat_color = {.9, .6, .5}; });
+    add("white coat" + r, true, [&](SurfaceMaterial& m) { m.coat_weight = 1, m.coat_roughness = rough, m.specular_weight = 0; });
     add("coated glass" + r, false, [&](SurfaceMaterial& m) { m.coat_weight = .8, m.coat_roughness = rough, m.transmission_weight = 1; });
   }
   add("chromium", false, [](SurfaceMaterial& m) { m = preset_material(MaterialPreset::chromium); });
@@ -67,6 +69,24 @@ inline Vec3f direction(double cosine, double angle) {
 inline std::vector<Vec3f> directions() {
   return {direction(1, 0),     direction(.8, 1),  direction(.35, 2.5), direction(.06, 4),
           direction(-.95, .3), direction(-.6, 5), direction(-.2, 3)};
+}
+
+/// Shares of uniform light that go out along wo, by samples.
+struct Furnace {
+  Vec3 energy;
+  double delta_chance = 0, nothing = 0;
+};
+inline Furnace furnace(const Bsdf& b, Vec3f wo, int n) {
+  Furnace f;
+  Sampler s(SamplerKind::sobol, 9, n);
+  for (int i = 0; i < n; ++i) {
+    s.start(0, 0, uint32_t(i));
+    const Vec2f u = s.next2();
+    const auto drawn = b.sample(wo, s.next(), u, Transport::importance);
+    if (!drawn) f.nothing += 1. / n;
+    else f.energy += Vec3(drawn->weight) * (1. / n), f.delta_chance += drawn->delta ? 1. / n : 0;
+  }
+  return f;
 }
 
 }  // namespace sg::trace::test_cases
