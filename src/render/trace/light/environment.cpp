@@ -19,11 +19,20 @@ struct Environment::Picture {
   LocalFrame frame;  // x in front, y to the left, z up
   Distribution2D brightness;
   Vec3f mean;
+
+  /// Of the angle from `up` at a row's upper edge, and by how much it falls to the lower one.
+  float cosine(size_t row) const { return float(std::cos(double(pi) * double(row) / double(height))); }
+  float drop(size_t row) const {
+    const double step = double(pi) / double(height);
+    return float(std::cos(step * double(row)) - std::cos(step * double(row + 1)));
+  }
+  /// From a density over the square to one over the sphere.
+  float per_solid_angle(size_t row) const { return 1 / (float(height) * 2 * pi * drop(row)); }
 };
 
 namespace {
 
-// A pixel's share of the sphere falls with its distance from the poles: by the mean sine over its row.
+// A pixel's share of the sphere falls towards the poles: by the mean sine over its row.
 double sine_of_row(size_t row, size_t height) {
   const double step = double(pi) / double(height);
   return (std::cos(step * double(row)) - std::cos(step * double(row + 1))) / step;
@@ -76,18 +85,21 @@ Vec3f Environment::mean() const { return picture_ ? picture_->mean : even_; }
 
 Environment::Sample Environment::sample(Vec2f u) const {
   if (!picture_) return {uniform_sphere(u), even_, uniform_sphere_pdf()};
+  // Even over each pixel's part of the sphere: in a row the cosine is what is drawn evenly.
   const Distribution2D::Sample s = picture_->brightness.sample(u);
-  const float around = (0.5f - s.point.x) * 2 * pi, down = s.point.y * pi, sine = std::sin(down);
-  const Vec3f d = picture_->frame.to_world({std::cos(around) * sine, std::sin(around) * sine, std::cos(down)});
-  // Per solid angle: the square is 2 pi wide and pi high, and rows are as long as their sine.
-  return {d, radiance(d), sine > 0 ? s.pdf / (2 * pi * pi * sine) : 0};
+  const float in_rows = s.point.y * float(picture_->height);
+  const size_t row = std::min(size_t(in_rows), picture_->height - 1);
+  const float around = (0.5f - s.point.x) * 2 * pi, z = picture_->cosine(row) - (in_rows - float(row)) * picture_->drop(row);
+  const float sine = std::sqrt(std::max(0.f, 1 - z * z));
+  const Vec3f d = normalize(picture_->frame.to_world({std::cos(around) * sine, std::sin(around) * sine, z}));
+  const size_t x = std::min(size_t(s.point.x * float(picture_->width)), picture_->width - 1);
+  return {d, picture_->pixels[row * picture_->width + x], s.pdf * picture_->per_solid_angle(row)};
 }
 
 float Environment::pdf(Vec3f direction) const {
   if (!picture_) return uniform_sphere_pdf();
   const Vec2f at = place(direction);
-  const float sine = std::sin(at.y * pi);
-  return sine > 0 ? picture_->brightness.pdf(at) / (2 * pi * pi * sine) : 0;
+  return picture_->brightness.pdf(at) * picture_->per_solid_angle(std::min(size_t(at.y * float(picture_->height)), picture_->height - 1));
 }
 
 }  // namespace sg::trace
