@@ -121,6 +121,7 @@ int dispatch_command(const Options& o, Context& context) {
     case Command::ops: return run_ops(o, context);
     case Command::colormap: return run_colormap(o, context);
     case Command::samples: return run_samples(o, context);
+    case Command::lookdev: return run_lookdev(o, context);
     case Command::demo: return run_demo(o, context);
     case Command::completions: return run_completions(o, context);
     case Command::complete: return run_complete(o, context);

@@ -20,6 +20,7 @@ int run_open(const Options& o, Context& context);
 int run_ops(const Options& o, Context& context);
 int run_colormap(const Options& o, Context& context);
 int run_samples(const Options& o, Context& context);
+int run_lookdev(const Options& o, Context& context);
 int run_demo(const Options& o, Context& context);
 int run_completions(const Options& o, Context& context);
 int run_complete(const Options& o, Context& context);

@@ -295,6 +295,7 @@ const char* const general_help =
     "  sightglass ops [NAME] [--json]                                list operations and their parameters\n"
     "  sightglass colormap [NAME or FILE[:NAME]]                     list colour maps and analyse their lightness\n"
     "  sightglass samples [--sampler sobol] [--count 256] [-o ...]   show how samples of the path tracer lie\n"
+    "  sightglass lookdev [gold glass ...] [-o SHEET.png]            show the materials of the path tracer\n"
     "  sightglass demo                                               render sample pictures into out/\n"
     "  sightglass completions bash|zsh|fish                          print a shell's completion script\n"
     "  sightglass man                                                print the manual page: sightglass man | man -l -\n\n"
@@ -399,6 +400,12 @@ void declare_samples(CLI::App& a, Options& o, RawText&) {
   a.add_flag("--json", o.json, "Print JSON, for programs");
 }
 
+void declare_lookdev(CLI::App& a, Options& o, RawText&) {
+  a.add_option("material", o.inputs, "Materials to show; default: all");
+  a.add_option("-o,--output", o.output, "Picture to write; default: lookdev.png");
+  a.add_option("--noise", o.noise, "Standard error of the pictures, as a share of full scale")->check(CLI::Range(0.0005, 1.0));
+}
+
 void declare_demo(CLI::App& a, Options& o, RawText&) {
   a.add_option("folder", o.inputs, "Instead, render every file below this folder onto the sheet")->expected(0, 1);
   a.add_option("-o,--out", o.output, "Folder for the pictures; default: out/");
@@ -427,6 +434,7 @@ constexpr Declaration declarations[] = {
     {Command::ops, "List operations, or describe one.", declare_ops},
     {Command::colormap, "List colour maps, or print the lightness analysis of one.", declare_colormap},
     {Command::samples, "Show how the samples of a sampler of the path tracer lie.", declare_samples},
+    {Command::lookdev, "Show the materials of the path tracer: a ball of each on one sheet.", declare_lookdev},
     {Command::demo, "Render sample pictures of what Sightglass can do.", declare_demo},
     {Command::completions, "Print a shell's completion script, e.g. for: source <(sightglass completions bash). Packages install it.",
      declare_completions},

@@ -8,13 +8,30 @@
 
 namespace sg {
 
-enum class Command { none, render, view, serve, info, convert, run, open, ops, colormap, samples, demo, completions, complete, man };
+enum class Command {
+  none,
+  render,
+  view,
+  serve,
+  info,
+  convert,
+  run,
+  open,
+  ops,
+  colormap,
+  samples,
+  lookdev,
+  demo,
+  completions,
+  complete,
+  man
+};
 constexpr auto enum_words(Command) {
   using enum Command;
-  return std::array{Word{"render", render},     Word{"view", view},       Word{"serve", serve}, Word{"info", info},
-                    Word{"convert", convert},   Word{"run", run},         Word{"open", open},   Word{"ops", ops},
-                    Word{"colormap", colormap}, Word{"samples", samples}, Word{"demo", demo},   Word{"completions", completions},
-                    Word{"complete", complete}, Word{"man", man}};
+  return std::array{Word{"render", render},           Word{"view", view},         Word{"serve", serve},     Word{"info", info},
+                    Word{"convert", convert},         Word{"run", run},           Word{"open", open},       Word{"ops", ops},
+                    Word{"colormap", colormap},       Word{"samples", samples},   Word{"lookdev", lookdev}, Word{"demo", demo},
+                    Word{"completions", completions}, Word{"complete", complete}, Word{"man", man}};
 }
 
 struct Options {
@@ -25,6 +42,7 @@ struct Options {
   std::string source;                ///< --source: a source operation instead of a file
   std::string output;
   bool progressive = false;  ///< render: coarse pictures first
+  double noise = 0.012;      ///< lookdev: standard error of its pictures
   double within = 0;         ///< render: seconds, 0 = no limit
   std::string camera, size, title, background, field, map, scale, range, below, above, legend, layout, views;
   std::vector<std::string> notes;    ///< each one --note

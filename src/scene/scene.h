@@ -11,6 +11,7 @@
 #include "filter/glyph/instances.h"
 #include "scene/camera.h"
 #include "scene/items/material.h"
+#include "scene/items/surface_material.h"
 #include "scene/items/surface_texture.h"
 #include "scene/items/volume_item.h"
 
@@ -32,10 +33,11 @@ struct SurfaceItem {
   Vec3f color{0.80f, 0.80f, 0.82f};  ///< sRGB, without color_by
   double opacity = 1;
   Material material;
-  std::string normals;        ///< point field of normals; "" = its field of role normals, else smooth (below feature_angle)
-  bool flat = false;          ///< face normals
-  double feature_angle = 40;  ///< degrees; edges sharper than this are not smoothed when normals are computed
-  bool edges = false;         ///< draw the edges of the polygons
+  std::optional<SurfaceMaterial> made_of;  ///< for integrators; empty = plastic of its colours
+  std::string normals;                     ///< point field of normals; "" = its field of role normals, else smooth (below feature_angle)
+  bool flat = false;                       ///< face normals
+  double feature_angle = 40;               ///< degrees; edges sharper than this are not smoothed when normals are computed
+  bool edges = false;                      ///< draw the edges of the polygons
   /// A SurfaceMesh whose lines are drawn instead (of curved cells: see Skin), or where it has polygons their edges; null = the edges of
   /// the polygons drawn.
   DatasetPtr edge_lines;

@@ -80,6 +80,7 @@ struct PreparedItem {
   TriangleSet triangles;
   NormalSet normals;
   Material material;
+  std::optional<SurfaceMaterial> made_of;
   bool translucent = false;
   std::optional<SurfaceTexture> lic;
   Array lic_vectors;    ///< f32 x 3 packed, per point or cell

@@ -9,10 +9,10 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "render/prepare/shared_progress.h"
 #include "render/trace/integrators/integrator.h"
 #include "render/trace/light/luminance.h"
 #include "render/trace/studio.h"
-#include "render/prepare/shared_progress.h"
 
 namespace sg {
 
@@ -89,10 +89,12 @@ World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Proje
   Geometry geometry = Geometry::make(*prepared, size, context);
   SurfaceMaterial plain;
   plain.specular_roughness = 0.45, plain.specular_weight = 0.6;
-  const auto material = std::make_shared<const trace::Material>(plain);
+  const auto of_data = std::make_shared<const trace::Material>(plain);
+  std::vector<std::shared_ptr<const trace::Material>> materials;
+  for (const raster::PreparedItem& item : prepared->items)
+    materials.push_back(item.made_of ? std::make_shared<const trace::Material>(*item.made_of) : of_data);
   Studio studio = studio_of(scene, projection);
-  return {prepared, std::move(geometry), std::vector(prepared->items.size(), material), std::move(studio.lights),
-          std::move(studio.environment)};
+  return {prepared, std::move(geometry), std::move(materials), std::move(studio.lights), std::move(studio.environment)};
 }
 
 }  // namespace

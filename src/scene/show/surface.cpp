@@ -8,6 +8,7 @@
 #include "filter/mesh/faces/bilinear_quads.h"
 #include "filter/mesh/faces/faces.h"
 #include "filter/mesh/surface.h"
+#include "image/image.h"
 #include "scene/show/field_color.h"
 #include "scene/show/texture_color.h"
 
@@ -22,6 +23,9 @@ void describe(Schema& s, SurfaceShow& p) {
   s("lit", p.lit, "Light the surface; default: yes, but not a flat one that a field colours: its colours are those of the legend.");
   s("feature_angle", p.feature_angle, "Edges with a larger angle stay sharp when normals are computed.").unit("deg").range(0, 180);
   describe(s, p.lic);
+  s("material", p.material,
+    "What the surface is made of, where the picture has an integrator; its own colour takes the place of those of a field that is not "
+    "stated. sightglass lookdev shows all. Default: plastic of the data's colours.");
   s("texture", p.texture, "Point field in [0, 1] that darkens and brightens the colours; default: 'lic' or 'spot noise'; 'none' for none.")
       .takes(fields::point_scalars);
 }
@@ -97,7 +101,7 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceSh
   if (p.style != SurfaceStyle::solid) return add_sparse(scene, input, p, context);
   SurfaceItem item;
   // Ranges come from the whole input, so that a surface and its volume share colours.
-  item.color_by = field_color(*input, p.coloring, context);
+  if (!p.material || !p.coloring.field.empty()) item.color_by = field_color(*input, p.coloring, context);
   if (p.edges) {
     // Of a clipped mesh the pieces of a cell keep its own number, by which the edges between them are left out.
     Skin skin = faces_and_edges(input, {.original_cell = false}, context);
@@ -108,6 +112,11 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceSh
   if (item.color_by && item.color_by->association == Association::point && item.color_by->scale.labels.empty()) {
     const DatasetPtr whole = std::exchange(item.data, bilinear_parts(item.data, item.color_by->field));
     if (item.data != whole && !item.edge_lines) item.edge_lines = whole;
+  }
+  if (p.material) {
+    item.made_of = preset_material(*p.material);
+    const Vec3f own(item.made_of->base_color);
+    item.color = {srgb_encode(own.x), srgb_encode(own.y), srgb_encode(own.z)};
   }
   if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
   item.opacity = p.opacity;

@@ -23,6 +23,7 @@ struct SurfaceShow {
   double feature_angle = 40;
   LicShow lic;
   FieldName texture;
+  std::optional<MaterialPreset> material;
 };
 void describe(Schema& s, SurfaceShow& p);
 

@@ -6,7 +6,7 @@
 
 #include "render/trace/material/albedo.h"
 #include "render/trace/material/ggx.h"
-#include "render/trace/material/surface_material.h"
+#include "scene/items/surface_material.h"
 
 namespace sg::trace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/trace/material/surface_material.h"
+#include "scene/items/surface_material.h"
 
 #include "render/trace/material/fresnel.h"
 #include "render/trace/material/material.h"

@@ -11,7 +11,7 @@
 #include "base/schema/schema.h"
 #include "base/vec.h"
 
-namespace sg::trace {
+namespace sg {
 
 /// Metals of measured indices of refraction (Johnson, Christy 1972, 1974; McPeak et al. 2015 for aluminium).
 enum class Metal { gold, silver, copper, aluminium, iron, titanium, chromium, nickel };
@@ -105,4 +105,4 @@ constexpr auto enum_words(MaterialPreset) {
 }
 SurfaceMaterial preset_material(MaterialPreset preset);
 
-}  // namespace sg::trace
+}  // namespace sg

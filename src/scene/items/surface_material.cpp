@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/trace/material/surface_material.h"
+#include "scene/items/surface_material.h"
 
 #include <cmath>
 
-namespace sg::trace {
+namespace sg {
 
 ConductorIndex index_of(Metal metal) {
   switch (metal) {
@@ -111,4 +111,4 @@ SurfaceMaterial preset_material(MaterialPreset preset) {
   return m;
 }
 
-}  // namespace sg::trace
+}  // namespace sg
