@@ -39,8 +39,9 @@ DatasetPtr frame_of_smoke(const SmokeParams& p, const DatasetPtr& given, bool gi
     }
     return std::make_unique<SmokeRun<T>>(p, given, std::move(triangles), gives_off, context);
   };
-  const std::string of = given ? fmt::format("{} {}", static_cast<const void*>(given.get()), gives_off) : "";
-  return frame_of_run<SmokeRun<T>>(given ? "smoke_round" : "smoke", p, begin, context, of);
+  GivenData data;
+  if (given) data.add(given, {}, gives_off ? "source " : "obstacle ");
+  return frame_of_run<SmokeRun<T>>(given ? "smoke_round" : "smoke", p, begin, context, data);
 }
 
 DatasetPtr frame_of_any(const SmokeParams& p, const DatasetPtr& given, bool gives_off, Context& context) {

@@ -5,9 +5,11 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 #include <utility>
+#include <vector>
 
 #include "base/error.h"
 
@@ -52,6 +54,27 @@ class MechanicsRun {
       throw;
     }
     note();
+  }
+
+  /// What the next frame depends on, and what is shown of those before it; see simulate/run/frames.h.
+  template <class F>
+  void each_part(F&& f) {
+    f(state_.q), f(state_.p), f(speed_), f(motion_.guess());
+    std::array<double, 1> most{most_};
+    f(most), most_ = most[0];
+    for (Numbers* l : {&moment_, &kinetic_, &potential_, &total_, &drift_}) {
+      Growing<Numbers> growing{*l};
+      f(growing);
+    }
+    std::vector<Mark> marks(trail_.begin(), trail_.end());
+    Growing<std::vector<Mark>> trail{marks};
+    f(trail), trail_.assign(marks.begin(), marks.end());
+  }
+  bool consistent() const {
+    const size_t frames = moment_.size();
+    for (const Numbers* l : {&kinetic_, &potential_, &total_, &drift_})
+      if (l->size() != frames) return false;
+    return frames > 0;
   }
 
   DatasetPtr dataset(const Context&) const;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The source and the filter.
-#include <fmt/core.h>
-
 #include <memory>
-#include <utility>
+#include <vector>
 
+#include "filter/flow/flow_field.h"
 #include "simulate/particles/particle_run.h"
 #include "simulate/run/frames.h"
 
@@ -27,17 +26,18 @@ DatasetPtr particle_system_in(const std::vector<Data>& inputs, const ParticlesIn
   using Run = swarm::ParticleRun;
   swarm::check(p, "particle_system_in");
   std::vector<DatasetPtr> data;
-  std::string of;
+  GivenData given;
   for (const Data& d : inputs) {
     data.push_back(single_dataset(d, "particle_system_in"));
-    of += fmt::format("{} ", static_cast<const void*>(data.back().get()));  // the run holds them: no other gets that address
+    if (data.size() > 1 || p.use == FieldUse::none) given.add(data.back());
+    else given.add(data.back(), {&flow_field_of(*data[0], p.field.name, "particle_system_in")});
   }
   return frame_of_run<Run>(
       "particle_system_in", p,
       [&] {
         return std::make_unique<Run>(p, "particle_system_in", data[0], std::vector<DatasetPtr>(data.begin() + 1, data.end()), context);
       },
-      context, of);
+      context, given);
 }
 
 }  // namespace sg

@@ -4,7 +4,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <utility>
 
@@ -111,6 +113,13 @@ class SpringMeshRun {
     ++frame_;
   }
 
+  template <class F>
+  void each_part(F&& f) {
+    std::array<uint64_t, 1> count{frame_};
+    f(count), f(x_), f(v_);
+    frame_ = count[0];
+  }
+
   DatasetPtr dataset(const Context&) const {
     DatasetParts parts = data_->parts();
     std::vector<double> xyz, velocity;
@@ -168,14 +177,11 @@ DatasetPtr spring_mesh(const std::vector<Data>& inputs, const SpringMeshParams& 
   using Run = swarm::SpringMeshRun;
   swarm::check(p, "spring_mesh");
   std::vector<DatasetPtr> data;
-  std::string of;
-  for (const Data& d : inputs) {
-    data.push_back(single_dataset(d, "spring_mesh"));
-    of += fmt::format("{} ", static_cast<const void*>(data.back().get()));  // the run holds them: no other gets that address
-  }
+  GivenData given;
+  for (const Data& d : inputs) data.push_back(single_dataset(d, "spring_mesh")), given.add(data.back());
   return frame_of_run<Run>(
       "spring_mesh", p, [&] { return std::make_unique<Run>(p, data[0], std::vector<DatasetPtr>(data.begin() + 1, data.end()), context); },
-      context, of);
+      context, given);
 }
 
 }  // namespace sg

@@ -220,16 +220,34 @@ struct MeshHeatRun : pde::MeshHeat {
   DatasetPtr given;
 };
 
+// The mesh, and its fields that the expressions name, or that is warm.
+GivenData given_to(const DatasetPtr& in, const HeatOnMeshParams& p) {
+  std::vector<const Field*> fields;
+  const auto add = [&](const Field& f) {
+    if (std::find(fields.begin(), fields.end(), &f) == fields.end()) fields.push_back(&f);
+  };
+  for (const std::string* e : {&p.initial, &p.held, &p.value, &p.source, &p.diffusivity})
+    for (const std::string& name : names_in_expression(*e))
+      for (const Field& f : in->fields())
+        if (f.name == name) add(f);
+  if (p.initial.empty())
+    if (const Field* f = p.field.empty() ? in->fields().active(1) : in->fields().find(p.field.name)) add(*f);
+  GivenData given;
+  given.add(in, std::move(fields));
+  return given;
+}
+
 }  // namespace
 
 DatasetPtr heat_on_mesh(const DatasetPtr& in, const HeatOnMeshParams& p, Context& context) {
   const auto make = [&] { return std::make_unique<MeshHeatRun>(in, p, context); };
   if (p.steady) {
+    if (!p.store.empty()) fail_usage("a steady state has no run that could be stored", "heat_on_mesh store", "leave it out");
     const auto run = make();
     run->settle(context);
     return run->dataset(context);
   }
-  return frame_of_run<MeshHeatRun>("heat_on_mesh", p, make, context, fmt::format("{}", static_cast<const void*>(in.get())));
+  return frame_of_run<MeshHeatRun>("heat_on_mesh", p, make, context, given_to(in, p));
 }
 
 }  // namespace sg
