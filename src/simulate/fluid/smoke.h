@@ -3,6 +3,7 @@
 #pragma once
 #include "data/dataset.h"
 #include "simulate/fluid/pressure/project.h"
+#include "simulate/fluid/sources/emission.h"
 #include "simulate/fluid/walls/solids.h"
 #include "simulate/run/frames.h"
 
@@ -15,8 +16,7 @@ namespace fluid {
 template <class T>
 class Smoke {
  public:
-  /// `surface`: a solid, or with `gives_off` a source, beside those of the parameters.
-  Smoke(const SmokeParams& p, TriangleSoup surface, bool gives_off, const Context& context);
+  Smoke(const SmokeParams& p, SmokeInput given, const Context& context);
   /// On to the next frame. Throws Error(data), naming the frame, where the flow grows beyond all numbers.
   void advance(const Context& context);
   size_t frame() const { return frame_; }
@@ -46,8 +46,6 @@ class Smoke {
   void carry_scalars(double dt, const Context& context);
   void carry_velocity(double dt, Faces<T>& v, const Context& context);
   void push(double dt, const Context& context);
-  template <class Share>
-  void give_off_within(const Box3& box, double dt, Share&& share);
   void give_off(double dt);
   double fastest(const Context& context) const;
 
@@ -55,9 +53,7 @@ class Smoke {
   MacGrid grid_;
   Vec3 up_;
   Sides sides_;
-  std::vector<Ball> balls_;
-  std::vector<Box3> boxes_;
-  Lattice<T> source_shares_;  // of a surface; its cells
+  Emission<T> emission_;
   Solids solids_;
   Projection<T> projection_;
   Faces<T> velocity_, reflected_;
@@ -80,5 +76,8 @@ RunCost cost_of_smoke(const SmokeParams& p);
 /// The same about a closed surface, or from inside of one; triangles of any mesh. Without bounds the box is twice as wide as the surface,
 /// and three times as high.
 DatasetPtr smoke_round(const DatasetPtr& surface, const SmokeRoundParams& p, Context& context);
+
+/// The same from a field's values, inside of any mesh (simulate/fluid/sources/field_source.h). Box as above; flat for flat data.
+DatasetPtr smoke_from(const DatasetPtr& data, const SmokeFromParams& p, Context& context);
 
 }  // namespace sg

@@ -122,7 +122,20 @@ TEST_CASE("runs in given data: air round a surface and smoke from it") {
   tells_data_apart("smoke_round", p, other, {ball}, {laid_out_otherwise(ball)}, {{test::ball(1)}}, run);
   p.role = other.role = SurfaceRole::source;
   p.source.clear();
-  tells_data_apart("smoke_from", p, other, {ball}, {laid_out_otherwise(ball)}, {{test::ball(1)}}, run);
+  tells_data_apart("smoke_round_source", p, other, {ball}, {laid_out_otherwise(ball)}, {{test::ball(1)}}, run);
+}
+
+TEST_CASE("runs in given data: smoke from the values of fields") {
+  Context context;
+  SmokeFromParams p, other;
+  p.size = 12, p.frame = 0.05, p.lift = 3, p.field = {"soot"}, p.temperature_field = {"heat"}, other = p, other.size = 4;
+  const DatasetPtr mesh = test::every_mesh()[0].make(4, 1);
+  const DatasetPtr d = with_scalar(with_scalar(mesh, "soot", 1), "heat", 1);
+  const auto run = [&](const std::vector<Data>& in, const SmokeFromParams& q) {
+    return smoke_from(single_dataset(in[0], "test"), q, context);
+  };
+  tells_data_apart("smoke_from_field", p, other, {d}, {laid_out_otherwise(d)}, {{with_scalar(d, "heat", 2)}, {with_scalar(d, "soot", 2)}},
+                   run);
 }
 
 TEST_CASE("runs in given data: particles in a wind that bounce off surfaces") {
