@@ -46,6 +46,10 @@ Smoke<T>::Smoke(const SmokeParams& p, SmokeInput given, const Context& context)
   const size_t most = std::max({velocity_[0].values.size(), velocity_[1].values.size(), velocity_[2].values.size()});
   for (Lattice<T>* l : {&velocity_[0], &velocity_[1], &velocity_[2], &density_, &temperature_}) l->values.reserve(most);
   for (Lattice<T>& l : spare_) l.values.reserve(most);
+  if (given.dust) {
+    if (p.reflect) fail_usage("dust is not dragged in mirrored steps", "dusty_smoke reflect", "leave it out");
+    dust_.emplace(*given.dust, grid_, up_, emission_.balls(), emission_.boxes(), context);
+  }
   give_off(0);
 }
 
@@ -61,9 +65,11 @@ double Smoke<T>::fastest(const Context& context) const {
   for (const Lattice<T>& l : velocity_) {
     const double v = largest(l, context);
     most = v <= most ? most : v;  // NaN stays
-    if (std::isnan(v)) break;
+    if (std::isnan(v)) return v;
   }
-  return most;
+  if (!dust_) return most;
+  const double v = dust_->fastest();
+  return v <= most ? most : v;
 }
 
 template <class T>
@@ -97,8 +103,10 @@ template <class T>
 void Smoke<T>::push(double dt, const Context& context) {
   add_buoyancy(grid_, projection_.walls().sides, density_, temperature_, up_, params_.weight, params_.lift, dt, velocity_, context);
   confine_vortices<T>(grid_, params_.swirl, dt, velocity_, spare_, context);
+  if (dust_) dust_->drag(time_ - dt, dt, velocity_, projection_.walls(), context);
   diffuse_velocity<T>(grid_, projection_.walls(), sides_, params_.viscosity, dt, velocity_, spare_, context);
   solved_ = projection_.apply(velocity_, pressure_, params_.tolerance, spare_, context);
+  if (dust_) dust_->move(time_ - dt, dt, velocity_, projection_.walls(), solids_, context);
 }
 
 template <class T>
@@ -130,7 +138,8 @@ void Smoke<T>::step(double dt, const Context& context) {
 
 template <class T>
 void Smoke<T>::advance(const Context& context) {
-  const double push = std::abs(params_.lift * params_.temperature) + std::abs(params_.weight * params_.density);
+  const double push =
+      std::abs(params_.lift * params_.temperature) + std::abs(params_.weight * params_.density) + (dust_ ? length(dust_->law().pull) : 0);
   double left = params_.frame;
   for (int taken = 0; left > 1e-9 * params_.frame; ++taken) {
     const double speed = fastest(context);
@@ -160,11 +169,12 @@ size_t Smoke<T>::bytes() const {
   };
   add(velocity_), add(reflected_), add(spare_), add(projection_.walls().open), add(projection_.walls().solid);
   add(std::array{std::cref(density_), std::cref(temperature_), std::cref(pressure_)});
-  return numbers * sizeof(T) + emission_.bytes();
+  return numbers * sizeof(T) + emission_.bytes() + (dust_ ? dust_->bytes() : 0);
 }
 
 template <class T>
 DatasetPtr Smoke<T>::dataset(const Context& context) const {
+  if (dust_ && dust_->shown()) return dust_->cloud(double(frame_) * params_.frame);
   const auto& n = grid_.cells;
   const size_t count = n[0] * n[1] * n[2];
   UniformGrid mesh;
@@ -198,6 +208,7 @@ DatasetPtr Smoke<T>::dataset(const Context& context) const {
       &context);
   parts.fields.add({"velocity", Association::point, std::move(velocity), "", Role::vectors});
   add("pressure", pressure_);
+  if (dust_) add("dust", dust_->density(context));
   if (const Walls<T>& w = projection_.walls(); w.obstacles()) {  // share of the cells about each that is solid, by their faces
     Lattice<T> solid(n);
     for (size_t k = 0; k < n[2]; ++k)

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Smoke that rises, curls round obstacles and leaves the box: incompressible air that carries density and temperature.
 #pragma once
+#include <array>
+#include <optional>
+
+#include "base/context.h"
 #include "data/dataset.h"
+#include "simulate/fluid/dust/dust.h"
 #include "simulate/fluid/pressure/project.h"
 #include "simulate/fluid/sources/emission.h"
 #include "simulate/fluid/walls/solids.h"
@@ -37,8 +42,10 @@ class Smoke {
     f(counts);
     frame_ = counts[0], steps_ = counts[1], time_ = double(frame_) * params_.frame;
     for (Lattice<T>* l : {&velocity_[0], &velocity_[1], &velocity_[2], &density_, &temperature_, &pressure_}) f(l->values);
+    if (dust_) dust_->each_part(f);
   }
-  /// The cells' middles as the points of a uniform grid with density, temperature, velocity and pressure.
+  const std::optional<Dust<T>>& dust() const { return dust_; }
+  /// The cells' middles as the points of a uniform grid with density, temperature, velocity and pressure, and that of `dust`; or the dust.
   DatasetPtr dataset(const Context& context) const;
 
  private:
@@ -55,6 +62,7 @@ class Smoke {
   Sides sides_;
   Emission<T> emission_;
   Solids solids_;
+  std::optional<Dust<T>> dust_;
   Projection<T> projection_;
   Faces<T> velocity_, reflected_;
   Lattice<T> density_, temperature_, pressure_;
@@ -69,6 +77,10 @@ class Smoke {
 /// Point fields density, temperature (f32 or f64), velocity (three components) and pressure of the air at the last frame before
 /// `time`. A call that goes on from the time before (a film) computes only the frames between; the result is the same in any order.
 DatasetPtr smoke(const SmokeParams& p, Context& context);
+
+/// The same with dust, which the air drags along and which drags the air (simulate/fluid/dust/). The result has also the dust's mass per
+/// volume, `dust`, where the air's is 1; or is the dust itself: points with velocity and id.
+DatasetPtr dusty_smoke(const DustySmokeParams& p, Context& context);
 
 /// One step a frame is reckoned with.
 RunCost cost_of_smoke(const SmokeParams& p);

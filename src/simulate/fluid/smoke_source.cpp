@@ -30,7 +30,8 @@ struct SmokeRun : fluid::Smoke<T> {
 };
 
 // `input` makes what is given to the air of `data`, if any.
-DatasetPtr frame_of_any(const std::string& who, const SmokeParams& p, const DatasetPtr& data, const GivenData& given,
+template <class Params>
+DatasetPtr frame_of_any(const std::string& who, const Params& p, const DatasetPtr& data, const GivenData& given,
                         const std::function<fluid::SmokeInput()>& input, Context& context) {
   if (p.advection == fluid::Advection::explicit_euler) context.warn("smoke: explicit advection is unstable and will blow up");
   const auto frame = [&]<class T>(T) {
@@ -94,6 +95,15 @@ RunCost cost_of_smoke(const SmokeParams& p) {
   return {uint64_t(cells) * fields * number, cells * double(frame_at(p, "smoke")) * work * seconds_a_cell};
 }
 
+DatasetPtr dusty_smoke(const DustySmokeParams& p, Context& context) {
+  const auto input = [&] {
+    fluid::SmokeInput given;
+    given.dust = static_cast<const DustParams&>(p);
+    return given;
+  };
+  return frame_of_any("dusty_smoke", p, nullptr, {}, input, context);
+}
+
 DatasetPtr smoke_round(const DatasetPtr& surface, const SmokeRoundParams& p, Context& context) {
   SmokeParams with_box = p;
   if (p.bounds.empty()) {
@@ -102,7 +112,7 @@ DatasetPtr smoke_round(const DatasetPtr& surface, const SmokeRoundParams& p, Con
   }
   GivenData given;
   given.add(surface, {}, p.role == SurfaceRole::source ? "source " : "obstacle ");
-  const auto input = [&] { return fluid::SmokeInput{triangles_in(surface, context), p.role, {}, {}}; };
+  const auto input = [&] { return fluid::SmokeInput{triangles_in(surface, context), p.role, {}, {}, {}}; };
   return frame_of_any("smoke_round", with_box, surface, given, input, context);
 }
 

@@ -113,6 +113,18 @@ TEST_CASE("smoke: without forces, air at rest stays at rest; evenly heavy air do
   CHECK(largest_of(column.velocity()) < 1e-12);
 }
 
+TEST_CASE("smoke: hot air beside a source that holds its temperature stays hot") {
+  Context context;
+  SmokeParams p = still();
+  p.temperature = 3, p.lift = p.weight = 0, p.source = {0.5, 0.5, 0, 0.2}, p.box = {0.1, 0.2, 0.1, 0.2, 0, 0};
+  Smoke<double> s(p, {}, context);
+  for (double& v : s.temperature().values) v = std::max(v, 1.0);
+  s.advance(context);
+  double least = HUGE_VAL;
+  for (const double v : s.temperature().values) least = std::min(least, v);
+  CHECK(least == doctest::Approx(1));
+}
+
 TEST_CASE("smoke: Taylor-Green vortices decay as viscosity says, the better the finer the grid") {
   // u = (sin(pi x) cos(pi y), -cos(pi x) sin(pi y)): between walls along which it slips its energy is 1/4 exp(-4 nu pi^2 t).
   Context context;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where smoke comes from: balls, boxes, the inside of a closed surface, the values of a field.
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "base/context.h"
+#include "simulate/fluid/dust/dust_params.h"
 #include "simulate/fluid/mac_grid.h"
 #include "simulate/fluid/smoke_params.h"
 #include "simulate/fluid/walls/cover.h"
@@ -16,6 +18,7 @@ struct SmokeInput {
   SurfaceRole role = SurfaceRole::obstacle;
   /// Factors of density and temperature in each cell, NaN or both 0 where there is no source; empty without such a source.
   std::vector<double> density, temperature;
+  std::optional<DustParams> dust;
 };
 
 template <class T>
@@ -25,6 +28,8 @@ class Emission {
   Emission(const SmokeParams& p, const MacGrid& g, Vec3 up, const SmokeInput& given, const Context& context);
   /// What comes within dt: a density and temperature of so much per time, or held at the sources', and the velocity of the jet.
   void give_off(double dt, Lattice<T>& density, Lattice<T>& temperature, Faces<T>& velocity) const;
+  const std::vector<Ball>& balls() const { return balls_; }
+  const std::vector<Box3>& boxes() const { return boxes_; }
   size_t bytes() const { return (shares_.values.capacity() + density_.values.capacity() + temperature_.values.capacity()) * sizeof(T); }
 
  private:

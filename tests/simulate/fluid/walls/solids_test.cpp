@@ -160,7 +160,7 @@ TEST_CASE("smoke: a body of triangles flows round like the ball that it is") {
   p.sides = "z0 inflow 0,0,1; z1 open";
   SmokeParams with_ball = p;
   with_ball.obstacle = {0.5, 0.5, 0.5, 0.2};
-  Smoke<double> a(p, {sphere_surface({0.5, 0.5, 0.5}, 0.2, 60), SurfaceRole::obstacle, {}, {}}, context), b(with_ball, {}, context);
+  Smoke<double> a(p, {sphere_surface({0.5, 0.5, 0.5}, 0.2, 60), SurfaceRole::obstacle, {}, {}, {}}, context), b(with_ball, {}, context);
   a.advance(context), b.advance(context);
   double miss = 0;
   for (size_t i = 0; i < a.velocity()[2].values.size(); ++i) miss += std::abs(a.velocity()[2].values[i] - b.velocity()[2].values[i]);
