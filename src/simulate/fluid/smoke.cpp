@@ -208,7 +208,12 @@ DatasetPtr Smoke<T>::dataset(const Context& context) const {
       &context);
   parts.fields.add({"velocity", Association::point, std::move(velocity), "", Role::vectors});
   add("pressure", pressure_);
-  if (dust_) add("dust", dust_->density(context));
+  if (dust_) {
+    const Lattice<T> dust = dust_->density(context);
+    Field f{"dust", Association::point, Array::from_vector(std::vector<T>(dust.values.begin(), dust.values.end())), "", Role::scalars};
+    f.look.result = true;
+    parts.fields.add(std::move(f));
+  }
   if (const Walls<T>& w = projection_.walls(); w.obstacles()) {  // share of the cells about each that is solid, by their faces
     Lattice<T> solid(n);
     for (size_t k = 0; k < n[2]; ++k)

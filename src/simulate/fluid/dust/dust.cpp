@@ -58,6 +58,15 @@ double volume_of(const std::vector<Ball>& balls, const std::vector<Box3>& boxes,
   return sum;
 }
 
+std::vector<Ball> balls_for(const DustParams& p, const MacGrid& g, Vec3 up, const std::vector<Ball>& sources, bool boxes) {
+  if (!p.dust_box.empty()) return {};
+  if (!sources.empty() || boxes) return sources;
+  const Vec3 size = g.h * Vec3(double(g.cells[0]), double(g.cells[1]), g.flat() ? 0 : double(g.cells[2]));
+  Vec3 middle = g.origin + 0.5 * size;
+  for (int a = 0; a < 3; ++a) middle[a] += 0.25 * up[a] * size[a];
+  return {{middle, 0.2 * std::min({size.x, size.y, g.flat() ? size.x : size.z})}};
+}
+
 }  // namespace
 
 template <class T>
@@ -65,7 +74,7 @@ Dust<T>::Dust(const DustParams& p, const MacGrid& g, Vec3 up, const std::vector<
               const Context& context)
     : params_(p),
       grid_(g),
-      balls_(p.dust_box.empty() ? balls : std::vector<Ball>()),
+      balls_(balls_for(p, g, up, balls, !boxes.empty())),
       boxes_(p.dust_box.empty() ? boxes : boxes_of(p.dust_box, g, "dust_box")),
       law_(law_of(p, g, up, volume_of(balls_, boxes_, g.flat()))),
       exchange_(g, law_),

@@ -17,8 +17,8 @@ namespace sg::fluid {
 template <class T>
 class Dust {
  public:
-  /// It appears in the boxes of the parameters, or else in these of the air's sources. Throws Error(usage) where there are none, and for
-  /// masses and drags that are not positive.
+  /// It appears in the boxes of the parameters, or else in these of the air's sources, or else in a ball high up. Throws Error(usage) where
+  /// there is none, and for masses and drags that are not positive.
   Dust(const DustParams& p, const MacGrid& g, Vec3 up, const std::vector<Ball>& balls, const std::vector<Box3>& boxes,
        const Context& context);
 

@@ -6,7 +6,9 @@ namespace sg {
 void describe(Schema& s, DustParams& p) {
   s("dust", p.dust, "Particles of dust at the beginning, at rest and evenly at random where they appear.").range(0, 100000000);
   s("dust_rate", p.dust_rate, "Particles that appear per time.").at_least(0);
-  s("dust_box", p.dust_box, "Boxes in which dust appears, as x0,x1,y0,y1,z0,z1 of each; default: the sources of the smoke.");
+  s("dust_box", p.dust_box,
+    "Boxes in which dust appears, as x0,x1,y0,y1,z0,z1 of each; default: the sources of the smoke, or a ball high up where there are none "
+    "and no smoke.");
   s("dust_mass", p.dust_mass,
     "Mass of each particle; a volume of 1 of air (of flat air an area) has mass 1. Default: the dust weighs twice as much as the air where "
     "it appears.")

@@ -20,7 +20,7 @@ Emission<T>::Emission(const SmokeParams& p, const MacGrid& g, Vec3 up, const Smo
       if (given.density[i] == 0 && given.temperature[i] == 0) continue;  // or hot air could not pass there
       shares_.values[i] = 1, density_.values[i] = T(given.density[i]), temperature_.values[i] = T(given.temperature[i]);
     }
-  } else if (numbers.empty() && p.box.empty()) {
+  } else if (numbers.empty() && p.box.empty() && !given.dust) {
     const Vec3 size = g.h * Vec3(double(g.cells[0]), double(g.cells[1]), g.flat() ? 0 : double(g.cells[2]));
     const double radius = 0.12 * std::min({size.x, size.y, g.flat() ? size.x : size.z});
     Vec3 middle = g.origin + 0.5 * size;

@@ -24,7 +24,7 @@ struct SmokeInput {
 template <class T>
 class Emission {
  public:
-  /// Without any source, a ball above the ground, which lies away from `up`.
+  /// Without any source, a ball above the ground, which lies away from `up`; in air with dust none.
   Emission(const SmokeParams& p, const MacGrid& g, Vec3 up, const SmokeInput& given, const Context& context);
   /// What comes within dt: a density and temperature of so much per time, or held at the sources', and the velocity of the jet.
   void give_off(double dt, Lattice<T>& density, Lattice<T>& temperature, Faces<T>& velocity) const;
