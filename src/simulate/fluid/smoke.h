@@ -84,6 +84,9 @@ DatasetPtr dusty_smoke(const DustySmokeParams& p, Context& context);
 
 /// One step a frame is reckoned with.
 RunCost cost_of_smoke(const SmokeParams& p);
+RunCost cost_of_dusty_smoke(const DustySmokeParams& p);
+RunCost cost_of_smoke_round(const SmokeRoundParams& p);
+RunCost cost_of_smoke_from(const SmokeFromParams& p);
 
 /// The same about a closed surface, or from inside of one; triangles of any mesh. Without bounds the box is twice as wide as the surface,
 /// and three times as high.

@@ -92,8 +92,29 @@ RunCost cost_of_smoke(const SmokeParams& p) {
   const double cells = fluid::smoke_grid(p, Context()).count();
   const size_t number = p.type == FieldType::f64 ? 8 : 4, fields = p.obstacle.empty() ? 6 : 7;
   const double work = (number == 8 ? 2 : 1) * (p.reflect ? 2 : 1);
-  return {uint64_t(cells) * fields * number, cells * double(frame_at(p, "smoke")) * work * seconds_a_cell};
+  return cost_of_run(p, "smoke", uint64_t(cells) * fields * number, cells * work * seconds_a_cell, 0);
 }
+
+RunCost cost_of_dusty_smoke(const DustySmokeParams& p) {
+  constexpr double seconds_a_particle = 4e-6;  // with some ten iterations
+  const RunCost air = cost_of_smoke(p);
+  const double particles = p.dust + p.dust_rate * p.time;
+  const uint64_t bytes = p.show == DustShow::particles ? uint64_t(particles) * 56 : air.bytes * 7 / 6;
+  return {bytes, air.seconds + particles * double(*air.frames) * seconds_a_particle, air.frames};
+}
+
+namespace {
+
+// About data whose size nobody knows yet: in a box as it is made about them.
+SmokeParams about_data(SmokeParams p) {
+  if (p.bounds.empty()) p.bounds = {0, 2, 0, 2, 0, 3};
+  return p;
+}
+
+}  // namespace
+
+RunCost cost_of_smoke_round(const SmokeRoundParams& p) { return cost_of_smoke(about_data(p)); }
+RunCost cost_of_smoke_from(const SmokeFromParams& p) { return cost_of_smoke(about_data(p)); }
 
 DatasetPtr dusty_smoke(const DustySmokeParams& p, Context& context) {
   const auto input = [&] {

@@ -157,6 +157,14 @@ DatasetPtr MechanicsRun::dataset(const Context&) const {
 }  // namespace
 }  // namespace mechanics
 
+RunCost cost_of_mechanics(const MechanicsParams& p) {
+  const auto system = mechanics::system_of(p);
+  const double n = system->size(), steps = equal_steps(p.frame, p.step), marks = std::min(p.trail, 1000000) * std::min(steps, 9.0);
+  const bool by_words = p.system == MechanicalSystem::expression;
+  const double bodies = n / 2 + (p.system == MechanicalSystem::spring_net ? 0 : marks);
+  return cost_of_run(p, "mechanics", uint64_t(bodies * 56), (by_words ? 2e-5 : 7e-6) + 4.5e-7 * n * n, steps);
+}
+
 DatasetPtr mechanics_source(const MechanicsParams& p, Context& context) {
   using Run = mechanics::MechanicsRun;
   return frame_of_run<Run>(

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulate/run/frames.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 
@@ -21,6 +22,13 @@ size_t frame_at(const FrameParams& p, const std::string& who) {
   const double frames = std::floor(p.time / p.frame * (1 + 1e-12) + 1e-9);
   if (!(frames <= 1e6)) fail_usage("that is more than a million frames away", who + " time", "ask for an earlier time or longer frames");
   return size_t(frames);
+}
+
+double equal_steps(double frame, double longest) { return std::max(1.0, std::ceil(frame / longest * (1 - 1e-12))); }
+
+RunCost cost_of_run(const FrameParams& p, const std::string& who, uint64_t bytes, double seconds_a_step, double steps_a_frame) {
+  const double frames = double(frame_at(p, who)), steps = frames * std::max(1.0, steps_a_frame);
+  return {bytes, steps * seconds_a_step, uint64_t(frames), steps_a_frame > 0 ? uint64_t(std::min(steps, 1e18)) : 0};
 }
 
 namespace {

@@ -3,8 +3,10 @@
 // alone, so that it does not matter who asked for which time before.
 #pragma once
 #include <concepts>
+#include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -33,7 +35,13 @@ size_t frame_at(const FrameParams& p, const std::string& who);
 struct RunCost {
   uint64_t bytes = 0;  ///< of the result
   double seconds = 0;
+  std::optional<uint64_t> frames = {};  ///< none where there are no frames
+  uint64_t steps = 0;                   ///< of all frames together, about; 0: that is not known
 };
+/// Of a run whose frames take about so many steps each (0: not known).
+RunCost cost_of_run(const FrameParams& p, const std::string& who, uint64_t bytes, double seconds_a_step, double steps_a_frame);
+/// How many equal steps of this length at most a frame takes.
+double equal_steps(double frame, double longest);
 
 /// Whether a run that takes so much is kept for the next call: at most a quarter of the memory allowed.
 bool may_keep(size_t bytes, const Context& context);

@@ -12,9 +12,7 @@
 #include "base/parallel.h"
 #include "base/text/text.h"
 #include "base/union_find.h"
-#include "data/cells/cell_topology.h"
 #include "filter/field/calc/calc.h"
-#include "filter/mesh/tessellate_cells.h"
 #include "simulate/pde/expressions.h"
 #include "simulate/pde/march.h"
 #include "simulate/pde/mesh/mesh_numbers.h"
@@ -55,15 +53,6 @@ bool says_border(const HeatOnMeshParams& p) {
     if (std::find(names.begin(), names.end(), "border") != names.end()) return true;
   }
   return false;
-}
-
-DatasetPtr without_curved_solids(const DatasetPtr& in, Context& context) {
-  const auto* m = in->as<UnstructuredMesh>();
-  if (!m) return in;
-  for (size_t c = 0; c < m->cells.size(); ++c)
-    if (is_high_order(m->type(c)) && cell_type_info(m->type(c)).dimension == 3)
-      return tessellate(in, {.tolerance = 1e-3, .max_level = 1}, context);
-  return in;
 }
 
 }  // namespace
@@ -210,44 +199,5 @@ DatasetPtr MeshHeat::dataset(const Context&) const {
 }
 
 }  // namespace pde
-
-namespace {
-
-// Keeps the mesh that was given, so that no other one can lie at its place while the run is kept.
-struct MeshHeatRun : pde::MeshHeat {
-  MeshHeatRun(DatasetPtr in, const HeatOnMeshParams& p, Context& context)
-      : pde::MeshHeat(pde::without_curved_solids(in, context), p, context), given(std::move(in)) {}
-  DatasetPtr given;
-};
-
-// The mesh, and its fields that the expressions name, or that is warm.
-GivenData given_to(const DatasetPtr& in, const HeatOnMeshParams& p) {
-  std::vector<const Field*> fields;
-  const auto add = [&](const Field& f) {
-    if (std::find(fields.begin(), fields.end(), &f) == fields.end()) fields.push_back(&f);
-  };
-  for (const std::string* e : {&p.initial, &p.held, &p.value, &p.source, &p.diffusivity})
-    for (const std::string& name : names_in_expression(*e))
-      for (const Field& f : in->fields())
-        if (f.name == name) add(f);
-  if (p.initial.empty())
-    if (const Field* f = p.field.empty() ? in->fields().active(1) : in->fields().find(p.field.name)) add(*f);
-  GivenData given;
-  given.add(in, std::move(fields));
-  return given;
-}
-
-}  // namespace
-
-DatasetPtr heat_on_mesh(const DatasetPtr& in, const HeatOnMeshParams& p, Context& context) {
-  const auto make = [&] { return std::make_unique<MeshHeatRun>(in, p, context); };
-  if (p.steady) {
-    if (!p.store.empty()) fail_usage("a steady state has no run that could be stored", "heat_on_mesh store", "leave it out");
-    const auto run = make();
-    run->settle(context);
-    return run->dataset(context);
-  }
-  return frame_of_run<MeshHeatRun>("heat_on_mesh", p, make, context, given_to(in, p));
-}
 
 }  // namespace sg

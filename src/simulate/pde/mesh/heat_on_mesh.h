@@ -85,5 +85,7 @@ class MeshHeat {
 /// made linear first (tessellate). Throws Error(usage) for meshes without cells and mistakes in expressions, Error(data) for values that
 /// are not finite, negative diffusivities, and steady heat that flows in and cannot flow out.
 DatasetPtr heat_on_mesh(const DatasetPtr& in, const HeatOnMeshParams& p, Context& context);
+/// Of a mesh that takes so many bytes, reckoned as one of triangles.
+RunCost cost_of_heat_on_mesh(const HeatOnMeshParams& p, uint64_t bytes);
 
 }  // namespace sg
