@@ -78,9 +78,7 @@ bool reads_parts(const Node& node) {
 std::string does_text(const PlannedStep& s) {
   if (!s.frames) return s.does;
   std::string text = fmt::format("{}, {} frame{}", s.does, *s.frames, *s.frames == 1 ? "" : "s");
-  if (s.steps > 0)
-    text += fmt::format(" in {}{} steps", s.steps < 1000 ? "" : "about ",
-                        s.steps < 1000 ? std::to_string(s.steps) : short_number(double(s.steps), 3));
+  if (s.steps > 0) text += fmt::format(" in ~{} steps", s.steps);
   return text;
 }
 

@@ -140,7 +140,8 @@ DatasetPtr smoke_round(const DatasetPtr& surface, const SmokeRoundParams& p, Con
 DatasetPtr smoke_from(const DatasetPtr& data, const SmokeFromParams& p, Context& context) {
   SmokeParams with_box = p;
   const Box3 box = data->bounds();
-  if (box.empty()) fail_data("the mesh is empty", "smoke_from", "give one with cells");
+  if (data->cell_count() == 0 || data->as<PointCloud>()) fail_usage("points alone have no inside", "smoke_from", "give a mesh with cells");
+  if (box.empty()) fail_data("the mesh lies nowhere", "smoke_from");
   if (p.bounds.empty()) with_box.bounds = room_about(box, p.up, box.size().z == 0);
   const fluid::SourceFields fields = fluid::source_fields(*data, p);
   GivenData given;

@@ -64,8 +64,8 @@ SmokeInput field_source(const DatasetPtr& data, const SourceFields& fields, cons
     }
   }
   if (some == 0)
-    fail_data("no middle of a cell of the air lies in the data", who,
-              "ask for bounds that hold them, or a larger size; solid cells are needed in a solid box");
+    fail_usage("no middle of a cell of the air lies in the data", who,
+               "ask for bounds that hold them, or a larger size; solid cells are needed in a solid box");
   if (negative > 0)
     context.warn(fmt::format("smoke_from: '{}' is negative in {} cells, which counts as 0", fields.density->name, negative));
   return input;
