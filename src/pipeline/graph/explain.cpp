@@ -74,6 +74,14 @@ bool reads_parts(const Node& node) {
   }
 }
 
+// What a step does, and in how many frames and steps a simulator does that.
+std::string does_text(const PlannedStep& s) {
+  if (!s.frames) return s.does;
+  std::string text = fmt::format("{}, {} frame{}", s.does, *s.frames, *s.frames == 1 ? "" : "s");
+  if (s.steps > 0) text += fmt::format(" in ~{} steps", s.steps);
+  return text;
+}
+
 std::string seconds_text(double s) {
   if (s <= 0) return "0 s";
   if (s < 1e-3) return short_number(s * 1e6, 2) + " us";
@@ -100,7 +108,7 @@ std::vector<PlannedStep> Graph::plan(std::span<const Target> targets) const {
     if (cached) p.bytes = *cached;
     else {
       const Estimate e = estimate_of(s, node, out);
-      p.bytes = e.bytes, p.seconds = e.seconds;
+      p.bytes = e.bytes, p.seconds = e.seconds, p.frames = e.frames, p.steps = e.steps;
     }
     if (cached || (!s.cut && std::holds_alternative<DataNode>(node.what))) p.state = PlannedStep::State::cached;
     out.push_back(std::move(p));
@@ -111,7 +119,7 @@ std::vector<PlannedStep> Graph::plan(std::span<const Target> targets) const {
   for (size_t i = out.size(); i-- > 0;) {
     const bool runs = needed[i] && out[i].state != PlannedStep::State::cached;
     if (runs) out[i].state = PlannedStep::State::run;
-    else out[i].seconds = 0;
+    else out[i].seconds = 0, out[i].frames = {};
     if (runs)
       for (const int in : plan.steps[i].inputs) needed[size_t(in)] = 1;
     if (runs && plan.steps[i].series >= 0) in_series[size_t(plan.steps[i].series)] = 1;
@@ -133,7 +141,8 @@ std::string Graph::explain(NodeId node, const Request& request) const {
 std::string Graph::explain(std::span<const Target> targets) const {
   const std::vector<PlannedStep> steps = plan(targets);
   size_t name_width = 4, does_width = 4;
-  for (const PlannedStep& s : steps) name_width = std::max(name_width, s.name.size()), does_width = std::max(does_width, s.does.size());
+  for (const PlannedStep& s : steps)
+    name_width = std::max(name_width, s.name.size()), does_width = std::max(does_width, does_text(s).size());
   std::string r = fmt::format("{:<{}}  {:<{}}  {:<8}  {:<10}  {:>12}  {:>8}  {}\n", "step", name_width, "does", does_width, "key", "state",
                               "result", "time", "needs");
   double seconds = 0;
@@ -142,7 +151,7 @@ std::string Graph::explain(std::span<const Target> targets) const {
     const bool runs = s.state == PlannedStep::State::run, cached = s.state == PlannedStep::State::cached;
     seconds += s.seconds;
     running += runs;
-    r += fmt::format("{:<{}}  {:<{}}  {:<8}  {:<10}  {:>12}  {:>8}  {}\n", s.name, name_width, s.does, does_width,
+    r += fmt::format("{:<{}}  {:<{}}  {:<8}  {:<10}  {:>12}  {:>8}  {}\n", s.name, name_width, does_text(s), does_width,
                      key_text(s.key).substr(0, 8),
                      runs                                       ? "run"
                      : cached                                   ? "cached"

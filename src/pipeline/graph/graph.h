@@ -56,9 +56,11 @@ struct PlannedStep {
   Key key;
   Request request;
   State state = State::run;
-  uint64_t bytes = 0;        ///< of the result: exact when cached, else expected
-  double seconds = 0;        ///< expected; 0 unless the step runs
-  bool reads_parts = false;  ///< reads a file in a format of which parts can be read
+  uint64_t bytes = 0;                   ///< of the result: exact when cached, else expected
+  double seconds = 0;                   ///< expected; 0 unless the step runs
+  bool reads_parts = false;             ///< reads a file in a format of which parts can be read
+  std::optional<uint64_t> frames = {};  ///< of a simulator that runs: see Estimate
+  uint64_t steps = 0;
 };
 
 /// Adding is for one thread; evaluate and explain are for any number of threads, but not from inside a parallel loop.

@@ -27,6 +27,8 @@ enum class OperationKind { source, filter };
 struct Estimate {
   uint64_t bytes = 0;  ///< of the result
   double seconds = 0;
+  std::optional<uint64_t> frames = {};  ///< of a simulator: that it computes one from another
+  uint64_t steps = 0;                   ///< of all of them together, about; 0: that is not known
 };
 
 /// Which fields an operation reads of its inputs, beside those that its parameters of type field name. Names are of parameters but for

@@ -30,12 +30,13 @@ Vec3 up_of(const SmokeParams& p, const MacGrid& g) {
 }  // namespace
 
 template <class T>
-Smoke<T>::Smoke(const SmokeParams& p, TriangleSoup surface, bool gives_off, const Context& context)
+Smoke<T>::Smoke(const SmokeParams& p, SmokeInput given, const Context& context)
     : params_(p),
       grid_(smoke_grid(p, context)),
       up_(up_of(p, grid_)),
       sides_(sides_of(p, grid_, up_)),
-      solids_(p, gives_off ? TriangleSoup() : surface, grid_),
+      emission_(p, grid_, up_, given, context),
+      solids_(p, given.role == SurfaceRole::obstacle ? std::move(given.surface) : TriangleSoup(), grid_),
       projection_(grid_, solids_.walls<T>(sides_, 0, context)),
       velocity_(make_faces<T>(grid_)),
       density_(grid_.cells),
@@ -45,81 +46,16 @@ Smoke<T>::Smoke(const SmokeParams& p, TriangleSoup surface, bool gives_off, cons
   const size_t most = std::max({velocity_[0].values.size(), velocity_[1].values.size(), velocity_[2].values.size()});
   for (Lattice<T>* l : {&velocity_[0], &velocity_[1], &velocity_[2], &density_, &temperature_}) l->values.reserve(most);
   for (Lattice<T>& l : spare_) l.values.reserve(most);
-  std::vector<double> numbers = p.source;
-  if (gives_off) source_shares_ = shares_inside<T>(surface, grid_, -1, context);
-  else if (numbers.empty() && p.box.empty()) {
-    const Vec3 size = grid_.h * Vec3(double(grid_.cells[0]), double(grid_.cells[1]), grid_.flat() ? 0 : double(grid_.cells[2]));
-    const double radius = 0.12 * std::min({size.x, size.y, grid_.flat() ? size.x : size.z});
-    Vec3 middle = grid_.origin + 0.5 * size;
-    // Above the ground by its own radius and a little.
-    for (int a = 0; a < 3; ++a) middle[a] -= up_[a] * (0.5 * std::abs(size[a]) - 1.5 * radius);
-    numbers = {middle.x, middle.y, middle.z, radius};
+  if (given.dust) {
+    if (p.reflect) fail_usage("dust is not dragged in mirrored steps", "dusty_smoke reflect", "leave it out");
+    dust_.emplace(*given.dust, grid_, up_, emission_.balls(), emission_.boxes(), context);
   }
-  balls_ = balls_of(numbers, grid_, "source"), boxes_ = boxes_of(p.box, grid_, "box");
   give_off(0);
-}
-
-// From cells of which a share, share(places along the axes, in units of h), lies in a source within the box.
-template <class T>
-template <class Share>
-void Smoke<T>::give_off_within(const Box3& box, double dt, Share&& share) {
-  std::array<size_t, 3> lo{0, 0, 0}, hi = grid_.cells;
-  for (int a = 0; a < grid_.axes(); ++a) {
-    const double n = double(grid_.cells[size_t(a)]);
-    const auto place = [&](double x) { return (x - grid_.origin[a]) / grid_.h; };
-    lo[size_t(a)] = size_t(std::clamp(std::floor(place(box.lo[a]) - 1), 0.0, n));
-    hi[size_t(a)] = size_t(std::clamp(std::ceil(place(box.hi[a]) + 1), 0.0, n));
-  }
-  for (size_t k = lo[2]; k < hi[2]; ++k)
-    for (size_t j = lo[1]; j < hi[1]; ++j)
-      for (size_t i = lo[0]; i < hi[0]; ++i) {
-        const Vec3 at{double(i), double(j), double(k)};
-        const T c = T(share(at + Vec3(0.5, 0.5, 0.5)));
-        const T mass = T(params_.density) * c, heat = T(params_.temperature) * c;
-        T &density = density_(i, j, k), &temperature = temperature_(i, j, k);
-        if (params_.rate) {
-          density += T(*params_.rate * dt) * mass, temperature += T(*params_.rate * dt) * heat;
-        } else {  // cells at the rim of a source have their share of its values, however often that is said
-          density = std::max(density, mass);
-          temperature = heat > 0 ? std::max(temperature, heat) : std::min(temperature, heat);
-        }
-        if (params_.jet == Vec3(0, 0, 0)) continue;
-        for (int a = 0; a < grid_.axes(); ++a) {  // the lower face across each axis
-          const auto s = MacGrid::shift(a);
-          const T f = T(share(at + Vec3(s[0], s[1], s[2])));
-          velocity_[size_t(a)](i, j, k) += f * (T(params_.jet[a]) - velocity_[size_t(a)](i, j, k));
-        }
-      }
 }
 
 template <class T>
 void Smoke<T>::give_off(double dt) {
-  const auto place = [&](Vec3 p) { return grid_.origin + grid_.h * p; };
-  for (const Ball& b : balls_) {
-    const Vec3 r = b.radius * Vec3(1, 1, 1);
-    give_off_within({b.middle - r, b.middle + r}, dt, [&](Vec3 p) {
-      Vec3 way = place(p) - b.middle;
-      if (grid_.flat()) way.z = 0;
-      return std::clamp((b.radius - length(way)) / grid_.h + 0.5, 0.0, 1.0);
-    });
-  }
-  for (const Box3& b : boxes_)
-    give_off_within(b, dt, [&](Vec3 p) {  // the overlap with a cell about the place
-      double part = 1;
-      for (int a = 0; a < grid_.axes(); ++a) {
-        const double x = place(p)[a], overlap = std::min(x + grid_.h / 2, b.hi[a]) - std::max(x - grid_.h / 2, b.lo[a]);
-        part *= std::clamp(overlap / grid_.h, 0.0, 1.0);
-      }
-      return part;
-    });
-  if (!source_shares_.values.empty()) {
-    Box3 all;
-    all.add(grid_.origin), all.add(place(Vec3(double(grid_.cells[0]), double(grid_.cells[1]), double(grid_.cells[2]))));
-    give_off_within(all, dt, [&](Vec3 p) {
-      const auto index = [&](int a) { return size_t(std::clamp(p[a], 0.0, double(grid_.cells[size_t(a)]) - 1)); };
-      return double(source_shares_(index(0), index(1), index(2)));
-    });
-  }
+  emission_.give_off(dt, density_, temperature_, velocity_);
 }
 
 template <class T>
@@ -129,9 +65,11 @@ double Smoke<T>::fastest(const Context& context) const {
   for (const Lattice<T>& l : velocity_) {
     const double v = largest(l, context);
     most = v <= most ? most : v;  // NaN stays
-    if (std::isnan(v)) break;
+    if (std::isnan(v)) return v;
   }
-  return most;
+  if (!dust_) return most;
+  const double v = dust_->fastest();
+  return v <= most ? most : v;
 }
 
 template <class T>
@@ -165,8 +103,10 @@ template <class T>
 void Smoke<T>::push(double dt, const Context& context) {
   add_buoyancy(grid_, projection_.walls().sides, density_, temperature_, up_, params_.weight, params_.lift, dt, velocity_, context);
   confine_vortices<T>(grid_, params_.swirl, dt, velocity_, spare_, context);
+  if (dust_) dust_->drag(time_ - dt, dt, velocity_, projection_.walls(), context);
   diffuse_velocity<T>(grid_, projection_.walls(), sides_, params_.viscosity, dt, velocity_, spare_, context);
   solved_ = projection_.apply(velocity_, pressure_, params_.tolerance, spare_, context);
+  if (dust_) dust_->move(time_ - dt, dt, velocity_, projection_.walls(), solids_, context);
 }
 
 template <class T>
@@ -198,7 +138,8 @@ void Smoke<T>::step(double dt, const Context& context) {
 
 template <class T>
 void Smoke<T>::advance(const Context& context) {
-  const double push = std::abs(params_.lift * params_.temperature) + std::abs(params_.weight * params_.density);
+  const double push =
+      std::abs(params_.lift * params_.temperature) + std::abs(params_.weight * params_.density) + (dust_ ? length(dust_->law().pull) : 0);
   double left = params_.frame;
   for (int taken = 0; left > 1e-9 * params_.frame; ++taken) {
     const double speed = fastest(context);
@@ -227,12 +168,13 @@ size_t Smoke<T>::bytes() const {
     for (const Lattice<T>& l : lattices) numbers += l.values.capacity();
   };
   add(velocity_), add(reflected_), add(spare_), add(projection_.walls().open), add(projection_.walls().solid);
-  add(std::array{std::cref(density_), std::cref(temperature_), std::cref(pressure_), std::cref(source_shares_)});
-  return numbers * sizeof(T);
+  add(std::array{std::cref(density_), std::cref(temperature_), std::cref(pressure_)});
+  return numbers * sizeof(T) + emission_.bytes() + (dust_ ? dust_->bytes() : 0);
 }
 
 template <class T>
 DatasetPtr Smoke<T>::dataset(const Context& context) const {
+  if (dust_ && dust_->shown()) return dust_->cloud(double(frame_) * params_.frame);
   const auto& n = grid_.cells;
   const size_t count = n[0] * n[1] * n[2];
   UniformGrid mesh;
@@ -266,6 +208,12 @@ DatasetPtr Smoke<T>::dataset(const Context& context) const {
       &context);
   parts.fields.add({"velocity", Association::point, std::move(velocity), "", Role::vectors});
   add("pressure", pressure_);
+  if (dust_) {
+    const Lattice<T> dust = dust_->density(context);
+    Field f{"dust", Association::point, Array::from_vector(std::vector<T>(dust.values.begin(), dust.values.end())), "", Role::scalars};
+    f.look.result = true;
+    parts.fields.add(std::move(f));
+  }
   if (const Walls<T>& w = projection_.walls(); w.obstacles()) {  // share of the cells about each that is solid, by their faces
     Lattice<T> solid(n);
     for (size_t k = 0; k < n[2]; ++k)

@@ -48,6 +48,12 @@ struct SmokeRoundParams : SmokeParams {
 };
 void describe(Schema& s, SmokeRoundParams& p);
 
+/// Smoke from the values of a field.
+struct SmokeFromParams : SmokeParams {
+  FieldName field, temperature_field;
+};
+void describe(Schema& s, SmokeFromParams& p);
+
 namespace fluid {
 
 /// The grid that the parameters ask for: cubes over the bounds, whose upper ends give way to whole numbers of them. Flat (one cell along z)

@@ -170,6 +170,23 @@ DatasetPtr Liquid::dataset(const Context&) const {
 
 namespace sg {
 
+RunCost cost_of_liquid(const LiquidParams& p) {
+  const Box3 box = liquid::room_of(p);
+  const bool flat = box.size().z == 0;
+  const double spacing = liquid::spacing_of(p), weight = length(p.gravity.value_or(Vec3(0, 0, -9.81)));
+  double inside = 1, walls = 1;
+  for (int a = 0; a < (flat ? 2 : 3); ++a) inside *= box.size()[a] / spacing, walls *= box.size()[a] / spacing + 2 * liquid::wall_layers;
+  double count = p.fill.empty() ? inside / 8 : 0, height = box.size()[flat ? 1 : 2] / (p.fill.empty() ? 2 : 1);
+  for (size_t b = 0; b + 5 < p.fill.size(); b += 6) {
+    double part = 1;
+    for (size_t a = 0; a < (flat ? 2u : 3u); ++a) part *= (p.fill[b + 2 * a + 1] - p.fill[b + 2 * a]) / spacing;
+    count += std::max(part, 0.0);
+  }
+  const double fall = std::sqrt(2 * weight * height), sound = p.sound > 0 ? p.sound : 10 * (fall > 0 ? fall : 1);
+  return cost_of_run(p, "liquid", uint64_t(std::min(count, 1e12)) * 64, 3.5e-7 * (count + walls - inside),
+                     equal_steps(p.frame, 0.25 * liquid::width * spacing / (sound + fall / 2)));
+}
+
 DatasetPtr liquid_source(const LiquidParams& p, Context& context) {
   using Run = liquid::Liquid;
   return frame_of_run<Run>(

@@ -88,5 +88,6 @@ class Liquid {
 
 /// Points with the fields velocity, pressure and density of the liquid at the last frame before `time`.
 DatasetPtr liquid_source(const LiquidParams& p, Context& context);
+RunCost cost_of_liquid(const LiquidParams& p);
 
 }  // namespace sg

@@ -5,9 +5,11 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 #include <utility>
+#include <vector>
 
 #include "base/error.h"
 
@@ -52,6 +54,27 @@ class MechanicsRun {
       throw;
     }
     note();
+  }
+
+  /// What the next frame depends on, and what is shown of those before it; see simulate/run/frames.h.
+  template <class F>
+  void each_part(F&& f) {
+    f(state_.q), f(state_.p), f(speed_), f(motion_.guess());
+    std::array<double, 1> most{most_};
+    f(most), most_ = most[0];
+    for (Numbers* l : {&moment_, &kinetic_, &potential_, &total_, &drift_}) {
+      Growing<Numbers> growing{*l};
+      f(growing);
+    }
+    std::vector<Mark> marks(trail_.begin(), trail_.end());
+    Growing<std::vector<Mark>> trail{marks};
+    f(trail), trail_.assign(marks.begin(), marks.end());
+  }
+  bool consistent() const {
+    const size_t frames = moment_.size();
+    for (const Numbers* l : {&kinetic_, &potential_, &total_, &drift_})
+      if (l->size() != frames) return false;
+    return frames > 0;
   }
 
   DatasetPtr dataset(const Context&) const;
@@ -133,6 +156,14 @@ DatasetPtr MechanicsRun::dataset(const Context&) const {
 
 }  // namespace
 }  // namespace mechanics
+
+RunCost cost_of_mechanics(const MechanicsParams& p) {
+  const auto system = mechanics::system_of(p);
+  const double n = system->size(), steps = equal_steps(p.frame, p.step), marks = std::min(p.trail, 1000000) * std::min(steps, 9.0);
+  const bool by_words = p.system == MechanicalSystem::expression;
+  const double bodies = n / 2 + (p.system == MechanicalSystem::spring_net ? 0 : marks);
+  return cost_of_run(p, "mechanics", uint64_t(bodies * 56), (by_words ? 2e-5 : 7e-6) + 4.5e-7 * n * n, steps);
+}
 
 DatasetPtr mechanics_source(const MechanicsParams& p, Context& context) {
   using Run = mechanics::MechanicsRun;

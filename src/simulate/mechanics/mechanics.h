@@ -47,5 +47,6 @@ std::shared_ptr<const System> expression_system(const MechanicsParams& p);
 /// of the whole: moment, kinetic, potential, total and drift, the change of the total energy since the beginning as a share of the largest
 /// kinetic energy so far. Throws Error(usage) for singular mass matrices, Error(data) naming the frame where the motion blows up.
 DatasetPtr mechanics_source(const MechanicsParams& p, Context& context);
+RunCost cost_of_mechanics(const MechanicsParams& p);
 
 }  // namespace sg

@@ -31,6 +31,8 @@ class Motion {
   Numbers acceleration(const Numbers& q, const Numbers& v);
   /// q' of a state.
   Numbers speed(const State& s);
+  /// From where Newton's method begins: a state goes on to the same bytes only from the same one.
+  Numbers& guess() { return last_speed_; }
   /// Kinetic and potential energy.
   std::array<double, 2> energies(const State& s);
 
@@ -53,7 +55,7 @@ class Motion {
 
   std::shared_ptr<const System> system_;
   autodiff::Tape<Along> tape_;
-  Numbers last_speed_;  // from where Newton's method begins
+  Numbers last_speed_;
 };
 
 }  // namespace sg::mechanics

@@ -77,4 +77,7 @@ DatasetPtr particle_system(const ParticleParams& p, Context& context);
 /// The same in data: the first input's vector field moves them, further inputs are surfaces that they bounce off.
 DatasetPtr particle_system_in(const std::vector<Data>& inputs, const ParticlesInParams& p, Context& context);
 
+RunCost cost_of_particle_system(const ParticleParams& p);
+RunCost cost_of_particle_system_in(const ParticlesInParams& p);
+
 }  // namespace sg

@@ -162,6 +162,20 @@ DatasetPtr AdvectionDiffusion::dataset(const Context& context) const {
 
 }  // namespace pde
 
+RunCost cost_of_advection_diffusion(const AdvectionDiffusionParams& p) {
+  const pde::Room room = pde::make_room(p, "advection_diffusion", 120, false, Context());
+  double steps = p.step ? equal_steps(p.frame, *p.step) : 0;
+  if (!p.step) {  // as the flow at the beginning allows, which is looked at on a coarse grid
+    AdvectionDiffusionParams coarse = p;
+    coarse.size = std::min(p.size, 24), coarse.initial = coarse.source = "0", coarse.diffusivity = 0;
+    const Context context;
+    const double rate = 1 / pde::AdvectionDiffusion(coarse, context).limit(context),
+                 finer = pde::make_room(coarse, "advection_diffusion", 120, false, context).smallest_h() / room.smallest_h();
+    steps = equal_steps(p.frame, 0.5 / (2 * p.diffusivity * room.couplings() + rate * finer));
+  }
+  return cost_of_run(p, "advection_diffusion", room.count() * (p.type == FieldType::f64 ? 8 : 4), double(room.count()) * 5e-8, steps);
+}
+
 DatasetPtr advection_diffusion(const AdvectionDiffusionParams& p, Context& context) {
   return frame_of_run<pde::AdvectionDiffusion>(
       "advection_diffusion", p, [&] { return std::make_unique<pde::AdvectionDiffusion>(p, context); }, context);

@@ -70,5 +70,6 @@ class AdvectionDiffusion {
 
 /// Point field concentration at the last frame before `time`. Throws Error(data), naming the step, where a stated step blows up.
 DatasetPtr advection_diffusion(const AdvectionDiffusionParams& p, Context& context);
+RunCost cost_of_advection_diffusion(const AdvectionDiffusionParams& p);
 
 }  // namespace sg

@@ -114,8 +114,8 @@ RunCost cost_of_heat(const HeatParams& p) {
   const pde::Room room = pde::make_room(p, "heat", 60, false, Context());
   const bool forward = p.scheme == HeatScheme::explicit_euler;
   const double step = p.step.value_or(forward ? pde::heat_limit(p, room) / 2 : p.frame);
-  const double steps = double(frame_at(p, "heat")) * std::max(1.0, std::ceil(p.frame / step));
-  return {room.count() * (p.type == FieldType::f64 ? 8 : 4), double(room.count()) * steps * (forward ? 3e-9 : 3e-7)};
+  return cost_of_run(p, "heat", room.count() * (p.type == FieldType::f64 ? 8 : 4), double(room.count()) * (forward ? 3e-9 : 3e-7),
+                     equal_steps(p.frame, step));
 }
 
 DatasetPtr heat(const HeatParams& p, Context& context) {

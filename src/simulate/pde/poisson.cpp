@@ -52,6 +52,39 @@ void describe(Schema& s, PoissonConvergenceParams& p) {
   s("log", p.log, "The decimal logarithms of the residuals, for curves.");
 }
 
+namespace {
+
+// Iterations, of which docs/simulation/pdes.md has a table, and what they take of each unknown.
+double seconds_of(const PoissonParams& p, const pde::Room& room, pde::Solver solver) {
+  const double n = double(std::max({room.axes[0].n, room.axes[1].n, room.axes[2].n}));
+  double iterations = 0, each = 2e-9;
+  switch (solver) {
+    case pde::Solver::jacobi: iterations = 3.7 * n * n; break;
+    case pde::Solver::gauss_seidel: iterations = 1.9 * n * n; break;
+    case pde::Solver::sor: iterations = 4.2 * n; break;
+    case pde::Solver::cg: iterations = 1.9 * n, each = 4e-9; break;
+    case pde::Solver::multigrid: iterations = room.axes[2].flat() ? 9 : 14, each = 4e-8; break;
+  }
+  return std::min(iterations, double(p.iterations)) * each * double(room.count());
+}
+
+}  // namespace
+
+RunCost cost_of_poisson(const PoissonParams& p) {
+  const pde::Room room = pde::make_room(p, "poisson", 60, false, Context());
+  return {room.count() * (p.type == FieldType::f64 ? 8 : 4), seconds_of(p, room, p.solver)};
+}
+
+RunCost cost_of_poisson_convergence(const PoissonConvergenceParams& p) {
+  const pde::Room room = pde::make_room(p, "poisson_convergence", 60, false, Context());
+  RunCost cost;
+  for (const auto& word : enum_words(pde::Solver{})) {
+    cost.seconds += seconds_of(p, room, word.value);
+    cost.bytes += uint64_t(p.iterations) * sizeof(double);
+  }
+  return cost;
+}
+
 DatasetPtr poisson(const PoissonParams& p, Context& context) {
   const pde::Room room = pde::make_room(p, "poisson", 60, false, context);
   const pde::SideValues sides(room, "poisson", 0, context);

@@ -8,6 +8,7 @@
 #include "data/dataset.h"
 #include "simulate/pde/room.h"
 #include "simulate/pde/solvers.h"
+#include "simulate/run/frames.h"
 
 namespace sg {
 
@@ -34,5 +35,9 @@ void describe(Schema& s, PoissonConvergenceParams& p);
 
 /// A table: iteration, and the residual of each solver after it (log: its log10); NaN once it is below the tolerance.
 TablePtr poisson_convergence(const PoissonConvergenceParams& p, Context& context);
+
+/// With held sides; without any it may take longer.
+RunCost cost_of_poisson(const PoissonParams& p);
+RunCost cost_of_poisson_convergence(const PoissonConvergenceParams& p);
 
 }  // namespace sg

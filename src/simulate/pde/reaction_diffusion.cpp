@@ -66,6 +66,11 @@ double rd_diffusivity(const std::optional<double>& given, double own, const Room
   return given.value_or(own * std::max(longest * longest, room.smallest_h() * room.smallest_h() * 128 * 128));
 }
 
+std::array<double, 2> rd_diffusivities(const ReactionDiffusionParams& p, const Room& room) {
+  const bool spots = p.model == Reaction::gray_scott;
+  return {rd_diffusivity(p.diffusivity_u, spots ? 8e-6 : 2e-5, room), rd_diffusivity(p.diffusivity_v, spots ? 4e-6 : 0, room)};
+}
+
 constexpr const char* rd_name = "reaction_diffusion";
 
 // Diffusion and reaction shrink what is fastest at these rates together; the method's region of stability ends at 2.51 of them.
@@ -79,8 +84,8 @@ double rd_step(const ReactionDiffusionParams& p, const Room& room, double d) {
 ReactionDiffusion::ReactionDiffusion(const ReactionDiffusionParams& p, const Context& context)
     : params_(p),
       room_(make_room(p, rd_name, 100, false, context)),
-      du_(rd_diffusivity(p.diffusivity_u, p.model == Reaction::gray_scott ? 8e-6 : 2e-5, room_)),
-      dv_(rd_diffusivity(p.diffusivity_v, p.model == Reaction::gray_scott ? 4e-6 : 0, room_)),
+      du_(rd_diffusivities(p, room_)[0]),
+      dv_(rd_diffusivities(p, room_)[1]),
       steps_(steps_of_frame(p.frame, p.step, rd_step(p, room_, std::max(du_, dv_)), rd_name)),
       sides_(room_, rd_name, 0, context) {
   for (const double d : {du_, dv_})
@@ -133,6 +138,13 @@ DatasetPtr ReactionDiffusion::dataset(const Context& context) const {
 }
 
 }  // namespace pde
+
+RunCost cost_of_reaction_diffusion(const ReactionDiffusionParams& p) {
+  const pde::Room room = pde::make_room(p, pde::rd_name, 100, false, Context());
+  const auto [u, v] = pde::rd_diffusivities(p, room);
+  return cost_of_run(p, pde::rd_name, 2 * room.count() * (p.type == FieldType::f64 ? 8 : 4), double(room.count()) * 2e-8,
+                     equal_steps(p.frame, p.step.value_or(pde::rd_step(p, room, std::max(u, v)))));
+}
 
 DatasetPtr reaction_diffusion(const ReactionDiffusionParams& p, Context& context) {
   return frame_of_run<pde::ReactionDiffusion>(

@@ -72,5 +72,6 @@ class ReactionDiffusion {
 
 /// Point fields u and v at the last frame before `time`. Throws Error(data), naming the step, where a stated step blows up.
 DatasetPtr reaction_diffusion(const ReactionDiffusionParams& p, Context& context);
+RunCost cost_of_reaction_diffusion(const ReactionDiffusionParams& p);
 
 }  // namespace sg

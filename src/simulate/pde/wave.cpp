@@ -100,8 +100,8 @@ DatasetPtr Wave::dataset(const Context& context) const {
 
 RunCost cost_of_wave(const WaveParams& p) {
   const pde::Room room = pde::make_room(p, "wave", 80, true, Context());
-  const double steps = double(frame_at(p, "wave")) * std::max(1.0, std::ceil(p.frame / p.step.value_or(0.98 * pde::wave_limit(p, room))));
-  return {room.count() * (p.type == FieldType::f64 ? 8 : 4), double(room.count()) * steps * 3e-9};
+  return cost_of_run(p, "wave", room.count() * (p.type == FieldType::f64 ? 8 : 4), double(room.count()) * 3e-9,
+                     equal_steps(p.frame, p.step.value_or(0.98 * pde::wave_limit(p, room))));
 }
 
 DatasetPtr wave(const WaveParams& p, Context& context) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulate/run/frames.h"
 
+#include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "base/error.h"
 
@@ -22,10 +24,32 @@ size_t frame_at(const FrameParams& p, const std::string& who) {
   return size_t(frames);
 }
 
+double equal_steps(double frame, double longest) { return std::max(1.0, std::ceil(frame / longest * (1 - 1e-12))); }
+
+RunCost cost_of_run(const FrameParams& p, const std::string& who, uint64_t bytes, double seconds_a_step, double steps_a_frame) {
+  const double frames = double(frame_at(p, who)), steps = frames * std::max(1.0, steps_a_frame);
+  return {bytes, steps * seconds_a_step, uint64_t(frames), steps_a_frame > 0 ? uint64_t(std::min(steps, 1e18)) : 0};
+}
+
+namespace {
+
+constexpr std::string_view before_content = "\ndata ";
+
+std::string_view parameters_of(std::string_view key) { return key.substr(0, key.rfind(before_content)); }
+
+}  // namespace
+
+std::string key_of_state(const std::string& parameters, const GivenData& given) {
+  return given.empty() ? parameters : parameters + std::string(before_content) + given.content();
+}
+
 StateFile state_of_run(const std::string& path, const std::string& key) {
   StateFile file(path);
-  if (file.key() != key) fail_usage("is the state of another run", "'" + path + "'", "remove it, or name another file as store");
-  return file;
+  if (file.key() == key) return file;
+  const bool other_data = key.find(before_content) != key.npos && parameters_of(file.key()) == parameters_of(key);
+  fail_usage(
+      other_data ? "is the state of this run in other data: the mesh or a field that it depends on differs" : "is the state of another run",
+      "'" + path + "'", "remove it, or name another file as store");
 }
 
 bool may_keep(size_t bytes, const Context& context) { return context.memory_limit == 0 || bytes <= context.memory_limit / 4; }

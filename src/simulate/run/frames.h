@@ -3,8 +3,10 @@
 // alone, so that it does not matter who asked for which time before.
 #pragma once
 #include <concepts>
+#include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -13,6 +15,7 @@
 #include "base/file/file.h"
 #include "base/schema/schema.h"
 #include "data/dataset.h"
+#include "simulate/run/given_data.h"
 #include "simulate/run/state_file.h"
 
 namespace sg {
@@ -32,20 +35,29 @@ size_t frame_at(const FrameParams& p, const std::string& who);
 struct RunCost {
   uint64_t bytes = 0;  ///< of the result
   double seconds = 0;
+  std::optional<uint64_t> frames = {};  ///< none where there are no frames
+  uint64_t steps = 0;                   ///< of all frames together, about; 0: that is not known
 };
+/// Of a run whose frames take about so many steps each (0: not known).
+RunCost cost_of_run(const FrameParams& p, const std::string& who, uint64_t bytes, double seconds_a_step, double steps_a_frame);
+/// How many equal steps of this length at most a frame takes.
+double equal_steps(double frame, double longest);
 
 /// Whether a run that takes so much is kept for the next call: at most a quarter of the memory allowed.
 bool may_keep(size_t bytes, const Context& context);
 
-/// A Run that can be stored lists what its frame depends on: each_part(f) calls f(list) for lists of numbers, whose lengths follow from the
-/// parameters, or for a Growing list, whose lengths consistent() checks. resume(context), where there is one, then finds again what follows
-/// from them.
+/// A Run lists what its next frame depends on, so that it can be stored: each_part(f) calls f(list) for lists of numbers, whose lengths
+/// follow from the parameters, or for a Growing list, whose lengths consistent() checks. resume(context), where there is one, then finds
+/// again what follows from them.
 template <class Run>
 concept Storable = requires(Run& run) {
   run.each_part([](auto&) {});
 };
 
-/// What is stored at the path. Throws Error(usage) where it belongs to another run than `key`, Error(data) where it is damaged.
+/// The text that a run is stored under: its name and parameters, and the content of what it was given.
+std::string key_of_state(const std::string& parameters, const GivenData& given);
+/// What is stored at the path. Throws Error(usage) where it belongs to another run than `key`, or to other data, Error(data) where it is
+/// damaged.
 StateFile state_of_run(const std::string& path, const std::string& key);
 
 /// Goes on from what is stored at the path for the run `key`, unless that lies beyond `frame`; returns whether it does. Throws Error(usage)
@@ -73,40 +85,36 @@ void store(Run& run, const std::string& path, const std::string& key) {
 
 /// A frame of the run of these parameters: `make()` begins it, or the run that was shown last goes on where it is the same one and has not
 /// gone beyond, or the one stored. A Run has size_t frame() const, void advance(const Context&) to the next frame,
-/// DatasetPtr dataset(const Context&) const, and, where it takes much memory, size_t bytes() const. `params` may say any time. What else
-/// the run depends on, such as the meshes given to it, is told apart by `of`, in memory alone: such runs cannot be stored.
-template <class Run, class Params, class Make>
-DatasetPtr frame_of_run(const std::string& who, Params params, Make&& make, Context& context, const std::string& of = {}) {
+/// DatasetPtr dataset(const Context&) const, and, where it takes much memory, size_t bytes() const. `params` may say any time. `given`: the
+/// data that the run depends on besides, which it holds.
+template <Storable Run, class Params, class Make>
+DatasetPtr frame_of_run(const std::string& who, Params params, Make&& make, Context& context, const GivenData& given = {}) {
   static std::mutex mutex;
   static std::string kept_key, kept_store;  // and where it was stored
   static std::unique_ptr<Run> kept;
   const size_t frame = frame_at(params, who);
   const FrameParams frames = params;
   params.time = 0, params.store.clear(), params.store_every = FrameParams().store_every;
-  const std::string text = who + " " + params_text(schema_of(params)), key = text + " " + of;
-  if (!frames.store.empty() && !of.empty())
-    fail_usage("the state of a run in given data cannot be stored", who, "leave store out: nothing in it would tell which data it was");
-  if (!frames.store.empty() && !Storable<Run>) fail_usage("its state cannot be stored", who, "leave store out");
+  const std::string parameters = who + " " + params_text(schema_of(params)), key = parameters + " " + given.objects();
+  bool stores = !frames.store.empty();
+  const std::string state = stores ? key_of_state(parameters, given) : std::string();
   std::unique_ptr<Run> run;
   bool stored_here = false;
   {
     const std::lock_guard lock(mutex);
     if (kept && kept_key == key && kept->frame() <= frame) run = std::move(kept), stored_here = kept_store == frames.store;
   }
-  bool stores = !frames.store.empty();
-  if (run && stores && !stored_here && file_exists(frames.store)) stores = state_of_run(frames.store, text).frame() <= frame;
+  if (run && stores && !stored_here && file_exists(frames.store)) stores = state_of_run(frames.store, state).frame() <= frame;
   if (!run) {
     run = make();
-    if constexpr (Storable<Run>)
-      if (stores) stores = go_on(*run, frames.store, text, frame, context) || !file_exists(frames.store);
+    if (stores) stores = go_on(*run, frames.store, state, frame, context) || !file_exists(frames.store);
   }
   const size_t first = run->frame();
   while (run->frame() < frame) {
     context.check();
     context.progress(double(run->frame() - first) / double(frame - first), who);
     run->advance(context);
-    if constexpr (Storable<Run>)
-      if (stores && (run->frame() % size_t(frames.store_every) == 0 || run->frame() == frame)) store(*run, frames.store, text);
+    if (stores && (run->frame() % size_t(frames.store_every) == 0 || run->frame() == frame)) store(*run, frames.store, state);
   }
   DatasetPtr result = run->dataset(context);
   const std::lock_guard lock(mutex);

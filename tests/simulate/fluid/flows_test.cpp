@@ -31,7 +31,7 @@ Cavity cavity(int n, double reynolds) {
   Context context;
   SmokeParams p = plain_air(n, {0, 1, 0, 1, 0, 0});
   p.sides = "x0 held; x1 held; y0 held; y1 held 1,0,0", p.viscosity = 1 / reynolds, p.cfl = 1, p.frame = 0.5;
-  Smoke<float> run(p, {}, false, context);
+  Smoke<float> run(p, {}, context);
   Cavity now;
   for (int f = 0; f < 200; ++f) {
     run.advance(context);
@@ -76,7 +76,7 @@ TEST_CASE("hydrostatic column: the pressure of air that is evenly heavy grows do
   p.type = FieldType::f64, p.size = 16, p.bounds = {0, 1, 0, 1, 0, 0}, p.box = {0, 1, 0, 1, 0, 0}, p.density = 2, p.temperature = 0,
   p.weight = 0.7;
   p.frame = 0.1;
-  Smoke<double> run(p, {}, false, context);
+  Smoke<double> run(p, {}, context);
   run.advance(context);
   const DatasetPtr d = run.dataset(context);
   const Array& pressure = d->fields().require("pressure").array;
@@ -96,7 +96,7 @@ TEST_CASE("vortex street: a cylinder at Re 100 sheds at a Strouhal number of 0.1
   constexpr int cells = 12;  // a diameter
   SmokeParams p = plain_air(24 * cells, {-6, 18, -8.2, 7.8, 0, 0});
   p.sides = "x0 inflow 1,0,0; x1 open", p.obstacle = {0, 0, 0, 0.5}, p.viscosity = 0.01, p.cfl = 1.5, p.frame = 0.25;
-  Smoke<float> run(p, {}, false, context);
+  Smoke<float> run(p, {}, context);
   std::vector<double> times;  // at which the cross flow behind the cylinder turns upwards
   double before = 0;
   for (int f = 1; f <= 320; ++f) {

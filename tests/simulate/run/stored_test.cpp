@@ -7,52 +7,19 @@
 #include "base/error.h"
 #include "simulate/fluid/water/flip.h"
 #include "simulate/liquid/liquid.h"
+#include "simulate/mechanics/mechanics.h"
 #include "simulate/particles/bodies/nbody.h"
 #include "simulate/particles/particle_run.h"
 #include "simulate/pde/advection_diffusion.h"
 #include "simulate/pde/heat.h"
-#include "simulate/pde/mesh/heat_on_mesh.h"
 #include "simulate/pde/reaction_diffusion.h"
 #include "simulate/pde/wave.h"
 #include "simulate/run/frames.h"
+#include "simulate/run/stored.h"
 #include "support/test.h"
 
 using namespace sg;
-
-namespace {
-
-std::string fields_of(const DatasetPtr& d) {
-  std::string out;
-  for (const Field& f : d->fields()) {
-    out += f.name;
-    for (size_t i = 0; i < f.array.count(); ++i)
-      for (int c = 0; c < f.components(); ++c) {
-        const double v = f.array.get(i, c);
-        out.append(reinterpret_cast<const char*>(&v), sizeof v);
-      }
-  }
-  return out;
-}
-
-// `run` shows a frame of the parameters; the run of `other` ones takes the place of what is kept in memory.
-template <class Params, class Run>
-void goes_on(const char* name, Params p, Params other, Run&& run) {
-  INFO(name);
-  const auto afresh = [&](const Params& q) {
-    run(other);
-    return fields_of(run(q));
-  };
-  p.time = 7 * p.frame;
-  const std::string unbroken = afresh(p);
-  Params stored = p;
-  stored.store = test::fresh_folder(std::string("stored_") + name) + "run", stored.time = 4 * p.frame;
-  afresh(stored);
-  CHECK(StateFile(stored.store).frame() == 4);
-  stored.time = p.time;
-  CHECK(afresh(stored) == unbroken);
-}
-
-}  // namespace
+using test::goes_on;
 
 TEST_CASE("runs: every simulator on a grid goes on from its stored state to the same bytes") {
   Context context;
@@ -81,16 +48,8 @@ TEST_CASE("runs: every simulator on a grid goes on from its stored state to the 
   }
 }
 
-TEST_CASE("runs: water goes on from its stored state, and runs in given data are not stored") {
+TEST_CASE("runs: water goes on from its stored state") {
   Context context;
-  {
-    HeatParams room;
-    room.size = 9;
-    const DatasetPtr mesh = heat(room, context);
-    HeatOnMeshParams p;  // nothing in its state would tell which mesh it was
-    p.initial = "x", p.store = test::fresh_folder("stored_heat_on_mesh") + "run";
-    CHECK_THROWS_WITH_AS(heat_on_mesh(mesh, p, context), doctest::Contains("given data cannot be stored"), Error);
-  }
   {
     FlipLiquidParams p, other;
     p.size = 24, p.bounds = {0, 2, 0, 1, 0, 0}, p.frame = 0.05, other.size = 8;
@@ -98,6 +57,39 @@ TEST_CASE("runs: water goes on from its stored state, and runs in given data are
       p.transfer = transfer;
       goes_on("flip_liquid", p, other, [&](const FlipLiquidParams& q) { return flip_liquid(q, context); });
     }
+  }
+}
+
+TEST_CASE("runs: mechanical systems go on from their stored states, with their energies and the trail") {
+  Context context;
+  for (const MechanicalSystem system :
+       {MechanicalSystem::double_pendulum, MechanicalSystem::spring_net, MechanicalSystem::orbit, MechanicalSystem::expression})
+    for (const Integrator i : {Integrator::forward_euler, Integrator::backward_euler, Integrator::verlet, Integrator::rk4}) {
+      MechanicsParams p, other;
+      p.system = system, p.integrator = i, p.size = 3, p.trail = 3, p.step = 0.001;
+      if (system == MechanicalSystem::expression)
+        p.coordinates = {"s"}, p.kinetic = "(1+4*s^2)*s_dot^2/2", p.potential = "9.81*s^2", p.start = {1}, p.places = "s; s^2; 0";
+      other.gravity = 1;
+      goes_on("mechanics", p, other, [&](const MechanicsParams& q) { return mechanics_source(q, context); });
+    }
+  // Lists that do not fit together.
+  MechanicsParams p, other;
+  p.store = test::fresh_folder("stored_energies") + "run", p.time = 2 * p.frame, other.gravity = 1;
+  mechanics_source(p, context);
+  const std::string key = StateFile(p.store).key();
+  for (const size_t energies : {0u, 2u, 3u}) {
+    {
+      StateWriter file(p.store, key, 2);
+      for (int i = 0; i < 4; ++i) file.add(std::vector<double>(2, 0.5));
+      file.add(std::vector<double>{1});
+      for (int i = 0; i < 5; ++i) file.add(std::vector<double>(i == 3 ? energies : size_t(3), 1.0));
+      file.add(std::vector<double>());
+      file.commit();
+    }
+    mechanics_source(other, context);
+    p.time = 3 * p.frame;
+    if (energies == 3) CHECK_NOTHROW(mechanics_source(p, context));
+    else CHECK_THROWS_WITH_AS(mechanics_source(p, context), doctest::Contains("other sizes"), Error);
   }
 }
 

@@ -43,6 +43,21 @@ Vec3 Solids::turned(Vec3 p, double time) const {
   return middle_ + time * velocity_ + r;
 }
 
+bool Solids::keep_out(Vec3& x, Vec3& v, double time) const {
+  bool met = false;
+  for (const Ball& b : balls_) {
+    const Vec3 middle = moves_ ? turned(b.middle, time) : b.middle;
+    Vec3 way = x - middle;
+    if (grid_.flat()) way.z = 0;
+    const double l = length(way);
+    if (!(l < b.radius) || !(l > 0)) continue;
+    const Vec3 n = way * (1 / l), solid = velocity_ + cross(spin_, x - (middle_ + time * velocity_));
+    met = true, x += (b.radius - l) * n;
+    if (const double into = dot(v - solid, n); into < 0) v -= into * n;
+  }
+  return met;
+}
+
 template <class T>
 Walls<T> Solids::walls(const Sides& sides, double time, const Context& context) const {
   Walls<T> walls;

@@ -21,6 +21,8 @@ class Solids {
   bool move() const { return moves_; }
   /// Of the fastest point.
   double speed() const { return speed_; }
+  /// A point in a ball goes to the ball's surface at that time, and no faster into it than the ball moves; returns whether there was one.
+  bool keep_out(Vec3& x, Vec3& v, double time) const;
   /// Walls at a time, with the velocity of what moves. Throws Error(data) where nothing is left for the flow.
   template <class T>
   Walls<T> walls(const Sides& sides, double time, const Context& context) const;

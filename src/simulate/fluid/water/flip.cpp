@@ -264,7 +264,7 @@ void describe(Schema& s, FlipLiquidParams& p) {
 RunCost cost_of_flip(const FlipLiquidParams& p) {
   constexpr double seconds_a_cell = 1.5e-6;
   const double cells = fluid::smoke_grid(fluid::as_smoke(p), Context()).count();
-  return {uint64_t(cells) * 4 * sizeof(float), cells * double(frame_at(p, "flip_liquid")) * seconds_a_cell};
+  return cost_of_run(p, "flip_liquid", uint64_t(cells) * 4 * sizeof(float), cells * seconds_a_cell, 0);
 }
 
 DatasetPtr flip_liquid(const FlipLiquidParams& p, Context& context) {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Velocities from particles to the faces of a staggered grid, and back.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "base/context.h"
 #include "base/schema/enum_words.h"
-#include "simulate/fluid/mac_grid.h"
+#include "simulate/fluid/particle_grid.h"
 
 namespace sg::fluid {
 
@@ -26,9 +27,6 @@ struct Particle3 {
   Vec3 v;                 ///< length per time
   std::array<Vec3, 3> c;  ///< gradients of the components of v, per h; of apic alone
 };
-
-/// Sorts particles by the cells that they lie in; returns where each cell's begin, one more than there are cells.
-std::vector<uint32_t> sort_by_cell(const MacGrid& g, std::vector<Particle3>& particles);
 
 /// u = the mean velocity of the particles about each face, weighted by linear interpolation; 0, and `weight` 0, where there are none. The
 /// particles are sorted by cell. The same for any number of threads.

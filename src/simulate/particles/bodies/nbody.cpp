@@ -168,6 +168,13 @@ DatasetPtr NbodyRun::dataset(const Context&) const {
 
 }  // namespace swarm
 
+RunCost cost_of_nbody(const NbodyParams& p) {
+  const double n = p.bodies.empty() ? double(p.count) : double(p.bodies.size() / 7), pairs = 4.5e-9 * n * n;
+  const double tree = p.angle > 0 ? 5e-7 * n * std::log2(n + 2) * (0.25 / (p.angle * p.angle)) : pairs;
+  const double looks = p.integrator == Integrator::backward_euler ? 20 : p.integrator == Integrator::rk4 ? 4 : 1;
+  return cost_of_run(p, "nbody", uint64_t(n) * 80, looks * std::min(pairs, tree), equal_steps(p.frame, p.step));
+}
+
 DatasetPtr nbody(const NbodyParams& p, Context& context) {
   using Run = swarm::NbodyRun;
   return frame_of_run<Run>(

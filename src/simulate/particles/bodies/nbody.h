@@ -66,5 +66,6 @@ class NbodyRun {
 /// Points with the fields velocity, mass, cluster and potential, and, with one value per frame from 0 on, the fields of the whole: moment,
 /// kinetic, potential energy, total, momentum and angular momentum (of three components).
 DatasetPtr nbody(const NbodyParams& p, Context& context);
+RunCost cost_of_nbody(const NbodyParams& p);
 
 }  // namespace sg

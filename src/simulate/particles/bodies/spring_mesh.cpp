@@ -4,7 +4,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <utility>
 
@@ -12,6 +14,7 @@
 #include "base/parallel.h"
 #include "base/text/text.h"
 #include "data/cells/cell_reader.h"
+#include "simulate/particles/bodies/face_contact.h"
 #include "simulate/particles/local_forces.h"
 #include "simulate/particles/scheme.h"
 #include "simulate/run/frames.h"
@@ -60,10 +63,16 @@ Springs springs_of(const DatasetPtr& data) {
 
 namespace {
 
+constexpr size_t most_rounds = 20;  // of pushing back in a step; whoever still meets something then stays where the step began
+
 class SpringMeshRun {
  public:
   SpringMeshRun(const SpringMeshParams& p, DatasetPtr data, const std::vector<DatasetPtr>& surfaces, Context& context)
-      : params_(p), data_(std::move(data)), springs_(springs_of(data_)), obstacles_(obstacles_of(p, surfaces, "spring_mesh", context)) {
+      : params_(p),
+        data_(std::move(data)),
+        springs_(springs_of(data_)),
+        obstacles_(obstacles_of(p, surfaces, "spring_mesh", context)),
+        faces_(data_, surfaces, {p.restitution, p.friction}, "spring_mesh", context) {
     check(p, "spring_mesh");
     if (!std::isfinite(p.stiffness + p.damping)) fail_usage("stiffness and damping are finite numbers", "spring_mesh");
     const Points& points = points_of(data_->parts().mesh);
@@ -94,21 +103,21 @@ class SpringMeshRun {
           params_.integrator,
           [&](std::span<const Vec3> x, std::span<const Vec3> v, double t, std::span<Vec3> a) { pull(x, v, t, a, context); }, 0, h, x_, v_,
           scratch_, true);
-      parallel_for(
-          x_.size(), 1024,
-          [&](size_t begin, size_t end) {
-            Obstacles::Walker walker(obstacles_);
-            for (size_t i = begin; i < end; ++i) {
-              if (!std::isfinite(length(x_[i]) + length(v_[i])))
-                fail_data(fmt::format("point {} grew beyond all numbers in frame {} (time {:.6g})", i, frame_ + 1,
-                                      double(frame_ + 1) * params_.frame),
-                          "spring_mesh", "shorter steps, or backward_euler, stand stiff springs");
-              if (!obstacles_.empty()) walker.walk(x0[i], v0[i], x_[i], v_[i], h);
-            }
-          },
-          &context);
+      for (size_t i = 0; i < x_.size(); ++i)
+        if (!std::isfinite(length(x_[i]) + length(v_[i])))
+          fail_data(
+              fmt::format("point {} grew beyond all numbers in frame {} (time {:.6g})", i, frame_ + 1, double(frame_ + 1) * params_.frame),
+              "spring_mesh", "shorter steps, or backward_euler, stand stiff springs");
+      keep_out(x0, v0, h, context);
     }
     ++frame_;
+  }
+
+  template <class F>
+  void each_part(F&& f) {
+    std::array<uint64_t, 1> count{frame_};
+    f(count), f(x_), f(v_);
+    frame_ = count[0];
   }
 
   DatasetPtr dataset(const Context&) const {
@@ -149,11 +158,35 @@ class SpringMeshRun {
         &context);
   }
 
+  // The ways of a step end where points, faces and edges meet something.
+  void keep_out(const std::vector<Vec3>& x0, const std::vector<Vec3>& v0, double h, const Context& context) {
+    std::vector<uint8_t> moved(x_.size(), 1);
+    const auto walk = [&] {
+      if (obstacles_.empty()) return;
+      parallel_for(
+          x_.size(), 1024,
+          [&](size_t begin, size_t end) {
+            Obstacles::Walker walker(obstacles_);
+            for (size_t i = begin; i < end; ++i)
+              if (moved[i]) walker.walk(x0[i], v0[i], x_[i], v_[i], h);
+          },
+          &context);
+    };
+    walk();
+    if (faces_.empty()) return;
+    for (size_t round = 0; round < most_rounds + x_.size(); ++round) {
+      std::fill(moved.begin(), moved.end(), 0);
+      if (!faces_.push_back(x0, v0, x_, v_, held_, round >= most_rounds, moved, context)) return;
+      walk();
+    }
+  }
+
   SpringMeshParams params_;
   DatasetPtr data_;
   std::vector<DatasetPtr> surfaces_;
   Springs springs_;
   Obstacles obstacles_;
+  FaceContact faces_;
   LocalForces local_;
   std::vector<Vec3> x_, v_;
   std::vector<uint8_t> held_;
@@ -164,18 +197,22 @@ class SpringMeshRun {
 }  // namespace
 }  // namespace swarm
 
+RunCost cost_of_spring_mesh(const SpringMeshParams& p, uint64_t bytes) {
+  swarm::check(p, "spring_mesh");
+  const double points = double(bytes) / 72, looks = p.integrator == Integrator::backward_euler ? 60 : order_of(p.integrator);
+  return cost_of_run(p, "spring_mesh", bytes + uint64_t(48 * points), points * (looks * 1.5e-7 + 1e-6),
+                     double(swarm::steps_of(p, "spring_mesh")));
+}
+
 DatasetPtr spring_mesh(const std::vector<Data>& inputs, const SpringMeshParams& p, Context& context) {
   using Run = swarm::SpringMeshRun;
   swarm::check(p, "spring_mesh");
   std::vector<DatasetPtr> data;
-  std::string of;
-  for (const Data& d : inputs) {
-    data.push_back(single_dataset(d, "spring_mesh"));
-    of += fmt::format("{} ", static_cast<const void*>(data.back().get()));  // the run holds them: no other gets that address
-  }
+  GivenData given;
+  for (const Data& d : inputs) data.push_back(single_dataset(d, "spring_mesh")), given.add(data.back());
   return frame_of_run<Run>(
       "spring_mesh", p, [&] { return std::make_unique<Run>(p, data[0], std::vector<DatasetPtr>(data.begin() + 1, data.end()), context); },
-      context, of);
+      context, given);
 }
 
 }  // namespace sg

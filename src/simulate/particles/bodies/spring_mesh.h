@@ -32,5 +32,7 @@ Springs springs_of(const DatasetPtr& data);
 /// The mesh with its points moved and the point field velocity: under gravity and drag, pulled by springs of `stiffness` (force per length)
 /// and `damping` (force per speed along the spring), bouncing off the further inputs.
 DatasetPtr spring_mesh(const std::vector<Data>& inputs, const SpringMeshParams& p, Context& context);
+/// Of a mesh that takes so many bytes, reckoned as one of triangles.
+RunCost cost_of_spring_mesh(const SpringMeshParams& p, uint64_t bytes);
 
 }  // namespace sg

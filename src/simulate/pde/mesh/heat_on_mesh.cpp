@@ -12,9 +12,7 @@
 #include "base/parallel.h"
 #include "base/text/text.h"
 #include "base/union_find.h"
-#include "data/cells/cell_topology.h"
 #include "filter/field/calc/calc.h"
-#include "filter/mesh/tessellate_cells.h"
 #include "simulate/pde/expressions.h"
 #include "simulate/pde/march.h"
 #include "simulate/pde/mesh/mesh_numbers.h"
@@ -55,15 +53,6 @@ bool says_border(const HeatOnMeshParams& p) {
     if (std::find(names.begin(), names.end(), "border") != names.end()) return true;
   }
   return false;
-}
-
-DatasetPtr without_curved_solids(const DatasetPtr& in, Context& context) {
-  const auto* m = in->as<UnstructuredMesh>();
-  if (!m) return in;
-  for (size_t c = 0; c < m->cells.size(); ++c)
-    if (is_high_order(m->type(c)) && cell_type_info(m->type(c)).dimension == 3)
-      return tessellate(in, {.tolerance = 1e-3, .max_level = 1}, context);
-  return in;
 }
 
 }  // namespace
@@ -210,26 +199,5 @@ DatasetPtr MeshHeat::dataset(const Context&) const {
 }
 
 }  // namespace pde
-
-namespace {
-
-// Keeps the mesh that was given, so that no other one can lie at its place while the run is kept.
-struct MeshHeatRun : pde::MeshHeat {
-  MeshHeatRun(DatasetPtr in, const HeatOnMeshParams& p, Context& context)
-      : pde::MeshHeat(pde::without_curved_solids(in, context), p, context), given(std::move(in)) {}
-  DatasetPtr given;
-};
-
-}  // namespace
-
-DatasetPtr heat_on_mesh(const DatasetPtr& in, const HeatOnMeshParams& p, Context& context) {
-  const auto make = [&] { return std::make_unique<MeshHeatRun>(in, p, context); };
-  if (p.steady) {
-    const auto run = make();
-    run->settle(context);
-    return run->dataset(context);
-  }
-  return frame_of_run<MeshHeatRun>("heat_on_mesh", p, make, context, fmt::format("{}", static_cast<const void*>(in.get())));
-}
 
 }  // namespace sg

@@ -46,6 +46,13 @@ class MeshHeat {
   MeshHeat(DatasetPtr mesh, const HeatOnMeshParams& p, const Context& context);
   void advance(const Context& context);
   size_t frame() const { return frame_; }
+  /// What the next frame depends on; see simulate/run/frames.h.
+  template <class F>
+  void each_part(F&& f) {
+    std::array<uint64_t, 1> count{frame_};
+    f(count), f(u_), f(source_);
+    frame_ = count[0];
+  }
   /// Solves for the temperatures at which nothing changes any more.
   void settle(const Context& context);
   /// Of the points of the mesh, and then of what was added in the middle of polyhedra.
@@ -78,5 +85,7 @@ class MeshHeat {
 /// made linear first (tessellate). Throws Error(usage) for meshes without cells and mistakes in expressions, Error(data) for values that
 /// are not finite, negative diffusivities, and steady heat that flows in and cannot flow out.
 DatasetPtr heat_on_mesh(const DatasetPtr& in, const HeatOnMeshParams& p, Context& context);
+/// Of a mesh that takes so many bytes, reckoned as one of triangles.
+RunCost cost_of_heat_on_mesh(const HeatOnMeshParams& p, uint64_t bytes);
 
 }  // namespace sg

@@ -146,7 +146,7 @@ TEST_CASE("smoke: sources give off at a rate, and mass in a closed box without f
   SmokeParams p;
   p.type = FieldType::f64, p.size = 20, p.bounds = {0, 1, 0, 1, 0, 0}, p.open = BoxSide::none, p.temperature = 0, p.weight = 0;
   p.box = {0.2, 0.4, 0.3, 0.6, 0, 0}, p.density = 3, p.rate = 2, p.frame = 0.5;
-  Smoke<double> run(p, {}, false, context);
+  Smoke<double> run(p, {}, context);
   CHECK(sum(run.density()) == 0);
   run.advance(context);
   // rate * density * area * time, in cells.
@@ -160,7 +160,7 @@ TEST_CASE("smoke: a body of triangles flows round like the ball that it is") {
   p.sides = "z0 inflow 0,0,1; z1 open";
   SmokeParams with_ball = p;
   with_ball.obstacle = {0.5, 0.5, 0.5, 0.2};
-  Smoke<double> a(p, sphere_surface({0.5, 0.5, 0.5}, 0.2, 60), false, context), b(with_ball, {}, false, context);
+  Smoke<double> a(p, {sphere_surface({0.5, 0.5, 0.5}, 0.2, 60), SurfaceRole::obstacle, {}, {}, {}}, context), b(with_ball, {}, context);
   a.advance(context), b.advance(context);
   double miss = 0;
   for (size_t i = 0; i < a.velocity()[2].values.size(); ++i) miss += std::abs(a.velocity()[2].values[i] - b.velocity()[2].values[i]);
@@ -176,7 +176,7 @@ TEST_CASE("smoke: the equator of a ball in potential flow has one and a half tim
     SmokeParams p;
     p.type = FieldType::f64, p.size = n, p.bounds = {0, 1, 0, 1, 0, 1}, p.density = p.temperature = 0, p.frame = 1e-6;
     p.sides = "z0 inflow 0,0,1; z1 open", p.obstacle = {0.5, 0.5, 0.5, 0.1};
-    Smoke<double> run(p, {}, false, context);
+    Smoke<double> run(p, {}, context);
     run.advance(context);
     double worst = 0;
     for (int i = int(0.68 * n); i < int(0.8 * n); ++i) {
