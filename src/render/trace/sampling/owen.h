@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nested uniform scrambling of binary fractions (Owen 1995) by a hash, and permutations of whole numbers without a table.
+// Nested uniform scrambling of binary fractions (Owen 1995) by a hash, and orders of whole numbers without a table.
 #pragma once
 #include <cstdint>
 
@@ -29,9 +29,9 @@ constexpr uint32_t upward_permutation(uint32_t v, uint32_t seed) {
 /// stay nets. Of an index: an order in which every aligned block of 2^k indices stays one.
 constexpr uint32_t owen_scrambled(uint32_t v, uint32_t seed) { return reverse_bits(upward_permutation(reverse_bits(v), seed)); }
 
-/// The place of i in a random order of 0 ... count - 1 that belongs to the seed; i < count. Mixes within the next power of two and walks on
-/// until it is inside (Kensler 2013, "Correlated multi-jittered sampling").
-constexpr uint32_t permuted(uint32_t i, uint32_t count, uint32_t seed) {
+namespace detail {
+// A permutation of 0 ... count - 1: mixes within the next power of two and walks on until it is inside (Kensler 2013). Few bits mix badly.
+constexpr uint32_t hashed_permutation(uint32_t i, uint32_t count, uint32_t seed) {
   uint32_t w = count - 1;
   w |= w >> 1, w |= w >> 2, w |= w >> 4, w |= w >> 8, w |= w >> 16;
   do {
@@ -46,6 +46,23 @@ constexpr uint32_t permuted(uint32_t i, uint32_t count, uint32_t seed) {
     i &= w, i ^= i >> 5;
   } while (i >= count);
   return (i + seed) % count;
+}
+}  // namespace detail
+
+/// The place of i in a random order of 0 ... count - 1 that belongs to the seed, all of whose bits are used; i < count. Up to 16 every
+/// order comes up equally often.
+constexpr uint32_t permuted(uint32_t i, uint32_t count, uint64_t seed) {
+  if (count > 16) return detail::hashed_permutation(detail::hashed_permutation(i, count, uint32_t(seed >> 32)), count, uint32_t(seed));
+  // The last changes places with any up to it, then the one before, ...: where does i go? The seed holds all choices, as a fraction whose
+  // digits are to the bases count, count - 1, ...; 16! is less than 2^45.
+  for (uint32_t last = count - 1; last > 0; --last) {
+    const uint64_t high = (seed >> 32) * (last + 1) + ((seed & 0xFFFFFFFF) * (last + 1) >> 32);
+    const uint32_t other = uint32_t(high >> 32);
+    seed *= last + 1;
+    if (i == last) i = other;
+    else if (i == other) i = last;
+  }
+  return i;
 }
 
 }  // namespace sg::trace

@@ -41,7 +41,7 @@ float owen_radical_inverse(uint32_t base, uint32_t index, uint32_t indices, uint
   uint64_t mirrored = 0, power = 1, digit_number = 0;
   for (; power < indices; ++digit_number, power *= base, index /= base) {
     const uint64_t drawn = random_bits(seed + digit_number, mirrored);
-    mirrored = mirrored * base + permuted(index % base, base, uint32_t(drawn >> 32));
+    mirrored = mirrored * base + permuted(index % base, base, drawn);
   }
   const double rest = random_unit(seed + digit_number, mirrored);
   return below_one((double(mirrored) + rest) / double(power));

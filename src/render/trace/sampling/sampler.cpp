@@ -58,6 +58,9 @@ Sampler::Sampler(SamplerKind kind, uint64_t seed, int samples_per_pixel) : kind_
   columns_ = uint32_t(std::sqrt(double(count_)));
   rows_ = (count_ + columns_ - 1) / columns_;
   while (count_ > 1u << curve_bits_) ++curve_bits_;
+  if (kind == SamplerKind::blue_noise) block_bits_ = curve_bits_ <= 4 ? curve_bits_ : curve_bits_ % 2 ? 3 : 4;  // the rest by twos
+  else
+    while (block_bits_ < 4 && count_ % (2u << block_bits_) == 0) ++block_bits_;
 }
 
 void Sampler::start(uint32_t x, uint32_t y, uint32_t sample, uint32_t dimension) {
@@ -81,17 +84,24 @@ void Sampler::start(uint32_t x, uint32_t y, uint32_t sample, uint32_t dimension)
   }
 }
 
-// The place along the curve in an order that is shuffled within every square of 2^k pixels, and every 4^k samples of a pixel. The last bit
-// of an odd number of bits is flipped alone.
+// Sobol's index of the sample, in an order in which every block of 2^block_bits samples stays one, as does every aligned 2^k of blocks.
+// Within a block the order is any. Orders that kept all blocks of 2^k, down to pairs, would make pairs of dimensions go together: in a pair
+// of samples both would flip their first digit, or none, and products of the two vary 9/7 times as much as those of random numbers.
+uint32_t Sampler::block_index(uint64_t key) const {
+  const uint32_t block = index_ >> block_bits_, in_block = index_ & ((1u << block_bits_) - 1);
+  return owen_scrambled(block, upper(key)) << block_bits_ | permuted(in_block, 1u << block_bits_, random_bits(key, block));
+}
+
+// The place along the curve in an order that is shuffled within every square of 2^k pixels; blocks of samples of a pixel as above.
 uint64_t Sampler::curve_index(uint64_t key) const {
-  uint64_t shuffled = 0;
-  const int odd = curve_bits_ & 1;
-  for (int shift = curve_bits_ + 30; shift >= odd; shift -= 2) {
+  const uint64_t block = along_curve_ >> block_bits_;
+  const uint32_t in_block = uint32_t(along_curve_) & ((1u << block_bits_) - 1);
+  uint64_t shuffled = permuted(in_block, 1u << block_bits_, random_bits(key + 64, block));
+  for (int shift = curve_bits_ + 30; shift >= block_bits_; shift -= 2) {
     const uint64_t digit = along_curve_ >> shift & 3, above = along_curve_ >> (shift + 2);
     const uint64_t drawn = random_bits(key + uint64_t(shift), above) >> 32;
     shuffled |= uint64_t(orders_of_four.to[drawn * 24 >> 32][digit]) << shift;
   }
-  if (odd) shuffled |= (along_curve_ ^ random_bits(key + 64, along_curve_ >> 1) >> 63) & 1;
   return shuffled;
 }
 
@@ -101,14 +111,14 @@ float Sampler::next() {
   switch (kind_) {
     case SamplerKind::independent: return unit_float(upper(key));
     case SamplerKind::stratified:
-    case SamplerKind::hammersley: return in_stratum(permuted(index_, count_, upper(key)), count_, upper(random_bits(key, index_)));
+    case SamplerKind::hammersley: return in_stratum(permuted(index_, count_, key), count_, upper(random_bits(key, index_)));
     case SamplerKind::halton: {
       // From the last prime on from the first one, with the samples in another order.
-      const uint32_t index = dimension < prime_count ? index_ : permuted(index_, count_, upper(key));
+      const uint32_t index = dimension < prime_count ? index_ : permuted(index_, count_, key);
       return owen_radical_inverse(prime(dimension % prime_count), index, count_, key);
     }
-    case SamplerKind::sobol: return unit_float(owen_scrambled(sobol_first(owen_scrambled(index_, upper(key))), lower(key)));
-    case SamplerKind::blue_noise: return unit_float(owen_scrambled(sobol_first(curve_index(key)), lower(key)));
+    case SamplerKind::sobol: return unit_float(owen_scrambled(sobol_first(block_index(key)), lower(random_bits(~key, 0))));
+    case SamplerKind::blue_noise: return unit_float(owen_scrambled(sobol_first(curve_index(key)), lower(random_bits(~key, 0))));
   }
   return 0;
 }
@@ -123,16 +133,17 @@ Vec2f Sampler::next2() {
       // A grid of columns and rows, the last of which may be short. Each column is as many thin ones as there are rows, which those of the
       // column take in an order of its own; the same with rows.
       const uint64_t orders = random_bits(key, 1), place = random_bits(key, uint64_t(2) + index_);
-      const uint32_t i = permuted(index_, count_, upper(key)), row = i / columns_, first = row * columns_;
-      const uint32_t column = permuted(i - first, columns_, upper(orders));
-      const uint32_t thin_column = column * rows_ + permuted(row, rows_, upper(random_bits(orders, column)));
-      const uint32_t thin_row = first + permuted(i - first, std::min(columns_, count_ - first), lower(random_bits(orders, row)));
+      const uint32_t i = permuted(index_, count_, key), row = i / columns_, first = row * columns_;
+      const uint32_t column = permuted(i - first, columns_, orders);
+      const uint32_t thin_column = column * rows_ + permuted(row, rows_, random_bits(orders, column));
+      const uint32_t thin_row = first + permuted(i - first, std::min(columns_, count_ - first), random_bits(~orders, row));
       return {in_stratum(thin_column, columns_ * rows_, upper(place)), in_stratum(thin_row, count_, lower(place))};
     }
     case SamplerKind::hammersley: {
       dimension_ += 2;
-      const uint32_t i = permuted(index_, count_, upper(key));
-      return {in_stratum(i, count_, upper(random_bits(key, index_))), unit_float(owen_scrambled(reverse_bits(i), lower(key)))};
+      const uint32_t i = permuted(index_, count_, key);
+      return {in_stratum(i, count_, upper(random_bits(key, index_))),
+              unit_float(owen_scrambled(reverse_bits(i), upper(random_bits(~key, 0))))};
     }
     case SamplerKind::halton: {
       const float x = next();
@@ -141,8 +152,8 @@ Vec2f Sampler::next2() {
     case SamplerKind::sobol:
     case SamplerKind::blue_noise: {
       dimension_ += 2;
-      const uint64_t index = kind_ == SamplerKind::sobol ? owen_scrambled(index_, upper(key)) : curve_index(key);
-      const uint64_t digits = random_bits(key, 1);
+      const uint64_t index = kind_ == SamplerKind::sobol ? block_index(key) : curve_index(key);
+      const uint64_t digits = random_bits(~key, 0);
       return {unit_float(owen_scrambled(sobol_first(index), upper(digits))),
               unit_float(owen_scrambled(sobol_second(index), lower(digits)))};
     }

@@ -22,7 +22,7 @@ enum class SamplerKind {
   stratified,   ///< multi-jittered (Chiu, Shirley, Wang 1994): one sample in each stratum of each axis and each cell of a grid; any count
   halton,       ///< radical inverses in the first primes, digits scrambled (Owen 1995)
   hammersley,   ///< pairs of (i + random) / N and a scrambled radical inverse: needs the count in advance
-  sobol,        ///< pairs of Sobol's sequence, order and digits scrambled (Burley 2020); best with powers of two
+  sobol,        ///< pairs of Sobol's sequence, digits scrambled (Burley 2020), order shuffled in blocks of 16; best with powers of two
   blue_noise,   ///< the same sequence dealt along a shuffled Z-curve of the pixels, so that neighbours err in opposite ways (Ahmed, Wonka
                 ///< 2020)
 };
@@ -47,12 +47,14 @@ class Sampler {
   uint32_t dimension() const { return dimension_; }
 
  private:
+  uint32_t block_index(uint64_t key) const;
   uint64_t curve_index(uint64_t key) const;
 
   SamplerKind kind_;
   uint32_t count_;            // samples of a pattern
   uint32_t columns_, rows_;   // stratified: of the coarse strata, columns * rows >= count
   int curve_bits_ = 0;        // blue noise: bits of the sample in an index along the curve
+  int block_bits_ = 0;        // Sobol: of a block of samples in any order, up to 16
   uint64_t seed_;             // mixed
   uint64_t key_ = 0;          // of pixel and pattern; independent: of the sample; blue noise: of the pattern
   uint64_t along_curve_ = 0;  // blue noise: pixel and sample as one number

@@ -45,12 +45,12 @@ double integral(const auto& f, double t, double dt, double a, double da, double 
       }
     return sum * dt * da / (n * n);
   };
-  const bool narrow = depth < 6 && std::any_of(peaks.begin(), peaks.end(), [&](Vec2 p) {
+  const bool narrow = depth < 8 && std::any_of(peaks.begin(), peaks.end(), [&](Vec2 p) {
                         return p.x >= t - dt / 4 && p.x <= t + dt * 1.25 && p.y >= a - da / 4 && p.y <= a + da * 1.25;
                       });
   if (!narrow) {
     const double rough = midpoints(depth ? 4 : 8), fine = midpoints(depth ? 8 : 16);
-    if (depth == 8 || std::abs(fine - rough) < 1e-3 * fine + enough) return fine;
+    if (depth == 11 || std::abs(fine - rough) < 1e-3 * fine + enough) return fine;
   }
   double sum = 0;
   for (int k = 0; k < 4; ++k) sum += integral(f, t + (k & 1) * dt / 2, dt / 2, a + (k >> 1) * da / 2, da / 2, enough / 2, peaks, depth + 1);
@@ -67,7 +67,7 @@ TEST_CASE("bsdf: what is sampled has the density pdf(), which with deltas and wh
     const Material material(c.material);
     const Bsdf b = make_bsdf(material, material.base_color(), c.opacity);
     if (b.delta_only()) continue;
-    for (const size_t k : {0, 2, 3, 5}) {
+    for (const size_t k : {0, 2, 3, 4}) {
       const Vec3f wo = directions()[k];
       CAPTURE(wo.z);
       const std::vector<Vec2> peaks = smooth_directions(wo, material.ior());
@@ -109,8 +109,8 @@ TEST_CASE("bsdf: energy is kept by what evaluate() says as well, not only by sam
     if (!c.white || c.material.specular_roughness < .4 || c.material.transmission_weight == 0 || c.material.specular_ior == 1) continue;
     CAPTURE(c.name);
     for (const Vec3f wo : directions()) {
-      const double energy =
-          integral([&](Vec3f wi) { return std::abs(wi.z) * b.evaluate(wo, wi, Transport::importance).y; }, 0, M_PI, 0, 2 * M_PI, 1e-4);
+      const double energy = integral([&](Vec3f wi) { return std::abs(wi.z) * b.evaluate(wo, wi, Transport::importance).y; }, 0, M_PI, 0,
+                                     2 * M_PI, 1e-5, smooth_directions(wo, material.ior()));
       CHECK(energy == Approx(1).epsilon(.015));
     }
   }

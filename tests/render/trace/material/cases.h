@@ -43,6 +43,8 @@ inline std::vector<Case> cases() {
   add("white paper", true, [](SurfaceMaterial& m) { m.specular_weight = 0, m.thin_walled = true, m.subsurface_weight = .5; });
   add("bubble", true, [](SurfaceMaterial& m) { m.transmission_weight = 1, m.specular_ior = 1; });
   add("dense glass", true, [](SurfaceMaterial& m) { m.transmission_weight = 1, m.specular_ior = 2.5, m.specular_roughness = .6; });
+  add("thin air", true, [](SurfaceMaterial& m) { m.transmission_weight = 1, m.specular_ior = 1.01, m.specular_roughness = .5; });
+  add("germanium", true, [](SurfaceMaterial& m) { m.transmission_weight = 1, m.specular_ior = 4, m.specular_roughness = .3; });
   add("brushed metal", false, [](SurfaceMaterial& m) { m.base_metalness = 1, m.specular_anisotropy = .8, m.specular_roughness = .5; });
   add(
       "translucent", true, [](SurfaceMaterial& m) { m.specular_roughness = .4; }, .3f);
@@ -67,8 +69,7 @@ inline Vec3f direction(double cosine, double angle) {
 
 /// From both sides.
 inline std::vector<Vec3f> directions() {
-  return {direction(1, 0),     direction(.8, 1),  direction(.35, 2.5), direction(.06, 4),
-          direction(-.95, .3), direction(-.6, 5), direction(-.2, 3)};
+  return {direction(1, 0), direction(.8, 1), direction(.35, 2.5), direction(.06, 4), direction(-.6, 5), direction(-.2, 3)};
 }
 
 /// Shares of uniform light that go out along wo, by samples.

@@ -124,7 +124,7 @@ TEST_CASE("sequences: scrambled radical inverses keep one point in each interval
 TEST_CASE("sequences: permuted is a permutation, and brings each place everywhere equally often (4 standard errors)") {
   for (const uint32_t count : {1u, 2u, 3u, 17u, 64u, 1000u}) {
     std::set<uint32_t> met;
-    for (uint32_t i = 0; i < count; ++i) met.insert(permuted(i, count, 12345));
+    for (uint32_t i = 0; i < count; ++i) met.insert(permuted(i, count, random_bits(9, count)));
     CHECK(met.size() == count);
     CHECK(*met.rbegin() == count - 1);
   }
@@ -132,9 +132,26 @@ TEST_CASE("sequences: permuted is a permutation, and brings each place everywher
   const int n = 20'000;
   int there[count][count] = {};
   for (int s = 0; s < n; ++s)
-    for (uint32_t i = 0; i < count; ++i) ++there[i][permuted(i, count, uint32_t(random_bits(1, uint64_t(s))))];
+    for (uint32_t i = 0; i < count; ++i) ++there[i][permuted(i, count, random_bits(1, uint64_t(s)))];
   for (const auto& row : there)
     for (const int k : row) CHECK(std::abs(k - n / 5.) < 4 * std::sqrt(n * .2 * .8));
+}
+
+TEST_CASE("sequences: two orders know nothing of each other: products of signs vary by count / (count - 1), as with shuffled cards") {
+  const int n = 20'000;
+  for (const uint32_t count : {4u, 8u, 16u, 32u, 64u, 256u})
+    for (const uint32_t bit : {0u, 1u}) {
+      double squares = 0;
+      for (int s = 0; s < n; ++s) {
+        double sum = 0;
+        for (uint32_t i = 0; i < count; ++i)
+          sum += ((permuted(i, count, random_bits(1, uint64_t(s))) ^ permuted(i, count, random_bits(2, uint64_t(s)))) >> bit & 1) ? -1 : 1;
+        squares += sum * sum / count / n;
+      }
+      CAPTURE(count);
+      // The square of a sum of signs has a standard deviation of at most the root of 2, by its mean.
+      CHECK(squares == Approx(count / (count - 1.)).epsilon(4 * std::sqrt(2. / n)));
+    }
 }
 
 TEST_CASE("sequences: units are below one") {
