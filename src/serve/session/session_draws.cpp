@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "pipeline/picture/picture.h"
+#include "serve/renderer/same_picture.h"
 #include "serve/renderer/tell.h"
 #include "serve/session/command_text.h"
 #include "serve/session/limits.h"
@@ -105,10 +106,11 @@ void Session::load(std::unique_lock<std::mutex>& lock) {
   needs_load_ = false;
   PipelineFile file = history_.now();
   const Change change = last_change_;
+  const bool looks_same = loaded_ && make_same_picture(file, good_) && shown_time_ == time_;
   const bool times_known = film_.has_value() && loaded_ && file.steps == good_.steps;
   Context& context = begin_work(-1);
   std::optional<FilmTimes> film = film_;
-  send_all({{"is", text("busy")}, {"revision", Json(revision_ + 1)}});
+  if (!looks_same) send_all({{"is", text("busy")}, {"revision", Json(revision_ + 1)}});
   lock.unlock();
   PipelineFile completed;
   std::string problem;
@@ -145,25 +147,37 @@ void Session::load(std::unique_lock<std::mutex>& lock) {
   }
   history_.complete(completed);
   good_ = std::move(completed), film_ = std::move(film), loaded_ = true, needs_tell_ = true;
+  if (looks_same) return;  // what is drawn stays
+  shown_time_ = time_;
   ++revision_;
   restart_views();
 }
 
-// A picture that nobody sees, before there is a window: what rays need to know of the data is found then.
+// Pictures that nobody sees, before there is a window: what rays need to know of the data is found then, and how coarse a first picture has
+// to be so that it comes at once.
 void Session::warm_up(std::unique_lock<std::mutex>& lock) {
   cold_ = false;
   if (!clients_.empty()) return;
   DrawRequest request;
   request.view = -1, request.quality = Quality::moving;
-  Context& context = begin_work(-1);
-  lock.unlock();
-  try {
-    renderer_->draw(request, context);
-    renderer_->forget(-1);
-  } catch (const std::exception&) {  // the window is told when it asks
+  constexpr int most = 5;
+  double coarse = 0;
+  for (int i = 0; i < most && clients_.empty() && !stopping_ && !needs_load_; ++i) {
+    Context& context = begin_work(-1);
+    lock.unlock();
+    double drawn = coarse;
+    try {
+      drawn = renderer_->draw(request, context).coarse;
+    } catch (const std::exception&) {  // the window is told when it asks
+    }
+    lock.lock();
+    running_.reset();
+    if (drawn == coarse) break;
+    coarse = drawn;
   }
+  lock.unlock();
+  renderer_->forget(-1);
   lock.lock();
-  running_.reset();
 }
 
 void Session::tell(std::unique_lock<std::mutex>& lock) {
