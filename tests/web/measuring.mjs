@@ -57,7 +57,7 @@ export async function measuring(test, o, browser) {
       await box.fill(place);
       await box.press("Enter");
     }
-    assert.match(await now(), /distance 0\.5/);
+    await page.waitForFunction(() => /distance 0\.5/.test(document.querySelector(".measured-now").textContent));
     await page.click("button:has-text('Keep')");
     await page.getByLabel("Name of measurement 1").fill("Gap");
     await page.getByLabel("Name of measurement 1").press("Enter");
