@@ -29,6 +29,6 @@ TEST_CASE("pages: what a page leaves out of the picture is said on the command l
   const Ran shadows =
       sightglass({"render", "--source", "hydrogen size=16", "--show", "volume shadows=0.5", "--size", "160x120", "-o", "shadows.html"});
   CHECK(shadows.status == 0);
-  CHECK(shadows.err.find("shadows") != std::string::npos);
+  CHECK((shadows.out + shadows.err).find("shadows and occlusion") != std::string::npos);
   CHECK(bytes_of("shadows.html").starts_with("<!doctype html>"));
 }

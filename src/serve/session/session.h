@@ -17,6 +17,7 @@
 #include "pipeline/film/film_times.h"
 #include "serve/door/session_host.h"
 #include "serve/renderer/renderer.h"
+#include "serve/renderer/view_camera.h"
 #include "serve/session/client.h"
 #include "serve/session/edits.h"
 #include "serve/session/history.h"

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numeric>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -160,13 +159,6 @@ size_t hide(Array& ghost, const std::vector<uint8_t>& keep, uint8_t bit) {
       std::plus<>());
 }
 
-// How many a mesh does not hide.
-size_t seen(const Array& ghost, size_t all) {
-  if (ghost.empty()) return all;
-  const auto marks = ghost.view<uint8_t>();
-  return size_t(std::count(marks.data, marks.data + all, uint8_t(0)));
-}
-
 // The points of the cells that are kept.
 std::vector<uint8_t> points_of(const DatasetPtr& d, const std::vector<uint8_t>& cells) {
   std::vector<uint8_t> points(d->point_count());
@@ -224,8 +216,12 @@ Json steps_of(const Selection& s) {
 
 Selected selected_of(const DatasetPtr& d, const Selection& s, Context& context) {
   const bool cloud = d->as<PointCloud>() != nullptr;
-  if (s.all())
+  if (s.all()) {
+    const auto seen = [](const Array& ghost, size_t all) {
+      return ghost.empty() ? all : size_t(std::count(ghost.view<uint8_t>().data, ghost.view<uint8_t>().data + all, uint8_t(0)));
+    };
     return {cloud ? nullptr : d, d, cloud ? 0 : seen(d->cell_ghost(), d->cell_count()), seen(d->point_ghost(), d->point_count())};
+  }
   std::vector<uint8_t> cells(d->cell_count(), 1), points(d->point_count(), 1);
   if (!s.field.empty()) {
     const Field& f = field_of(*d, s);
