@@ -79,6 +79,7 @@ export async function measuring(test, o, browser) {
     await picture.focus();
     await andSettle(page, () => page.keyboard.press("5"));
     await andSettle(page, () => page.keyboard.press("p"));
+    await page.keyboard.press("d");
     await picture.focus();
     await page.keyboard.press("Enter"); // a place in the middle, without a mouse
     await placed(1);

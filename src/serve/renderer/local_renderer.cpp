@@ -149,7 +149,9 @@ DrawnView LocalRenderer::draw_moving(const PreparedPicture& prepared, const Stat
   const Frame frame = panel.box_behind && has_volume(panel.scene)
                           ? draw_over_edges(panel, pace, options, context)
                           : render(rough(panel.scene, Quality::moving, pace), panel.camera, options, context);
-  coarse = pace_ = next_coarseness(pace, seconds_since(begin), drag_seconds);
+  coarse = next_coarseness(pace, seconds_since(begin), drag_seconds);
+  constexpr double telling = 100000;  // pixels: smaller pictures say nothing of others
+  if (area.width * area.height > telling) pace_ = coarse;
   Image image = to_image(frame, panel.scene.transparent);
   set_area(area, drawn);
   drawn.part = request.part == drawn.area;

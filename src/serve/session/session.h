@@ -102,7 +102,8 @@ class Session : public std::enable_shared_from_this<Session> {
   std::string state_;                 ///< the last message "state", without what depends on the window
   std::unique_ptr<Context> running_, asking_;
   int asking_client_ = 0;  ///< whose question is answered
-  int running_view_ = -1;  ///< of the renderer; -1: something else runs
+  static constexpr int warming = -2;
+  int running_view_ = -1;  ///< of the renderer; -1: something else runs; warming: a picture that nobody sees
   std::deque<std::pair<std::string, Saved>> saved_;
   bool together_ = false;             ///< all windows look from where the last one of them went
   std::optional<ViewCamera> common_;  ///< that camera, once one of them has told it

@@ -84,27 +84,29 @@ void Session::load(std::unique_lock<std::mutex>& lock) {
   restart_views();
 }
 
-// Pictures that nobody sees, before there is a window: what rays need to know of the data is found then, and how coarse a first picture has
-// to be so that it comes at once.
+// Pictures that nobody sees, before there is a window: a small one, for what rays need to know of the data, then some from which the first
+// picture knows how coarse it has to be so that it comes at once. Those stop as soon as somebody wants to see one.
 void Session::warm_up(std::unique_lock<std::mutex>& lock) {
   cold_ = false;
-  if (!clients_.empty()) return;
   DrawRequest request;
   request.view = -1, request.quality = Quality::moving;
-  constexpr int most = 5;
+  const DrawRequest full = request;
+  request.width = 64, request.height = 36;
+  constexpr int most = 6;
   double coarse = 0;
   for (int i = 0; i < most && clients_.empty() && !stopping_ && !needs_load_; ++i) {
-    Context& context = begin_work(-1);
+    Context& context = begin_work(i == 0 ? -1 : warming);
     lock.unlock();
     double drawn = coarse;
     try {
       drawn = renderer_->draw(request, context).coarse;
+      if (i == 0) renderer_->forget(-1);
     } catch (const std::exception&) {  // the window is told when it asks
     }
     lock.lock();
     running_.reset();
-    if (drawn == coarse) break;
-    coarse = drawn;
+    if (i > 0 && drawn == coarse) break;
+    coarse = i == 0 ? 0 : drawn, request = full;
   }
   lock.unlock();
   renderer_->forget(-1);

@@ -120,7 +120,7 @@ void Session::take_together(Client& client, const Json& message) {
 }
 
 void Session::interrupt(int view) {
-  if (running_ && running_view_ == view) running_->cancel();
+  if (running_ && (running_view_ == view || running_view_ == warming)) running_->cancel();
 }
 
 void Session::restart_views() {
