@@ -21,6 +21,9 @@ export class Session {
   progress: { share: number; doing: string } | null = null;
   notes: string[] = [];
   private opened = false;
+  private meet = (): void => undefined;
+  /** Once the server has taken the connection, or not. */
+  readonly met = new Promise<void>((resolve) => (this.meet = resolve));
   readonly edits = new Edits();
   /** The number of the last change that the server has not answered, or 0. */
   private changing = 0;
@@ -189,6 +192,7 @@ export class Session {
     const before = this.connected;
     this.connected = how;
     if (how === "open") this.opened = true;
+    if (how !== "connecting") this.meet();
     if (how === "lost" && !this.opened) this.on.neverOpened();
     if (how === "lost") {
       this.changing = 0;
