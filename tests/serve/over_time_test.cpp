@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <filesystem>
 #include <thread>
 #include <vector>
 
@@ -103,6 +104,30 @@ TEST_CASE("over_time: the values of a series at a place, in order, the picture l
   CHECK(refused(",'step':'flow','field':'wool','at':[1,1,1]").find("wool") != std::string::npos);
   CHECK(refused(",'step':'none','field':'v','at':[1,1,1]").find("no step") != std::string::npos);
   CHECK(refused(",'step':'flow','field':'v','at':[1,1]").find("not a place") != std::string::npos);
+}
+
+TEST_CASE("over_time: a file that cannot be read leaves a gap that names it; where none can, the question is refused") {
+  const std::string folder = series_folder();
+  const auto session = test::opened(series_text(folder));
+  Window window(*session);
+  CHECK(window.next("state")["times"].size() == 4);
+  const std::string ask = "{'do':'over_time','n':3,'step':'flow','field':'v','at':[1,1,1]}";
+  write_file(folder + "f_2.vtk", "# vtk DataFile Version 3.0\nbroken\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3");
+  window.say(ask);
+  const Json curve = window.next("over_time");
+  REQUIRE(curve["values"].size() == 4);
+  CHECK(curve["values"][1].number() == Approx(1 + 5));
+  CHECK(curve["values"][2].is_null());
+  CHECK(curve["values"][3].number() == Approx(1 + 15));
+  REQUIRE(curve["gaps"].size() == 1);
+  CHECK(curve["gaps"][0]["time"].number() == 1);
+  CHECK(curve["gaps"][0]["text"].text().find("f_2.vtk") != std::string::npos);
+  std::filesystem::remove(folder + "f_3.vtk");  // was there when the series was found
+  window.say(ask);
+  CHECK(window.next("over_time")["gaps"].size() == 2);
+  for (const char* name : {"f_0.vtk", "f_1.vtk"}) write_file(folder + name, "nothing");
+  window.say(ask);
+  CHECK(window.next("refused")["errors"][0]["text"].text().find(".vtk") != std::string::npos);
 }
 
 TEST_CASE("over_time: other questions are answered in between, and a window that leaves ends it") {

@@ -57,13 +57,29 @@ export async function measuring(test, o, browser) {
       await box.fill(place);
       await box.press("Enter");
     }
-    assert.match(await now(), /distance 0\.5/);
+    await page.waitForFunction(() => /distance 0\.5/.test(document.querySelector(".measured-now").textContent));
     await page.click("button:has-text('Keep')");
     await page.getByLabel("Name of measurement 1").fill("Gap");
     await page.getByLabel("Name of measurement 1").press("Enter");
     await page.waitForFunction(() => /Gap/.test(document.querySelector(".measured-text")?.textContent ?? ""));
     const file = await saved(page, "section:has(h2:text('Measured')) button:has-text('CSV')");
     assert.match(file, /^name,what,value,unit,note,places\r\nGap,distance,0\.5,/);
+    // The session keeps them: in its file, for windows that come later, and taken back like other changes.
+    await page.click("#tab-file");
+    assert.match(await saved(page, "button:has-text('Save …')"), /measurements: .*Gap @ 0,0,0 0.3,0.4,0/);
+    await page.reload();
+    await settled(page);
+    await page.click("#tab-numbers");
+    assert.equal(await page.getByLabel("Name of measurement 1").inputValue(), "Gap");
+    await page.locator(".measurement.kept").first().waitFor();
+    await page.keyboard.press("Control+z");
+    await page.waitForFunction(() => document.querySelector(".kept-name")?.value === "Measurement 1");
+    await page.keyboard.press("Control+y");
+    await page.waitForFunction(() => document.querySelector(".kept-name")?.value === "Gap");
+    await picture.focus();
+    await andSettle(page, () => page.keyboard.press("5"));
+    await andSettle(page, () => page.keyboard.press("p"));
+    await page.keyboard.press("d");
     await picture.focus();
     await page.keyboard.press("Enter"); // a place in the middle, without a mouse
     await placed(1);

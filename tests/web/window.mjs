@@ -304,6 +304,28 @@ await test("values along a line are plotted, and saved as numbers and as a figur
   }
 });
 
+await test("a line is dragged in the picture, and its values are plotted", async () => {
+  await picture.focus();
+  await page.keyboard.press("l");
+  await dragOn(page, [middle[0] - 60, middle[1]], [120, 30]);
+  await page.waitForSelector(".panel .uplot canvas");
+  const ends = await page.locator(".ruler-end").evaluateAll((all) => all.map((e) => { const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; }));
+  assert.equal(ends.length, 2, "the line lies in the picture");
+  for (const [end, at] of [[ends[0], [middle[0] - 60, middle[1]]], [ends[1], [middle[0] + 60, middle[1] + 30]]])
+    assert.ok(Math.hypot(end[0] - at[0], end[1] - at[1]) < 3, `${end} where it was dragged to ${at}`);
+  await shot(o, page, "line");
+  await page.keyboard.press("t");
+});
+
+await test("the window fills the screen and comes back", async () => {
+  await andSettle(page, () => page.click("button[aria-label='Full screen']"));
+  assert.ok(await page.evaluate(() => document.fullscreenElement === document.documentElement));
+  assert.ok((await seen(page)).colors > 10);
+  await page.keyboard.press("f");
+  await page.waitForFunction(() => document.fullscreenElement === null);
+  await settled(page);
+});
+
 await test("the session is a file: saved, changed as text, compared, loaded", async () => {
   await tab("file");
   const [download] = await Promise.all([page.waitForEvent("download"), page.click("text=Save …")]);
@@ -388,6 +410,51 @@ await test("a second window sees the same session and the cursor of the first", 
   await andSettle(other, () => undefined);
   assert.notEqual((await seen(other)).sum, own, "looking along follows the other's camera");
   await other.close();
+});
+
+await test("two windows have one view, whichever of them moves it, until one ends that", async () => {
+  const other = await page.context().newPage();
+  await other.goto(address);
+  await settled(other);
+  // The same view is the same picture, and not that of before.
+  const both = async (why, not) => {
+    const until = Date.now() + 25000;
+    for (;;) {
+      await settled(page);
+      await settled(other);
+      const [a, b] = [(await seen(page)).sum, (await seen(other)).sum];
+      if (a === b && a !== not) return a;
+      assert.ok(Date.now() < until, why);
+      await page.waitForTimeout(100);
+    }
+  };
+  const apart = async (why) => {
+    for (const until = Date.now() + 25000; (await seen(page)).sum === (await seen(other)).sum; await page.waitForTimeout(100)) assert.ok(Date.now() < until, why);
+    await settled(page);
+  };
+  await picture.focus();
+  await page.keyboard.press("ArrowUp");
+  await apart("each has its own view at first");
+  await page.getByLabel("one view for all").check();
+  const first = await both("the view of whoever begins");
+  await other.waitForFunction(() => document.querySelector(".people input").checked);
+  await other.locator(".view-surface").first().focus();
+  await other.keyboard.press("ArrowLeft");
+  const second = await both("the second one leads", first);
+  await page.mouse.move(...middle);
+  await page.waitForTimeout(300);
+  assert.equal(await both("pointing moves nothing"), second);
+  await other.waitForSelector(".cursor", { state: "attached" });
+  await picture.focus();
+  await page.keyboard.press("Shift+ArrowLeft");
+  await both("the first one leads", second);
+  await shot(o, page, "one_view");
+  await other.getByLabel("one view for all").uncheck();
+  await page.waitForFunction(() => !document.querySelector(".people input").checked);
+  await page.keyboard.press("ArrowLeft");
+  await apart("each has its own view again");
+  await other.close();
+  await andSettle(page, () => page.keyboard.press("r"));
 });
 
 await test("after a reload the session is there again", async () => {

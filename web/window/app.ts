@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The window: its session, its views, and what is selected in it. The panels draw themselves from this.
 import { fit, namedViews, toggleProjection, upIsY } from "./camera/camera";
-import type { Catalog } from "./catalog";
+import { noCatalog, type Catalog } from "./catalog";
 import type { Drag } from "./input/pointer";
 import { Commands } from "./input/commands";
 import type { Camera, State } from "./protocol";
@@ -23,6 +23,8 @@ export type Tool = "turn" | "pan" | "zoom" | "window" | "line" | "measure" | "la
 export type Dialog = "help" | "add" | "save" | "legend" | null;
 
 export class App {
+  /** What can be requested; empty until it has come. */
+  catalog: Catalog = noCatalog;
   readonly session: Session;
   readonly views: View[] = [];
   readonly probe: Probe;
@@ -49,12 +51,11 @@ export class App {
   private messageTimer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(
-    readonly catalog: Catalog,
     url: string,
     private readonly render: (app: App) => void,
     neverOpened: () => void = () => undefined,
   ) {
-    this.session = new Session(url, catalog, () => this.changed(), {
+    this.session = new Session(url, () => this.changed(), {
       frame: (header, picture) => void this.views[header.view]?.canvas.receive(header, picture),
       state: (state, before) => this.stateCame(state, before),
       restart: () => this.views.forEach((v) => v.restart()),
@@ -203,8 +204,8 @@ export class App {
   private stateCame(state: State, before: State | null): void {
     if (!before) {
       this.beginning = state.pipeline;
-      // A view that has drawn nothing yet begins with the camera chosen from the data.
-      for (const v of this.views) if (!v.camera && state.camera) v.look(state.camera, false, false);
+      // A view that has asked for nothing yet begins with the camera chosen from the data; what it has asked for comes with that camera.
+      for (const v of this.views) if (!v.camera && state.camera && v.drawing.newest === 0) v.look(state.camera, false, false);
       document.title = state.title ? `${state.title} – Sightglass` : "Sightglass";
     }
     if (this.session.wordsAt(this.selected) && this.selected.startsWith("show/") && !state.show[Number(this.selected.slice(5))])

@@ -38,6 +38,9 @@ export interface Catalog {
   picture: Entry;
 }
 
+const noEntry: Entry = { name: "", kind: "", sentence: "", params: { properties: {} } };
+export const noCatalog: Catalog = { sources: [], operations: [], show: [], read: noEntry, camera: noEntry, picture: noEntry };
+
 export const stepEntry = (catalog: Catalog, operation: string): Entry | undefined =>
   operation === "read"
     ? catalog.read

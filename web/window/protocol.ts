@@ -173,6 +173,7 @@ export interface OverTimeAnswer {
   unit?: string;
   times: number[];
   values: (number | null)[];
+  gaps?: { time: number; text: string }[]; // times that could not be read
 }
 
 export interface Proposal {
@@ -217,7 +218,7 @@ export type ServerMessage =
   | { is: "progress"; share: number; doing: string }
   | { is: "busy"; revision: number }
   | { is: "note"; text: string }
-  | { is: "people"; count: number; cursors: Cursor[] };
+  | { is: "people"; count: number; cursors: Cursor[]; together?: boolean; camera?: Camera; led?: boolean };
 
 /** Splits a binary message into its header and its picture. */
 export function splitFrame(message: ArrayBuffer): { header: FrameHeader; picture: Uint8Array } {

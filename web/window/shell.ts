@@ -4,6 +4,7 @@ import { icon } from "./icons";
 import iconUrl from "./icon.svg?url";
 import { html, nothing, render, type TemplateResult } from "lit";
 import type { App, Tab, Tool } from "./app";
+import { noCatalog } from "./catalog";
 import { addDialog } from "./panels/add";
 import { filePanel } from "./panels/file";
 import { helpDialog } from "./panels/help";
@@ -92,7 +93,7 @@ function panel(app: App): TemplateResult {
     </div>
     <div class="panel-body" id="panel-body" role="tabpanel" aria-labelledby="tab-${app.tab}" tabindex="-1">
       ${app.state && !app.state.may_edit ? html`<p class="quiet pad">This session can be looked at, not changed.</p>` : nothing}
-      ${app.state ? content[app.tab]() : html`<p class="empty">Reading …</p>`}
+      ${app.state && app.catalog !== noCatalog ? content[app.tab]() : html`<p class="empty">Reading …</p>`}
     </div>
   </aside>`;
 }
@@ -114,7 +115,8 @@ function people(app: App): TemplateResult {
   const { people } = app.session;
   const others = people.cursors.filter((c) => c.camera);
   return html`<span class="people">${people.count} people
-    ${others.length > 0
+    <label class="row"><input type="checkbox" .checked=${people.together} @change=${(e: Event) => app.company.setTogether((e.target as HTMLInputElement).checked)} />one view for all</label>
+    ${!people.together && others.length > 0
       ? html`<select class="small" aria-label="Look along with" @change=${(e: Event) => app.company.follow(Number((e.target as HTMLSelectElement).value) || null)}>
           <option value="" ?selected=${app.company.following === null}>own view</option>
           ${others.map((c) => html`<option value=${c.id} ?selected=${c.id === app.company.following}>with ${c.id}</option>`)}</select>`

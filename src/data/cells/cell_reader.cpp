@@ -58,6 +58,8 @@ struct CellReader::Source {
   int axis[3] = {0, 1, 2};
   CellType lattice_type = CellType::voxel;
   const uint8_t* corner_order = box_corners;
+  size_t corner_step[8][3]{};  // of the corners, from the first one
+  size_t corner_id[8]{};
   // Listed points.
   std::optional<PointSource> points;
   // Unstructured.
@@ -74,6 +76,7 @@ struct CellReader::Source {
 
   explicit Source(DatasetPtr d);
   void open_lattice();
+  void open_cell_of_lattice(size_t cell, std::vector<int64_t>& ids, std::vector<Vec3>& at) const;
   void open_unstructured(const UnstructuredMesh& m);
   void open_surface(const SurfaceMesh& m);
   void open_amr(const AmrGrid& g);
@@ -128,6 +131,29 @@ void CellReader::Source::open_lattice() {
                  : axes == 1 ? CellType::line
                  : axes == 2 ? (ring ? CellType::quad : CellType::pixel)
                              : (ring ? CellType::hexahedron : CellType::voxel);
+  for (size_t c = 0; c < size_t(1) << axes; ++c) {
+    for (int a = 0; a < axes; ++a) corner_step[c][axis[a]] = corner_order[c] >> a & 1;
+    corner_id[c] = lattice->view().id(corner_step[c][0], corner_step[c][1], corner_step[c][2]);
+  }
+}
+
+// Of millions of cells each costs little: what corners share is found once.
+void CellReader::Source::open_cell_of_lattice(size_t cell, std::vector<int64_t>& ids, std::vector<Vec3>& at) const {
+  const LatticeView& v = lattice->view();
+  const size_t n = size_t(1) << axes;
+  ids.resize(n), at.resize(n);
+  const size_t i = cell % cell_dims[0], row = cell / cell_dims[0], j = row % cell_dims[1], k = row / cell_dims[1];
+  const size_t first = v.id(i, j, k);
+  for (size_t c = 0; c < n; ++c) ids[c] = int64_t(first + corner_id[c]);
+  if (v.mode != LatticeView::Mode::affine) {
+    for (size_t c = 0; c < n; ++c) at[c] = v.position(i + corner_step[c][0], j + corner_step[c][1], k + corner_step[c][2]);
+    return;
+  }
+  Vec3 along[2][2];  // the sums of LatticeView::position() in its order
+  for (size_t a = 0; a < 2; ++a)
+    for (size_t b = 0; b < 2; ++b) along[a][b] = v.origin + v.step[0] * double(i + a) + v.step[1] * double(j + b);
+  const Vec3 up[2] = {v.step[2] * double(k), v.step[2] * double(k + 1)};
+  for (size_t c = 0; c < n; ++c) at[c] = along[corner_step[c][0]][corner_step[c][1]] + up[corner_step[c][2]];
 }
 
 void CellReader::Source::open_unstructured(const UnstructuredMesh& m) {
@@ -212,20 +238,13 @@ void CellReader::open(size_t cell) {
   orders_ = {0, 0, 0};
   if (cell >= count_) fail_internal(fmt::format("cell {} of {} was requested", cell, count_));
   if (s.kind == Source::Kind::unstructured) return open_unstructured(cell);
+  if (s.kind == Source::Kind::lattice) {
+    type_ = s.lattice_type;
+    return s.open_cell_of_lattice(cell, ids_, at_);
+  }
   ids_.clear(), at_.clear();
   s.each_id(cell, [&](size_t id) { ids_.push_back(int64_t(id)); });
   switch (s.kind) {
-    case Source::Kind::lattice: {
-      type_ = s.lattice_type;
-      const LatticeView& v = s.lattice->view();
-      const size_t i = cell % s.cell_dims[0], j = cell / s.cell_dims[0] % s.cell_dims[1], k = cell / s.cell_dims[0] / s.cell_dims[1];
-      for (size_t c = 0; c < ids_.size(); ++c) {
-        size_t at[3] = {i, j, k};
-        for (int a = 0; a < s.axes; ++a) at[s.axis[a]] += s.corner_order[c] >> a & 1;
-        at_.push_back(v.position(at[0], at[1], at[2]));
-      }
-      return;
-    }
     case Source::Kind::amr: {
       type_ = s.lattice_type;
       const AmrPatch& p = s.patch_of(cell);
@@ -235,6 +254,7 @@ void CellReader::open(size_t cell) {
         at_.push_back(p.origin + (lo + Vec3(double(c & 1), double(c >> 1 & 1), double(c >> 2))) * p.spacing);
       return;
     }
+    case Source::Kind::lattice:
     case Source::Kind::unstructured: return;  // above
     case Source::Kind::surface: {
       const size_t n = ids_.size();

@@ -44,23 +44,27 @@ class AffineCells {
       cells_[a] = std::max<size_t>(v_.dims[a], 2) - 1;
       if (v_.dims[a] > 1) axes_[dimension_++] = a;
     }
+    if (d.as<UniformGrid>()) even_ = measure({0, 0, 0});
   }
   static bool fits(const Dataset& d) { return d.as<UniformGrid>() || d.as<RectilinearGrid>(); }
   int dimension() const { return int(dimension_); }
-  /// The corners' ids; returns the measure.
-  double open(size_t cell, std::array<size_t, 8>& ids) const {
-    std::array<size_t, 3> at{cell % cells_[0], cell / cells_[0] % cells_[1], cell / cells_[0] / cells_[1]};
+  /// Places of the cell along the axes.
+  std::array<size_t, 3> place(size_t cell) const { return {cell % cells_[0], cell / cells_[0] % cells_[1], cell / cells_[0] / cells_[1]}; }
+  size_t first_corner(const std::array<size_t, 3>& at) const { return at[0] + v_.dims[0] * (at[1] + v_.dims[1] * at[2]); }
+  /// From the id of the first corner to that of another.
+  size_t offset(size_t corner) const {
+    std::array<size_t, 3> to{};
+    for (size_t k = 0; k < dimension_; ++k) to[axes_[k]] = corner >> k & 1;
+    return first_corner(to);
+  }
+  double measure(const std::array<size_t, 3>& at) const {
+    if (even_) return *even_;
     Vec3 edge[3];
     const Vec3 first = v_.position(at[0], at[1], at[2]);
     for (size_t k = 0; k < dimension_; ++k) {
       auto next = at;
       ++next[axes_[k]];
       edge[k] = v_.position(next[0], next[1], next[2]) - first;
-    }
-    for (size_t c = 0; c < corners(); ++c) {
-      auto to = at;
-      for (size_t k = 0; k < dimension_; ++k) to[axes_[k]] += c >> k & 1;
-      ids[c] = to[0] + v_.dims[0] * (to[1] + v_.dims[1] * to[2]);
     }
     switch (dimension_) {
       case 3: return std::abs(dot(edge[0], cross(edge[1], edge[2])));
@@ -76,24 +80,41 @@ class AffineCells {
   LatticeView v_;
   std::array<size_t, 3> cells_{}, axes_{};
   size_t dimension_ = 0;
+  std::optional<double> even_;  ///< where all cells are alike
 };
 
 // Adds the sums of cells [begin, end) of such a grid.
 void add_affine(const AffineCells& cells, const CellReader& reader, const std::vector<Column>& columns, size_t begin, size_t end,
                 std::vector<ExactSum>& sums) {
-  std::array<size_t, 8> ids{};
+  struct Cell {
+    size_t id, corner;
+    double measure;
+  };
+  std::vector<Cell> open;
+  open.reserve(end - begin);
   for (size_t c = begin; c < end; ++c) {
     if (reader.hidden(c)) continue;
-    const double measure = cells.open(c, ids);
-    sums.back().add(measure);
-    for (size_t k = 0; k < columns.size(); ++k) {
-      const Array& a = columns[k].field->array;
-      double v = 0;
-      if (columns[k].field->association == Association::cell) v = a.get(c, columns[k].component);
-      else
-        for (size_t i = 0; i < cells.corners(); ++i) v += a.get(ids[i], columns[k].component) / double(cells.corners());
-      sums[k].add(measure * v);
-    }
+    const auto at = cells.place(c);
+    open.push_back({c, cells.first_corner(at), cells.measure(at)});
+    sums.back().add(open.back().measure);
+  }
+  std::array<size_t, 8> offsets{};
+  const size_t corners = cells.corners();
+  for (size_t i = 0; i < corners; ++i) offsets[i] = cells.offset(i);
+  for (size_t k = 0; k < columns.size(); ++k) {
+    const int component = columns[k].component;
+    const bool of_cells = columns[k].field->association == Association::cell;
+    dispatch(columns[k].field->array, [&](const auto& values) {
+      ExactSum sum = sums[k];
+      for (const Cell& cell : open) {
+        double v = 0;
+        if (of_cells) v = double(values(cell.id, component));
+        else
+          for (size_t i = 0; i < corners; ++i) v += double(values(cell.corner + offsets[i], component)) / double(corners);
+        sum.add(cell.measure * v);
+      }
+      sums[k] = sum;
+    });
   }
 }
 

@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
+#include <cmath>
+#include <span>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/field_ops.h"
 #include "data/ranks/over_all.h"
+#include "filter/stats/finite_numbers.h"
+#include "filter/stats/order_statistics.h"
 #include "filter/stats/stats_parts.h"
 
 namespace sg {
@@ -25,68 +28,36 @@ const Array& ghosts_of(const DatasetPtr& in, const Field& f) {
   return f.association == Association::point ? in->point_ghost() : f.association == Association::cell ? in->cell_ghost() : none;
 }
 
-bool left_out(const Array& ghost, size_t i) { return !ghost.empty() && ghost.view<uint8_t>()[i] != 0; }
-
-// The finite values, in order, and how many are not finite.
-struct Numbers {
-  std::vector<double> finite;
-  size_t missing = 0, infinite = 0;
-};
-
-void add_numbers(Numbers& r, const Array& a, int component, const Array& ghost) {
-  r.finite.reserve(r.finite.size() + a.count());
-  dispatch(a, [&](const auto& view) {
-    for (size_t i = 0; i < view.count; ++i) {
-      if (left_out(ghost, i)) continue;
-      double x = 0;
-      if (component >= 0) x = double(view(i, component));
-      else {
-        for (int c = 0; c < view.components; ++c) x += double(view(i, c)) * double(view(i, c));
-        // Squares reach beyond doubles sooner than lengths do.
-        if (!(x > 1e-290 && x < 1e290)) {
-          x = 0;
-          for (int c = 0; c < view.components; ++c) x = std::hypot(x, double(view(i, c)));
-        } else {
-          x = std::sqrt(x);
-        }
-        for (int c = 0; c < view.components; ++c)
-          if (double(view(i, c)) != double(view(i, c))) x = std::nan("");
-      }
-      if (std::isnan(x)) ++r.missing;
-      else if (std::isinf(x)) ++r.infinite;
-      else r.finite.push_back(x);
-    }
-  });
-}
-
 // A field, in each of the parts that have it.
 struct FieldOfParts {
   std::vector<std::pair<DatasetPtr, Field>> parts;
   const Field& first() const { return parts[0].second; }
 };
 
-Numbers numbers_of(const FieldOfParts& f, int component) {
-  Numbers r;
-  for (const auto& [part, field] : f.parts) add_numbers(r, field.array, component, ghosts_of(part, field));
-  return r;
+FiniteNumbers numbers_of(const FieldOfParts& f, int component) {
+  std::vector<FiniteNumbers::Source> sources;
+  for (const auto& [part, field] : f.parts) sources.push_back({&field.array, &ghosts_of(part, field)});
+  return {sources, component};
 }
 
-// The sum of f(v) in fixed chunks, of all pieces.
-template <class F>
-double exact_sum(const std::vector<double>& v, F&& f, const Context& ctx) {
-  std::vector<ExactSum> sum{parallel_reduce(
-      v.size(), values_per_chunk, ExactSum{},
+// The sums of f(v) and g(v) in fixed chunks, of all pieces.
+template <class F, class G>
+std::array<double, 2> exact_sums(std::span<const double> v, F&& f, G&& g, const Context& ctx) {
+  using Two = std::array<ExactSum, 2>;
+  const Two two = parallel_reduce(
+      v.size(), values_per_chunk, Two{},
       [&](size_t begin, size_t end) {
-        ExactSum p;
-        for (size_t i = begin; i < end; ++i) p.add(f(v[i]));
+        Two p;
+        for (size_t i = begin; i < end; ++i) p[0].add(f(v[i])), p[1].add(g(v[i]));
         return p;
       },
-      [](ExactSum a, const ExactSum& b) {
-        a.add(b);
+      [](Two a, const Two& b) {
+        a[0].add(b[0]), a[1].add(b[1]);
         return a;
-      })};
-  over_all(sum, ctx);
-  return sum[0].value();
+      });
+  std::vector<ExactSum> sums(two.begin(), two.end());
+  over_all(sums, ctx);
+  return {sums[0].value(), sums[1].value()};
 }
 
 // The value at a share of the way between two neighbours in order.
@@ -95,24 +66,8 @@ double between(double lo, double hi, double t) {
   return std::isfinite(apart) ? lo + t * apart : lo * (1 - t) + hi * t;
 }
 
-double quantile(std::vector<double>& v, double q) {
-  const double at = q * double(v.size() - 1);
-  const auto i = size_t(at);
-  const auto place = v.begin() + ptrdiff_t(i);
-  std::nth_element(v.begin(), place, v.end());
-  const double lo = *place;
-  return between(lo, i + 1 < v.size() ? *std::min_element(place + 1, v.end()) : lo, at - double(i));
-}
-
-// Bits that rise with the number, and back.
-uint64_t key_of(double x) {
-  const auto bits = std::bit_cast<uint64_t>(x);
-  return bits >> 63 ? ~bits : bits | uint64_t(1) << 63;
-}
-double number_of(uint64_t key) { return std::bit_cast<double>(key >> 63 ? key ^ uint64_t(1) << 63 : ~key); }
-
 // The numbers at these places of the order of all pieces' numbers, by halving the range of doubles; -0 counts as 0.
-std::vector<double> all_at(std::vector<double>& v, const std::vector<int64_t>& places, const Context& ctx) {
+std::vector<double> all_at(std::span<double> v, const std::vector<int64_t>& places, const Context& ctx) {
   for (double& x : v) x += 0.0;
   std::sort(v.begin(), v.end());
   std::vector<uint64_t> lo(places.size(), 0), hi(places.size(), UINT64_MAX);
@@ -134,27 +89,40 @@ std::vector<double> all_at(std::vector<double>& v, const std::vector<int64_t>& p
   return r;
 }
 
+// Of few numbers places of neighbouring quartiles pass each other.
+std::vector<double> in_order(std::span<const double> v, const std::vector<int64_t>& places) {
+  std::vector<size_t> rising(places.begin(), places.end());
+  std::sort(rising.begin(), rising.end());
+  rising.erase(std::unique(rising.begin(), rising.end()), rising.end());
+  const std::vector<double> numbers = numbers_in_order(v, rising);
+  std::vector<double> r;
+  for (const int64_t p : places) r.push_back(numbers[size_t(std::lower_bound(rising.begin(), rising.end(), size_t(p)) - rising.begin())]);
+  return r;
+}
+
 // Least, quartiles and largest of all pieces' numbers, `n` of them.
-std::array<double, 5> quartiles(std::vector<double>& v, int64_t n, const Context& ctx) {
+std::array<double, 5> quartiles(std::span<double> v, int64_t n, const Context& ctx) {
   std::array<double, 5> r{};
-  if (!ctx.communicator) {
-    for (int k = 0; k < 5; ++k) r[size_t(k)] = quantile(v, k / 4.0);
-    return r;
-  }
   std::vector<int64_t> places;
   for (int k = 0; k < 5; ++k) {
     const auto i = int64_t(k / 4.0 * double(n - 1));
     places.push_back(i), places.push_back(std::min(i + 1, n - 1));
   }
-  const std::vector<double> at = all_at(v, places, ctx);
+  const std::vector<double> at = ctx.communicator ? all_at(v, places, ctx) : in_order(v, places);
   for (size_t k = 0; k < 5; ++k) r[k] = between(at[2 * k], at[2 * k + 1], double(k) / 4.0 * double(n - 1) - double(places[2 * k]));
   return r;
 }
 
 // The power of two below the largest absolute value, with which squares stay within doubles; 1 where they do anyway.
-double scale_of(const std::vector<double>& v, const Context& ctx) {
-  double most = 0;
-  for (const double x : v) most = std::max(most, std::fabs(x));
+double scale_of(std::span<const double> v, const Context& ctx) {
+  double most = parallel_reduce(
+      v.size(), values_per_chunk, 0.0,
+      [&](size_t begin, size_t end) {
+        double part = 0;
+        for (size_t i = begin; i < end; ++i) part = std::max(part, std::fabs(v[i]));
+        return part;
+      },
+      [](double a, double b) { return std::max(a, b); });
   most = all_most(most, ctx.communicator);
   return most > 1e140 || (most > 0 && most < 1e-140) ? std::ldexp(1.0, std::ilogb(most)) : 1;
 }
@@ -170,34 +138,29 @@ constexpr const char* number_names[9] = {"min", "quartile1", "median", "quartile
 
 void add_row(Rows& rows, const FieldOfParts& parts, int component, const Context& ctx) {
   const Field& f = parts.first();
-  Numbers numbers = numbers_of(parts, component);
-  std::vector<double>& v = numbers.finite;
+  const FiniteNumbers numbers = numbers_of(parts, component);
+  const std::span<double> v = numbers.values();
   if (rows.fields.empty() || rows.fields.back() != f.name || rows.association.back() != int32_t(f.association)) {
     if (std::find(rows.fields.begin(), rows.fields.end(), f.name) == rows.fields.end()) rows.fields.push_back(f.name);
   }
   rows.field.push_back(int32_t(std::find(rows.fields.begin(), rows.fields.end(), f.name) - rows.fields.begin()));
   rows.association.push_back(int32_t(f.association));
   rows.component.push_back(component);
-  int64_t counts[] = {int64_t(v.size()), int64_t(numbers.missing), int64_t(numbers.infinite)};
+  int64_t counts[] = {int64_t(v.size()), int64_t(numbers.missing()), int64_t(numbers.infinite())};
   all_sum(std::span<int64_t>(counts), ctx.communicator);
   rows.count.push_back(counts[0]), rows.missing.push_back(counts[1]), rows.infinite.push_back(counts[2]);
   double row[9];
   std::fill_n(row, 9, std::nan(""));
   if (counts[0] > 0) {
-    const double n = double(counts[0]), s = scale_of(v, ctx),
-                 sum = exact_sum(
-                     v, [&](double x) { return x / s; }, ctx),
-                 mean = sum / n;
-    row[7] = sum * s;
-    row[5] = mean * s;
-    row[8] = exact_sum(
-                 v, [&](double x) { return (x / s) * (x / s); }, ctx) *
-             s * s;
+    const double n = double(counts[0]), s = scale_of(v, ctx);
+    const auto [sum, squares] = exact_sums(
+        v, [&](double x) { return x / s; }, [&](double x) { return (x / s) * (x / s); }, ctx);
+    const double mean = sum / n;
+    row[7] = sum * s, row[5] = mean * s, row[8] = squares * s * s;
     // Two passes: the squares of differences from the mean do not cancel.
-    row[6] = n > 1 ? s * std::sqrt(exact_sum(
-                                       v, [&](double x) { return (x / s - mean) * (x / s - mean); }, ctx) /
-                                   (n - 1))
-                   : 0;
+    const auto apart = exact_sums(
+        v, [&](double x) { return (x / s - mean) * (x / s - mean); }, [](double) { return 0.0; }, ctx);
+    row[6] = n > 1 ? s * std::sqrt(apart[0] / (n - 1)) : 0;
     const std::array<double, 5> q = quartiles(v, counts[0], ctx);
     std::copy(q.begin(), q.end(), row);
   }
@@ -256,9 +219,11 @@ TablePtr histogram(const DatasetPtr& in, const HistogramParams& p, Context& ctx)
   if (p.component >= f->components())
     fail_usage(fmt::format("asks for component {} of {}", p.component, f->components()), "histogram component", "components count from 0");
   const int component = f->components() == 1 ? 0 : p.component;
-  const Numbers numbers = numbers_of({{{in, *f}}}, component);
-  const std::vector<double>& v = numbers.finite;
-  if (numbers.infinite > 0) ctx.warn(fmt::format("histogram: {} infinite values of '{}' are not in any bin", numbers.infinite, f->name));
+  const FieldOfParts alone{{{in, *f}}};
+  const FiniteNumbers numbers = numbers_of(alone, component);
+  const std::span<const double> v = numbers.values();
+  if (numbers.infinite() > 0)
+    ctx.warn(fmt::format("histogram: {} infinite values of '{}' are not in any bin", numbers.infinite(), f->name));
   double lo = HUGE_VAL, hi = -HUGE_VAL;
   for (const double x : v) lo = std::min(lo, x), hi = std::max(hi, x);
   const Range all = over_all(Range{lo, hi}, ctx);

@@ -44,6 +44,9 @@ void describe(Schema& s, PictureParams& p) {
     "Texts in the picture with their places, apart by semicolons: 'Inlet @ 0.1,0.9; Outlet @ top-right size=1.5 color=red'. A place is the "
     "middle of the text in shares of the picture's width and height from the top left, or top-left, top, top-right, left, center, right, "
     "bottom-left, bottom or bottom-right; {t} as in the title.");
+  s("measurements", p.measurements,
+    "What was measured in a window, which keeps it here: 'Width @ 0,0,0 1,2,3; Angle @ 0,0,0 1,0,0 1,1,0', names with their places in the "
+    "data, apart by semicolons. Not drawn.");
   s("triad", p.triad, "Draw the orientation axes.");
   s("letters", p.letters,
     "Draw at the edges of a scan's picture where they lie in the patient: right, left, anterior, posterior, inferior, superior.");

@@ -29,6 +29,7 @@ struct PictureParams {
   std::string x_title, y_title, z_title;
   bool scale_bar = false;
   std::string caption, note;
+  std::string measurements;  ///< of a window; not drawn
   std::string layout;
   std::vector<std::string> views;
   int samples = 0;

@@ -13,6 +13,10 @@ namespace sg {
 /// own.
 std::vector<size_t> histogram(const Field& field, int component, double lo, double hi, size_t bins, const Context& context = Context());
 
+/// The same of a field of a dataset, which keeps what was counted, as a window asks again at each edit.
+std::vector<size_t> histogram(const Dataset& data, const Field& field, int component, double lo, double hi, size_t bins,
+                              const Context& context = Context());
+
 /// The value below which the share `q` of a histogram's samples over [lo, hi] lies.
 double histogram_quantile(const std::vector<size_t>& bins, double lo, double hi, double q);
 

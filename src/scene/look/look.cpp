@@ -108,7 +108,7 @@ bool look_at_scan(const Dataset& d, const Field& f, Look& look) {
   constexpr double cut_out = 0.7;
   if (!is_scanned(d, f) || r.empty() || two_sided(f, r) || modality_of(d, f) == Modality::ct || looks_like_ct(d, f, &offset)) return false;
   // What was cut out of its surroundings has a surface to be seen: a brain without its skull, vessels alone.
-  const std::vector<size_t> bins = histogram(f, -1, r.lo, r.hi, 1024);
+  const std::vector<size_t> bins = histogram(d, f, -1, r.lo, r.hi, 1024);
   if (double(bins.front()) > cut_out * double(std::accumulate(bins.begin(), bins.end(), size_t(0)))) return false;
   look.filter = {"slice", "planes=xyz"};
   SurfaceShow slices;
@@ -126,7 +126,7 @@ bool look_at_scan(const Dataset& d, const Field& f, Look& look) {
 bool has_no_background(const Dataset& d, const Field& f) {
   constexpr double even = 1.6;  // times as many as a twentieth of the range has on average
   const Range r = d.range(f);
-  const auto bins = histogram(f, -1, r.lo, r.hi, 20);
+  const auto bins = histogram(d, f, -1, r.lo, r.hi, 20);
   const size_t all = std::accumulate(bins.begin(), bins.end(), size_t(0));
   return double(*std::max_element(bins.begin(), bins.end())) < even * double(all) / double(bins.size());
 }

@@ -15,6 +15,7 @@
 #include "serve/renderer/quality.h"
 #include "serve/renderer/questions/over_time.h"
 #include "serve/renderer/questions/questions.h"
+#include "serve/renderer/same_picture.h"
 #include "serve/renderer/tell.h"
 #include "serve/renderer/wish.h"
 
@@ -81,7 +82,8 @@ PipelineFile LocalRenderer::load(const PipelineFile& pipeline, Context& context)
   next->prepared = prepare_picture(next->file, options, context);
   coloring_.clear();
   const std::lock_guard lock(mutex_);
-  planes_.clear(), loaded_ = next;
+  if (!loaded_ || !make_same_picture(loaded_->file, next->file)) planes_.clear();
+  loaded_ = next;
   return next->file;
 }
 
@@ -105,8 +107,8 @@ namespace {
 
 // Edges of the box behind a volume cover parts of pixels, and rays that meet such parts are slow: the volume is drawn over a picture of
 // them.
-Frame draw_over_edges(const Panel& panel, const RenderOptions& options, Context& context) {
-  Scene behind = panel.scene, before = rough(panel.scene, Quality::moving);
+Frame draw_over_edges(const Panel& panel, double coarse, const RenderOptions& options, Context& context) {
+  Scene behind = panel.scene, before = rough(panel.scene, Quality::moving, coarse);
   behind.items.erase(behind.items.begin(), behind.items.end() - 1), behind.shows.clear();
   before.items.pop_back(), before.transparent = true;
   Frame frame = render(behind, panel.camera, options, context);
@@ -137,16 +139,19 @@ DrawnView LocalRenderer::draw_moving(const PreparedPicture& prepared, const Stat
   const Panel panel = panel_of(prepared, stated);
   const Rect area = picture_beside_legends(panel.annotation, stated);
   DrawnView drawn;
-  drawn.coarse = coarse > 0 ? coarse : first_coarseness;
+  const double pace = coarse > 0 ? coarse : pace_ > 0 ? pace_ : first_coarseness;
+  drawn.coarse = std::min(pace, most_pixels_a_sample);
   RenderOptions options;
   options.width = std::max(1, int(std::ceil(area.width / drawn.coarse)));
   options.height = std::max(1, int(std::ceil(area.height / drawn.coarse)));
   options.samples = 1;
   const auto begin = std::chrono::steady_clock::now();
   const Frame frame = panel.box_behind && has_volume(panel.scene)
-                          ? draw_over_edges(panel, options, context)
-                          : render(rough(panel.scene, Quality::moving), panel.camera, options, context);
-  coarse = next_coarseness(drawn.coarse, seconds_since(begin), drag_seconds);
+                          ? draw_over_edges(panel, pace, options, context)
+                          : render(rough(panel.scene, Quality::moving, pace), panel.camera, options, context);
+  coarse = next_coarseness(pace, seconds_since(begin), drag_seconds);
+  constexpr double telling = 100000;  // pixels: smaller pictures say nothing of others
+  if (area.width * area.height > telling) pace_ = coarse;
   Image image = to_image(frame, panel.scene.transparent);
   set_area(area, drawn);
   drawn.part = request.part == drawn.area;

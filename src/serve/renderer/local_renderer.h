@@ -42,6 +42,7 @@ class LocalRenderer : public Renderer {
   std::shared_ptr<Cache> cache_, other_times_;  ///< of what is loaded; of questions over time, which would drive that out
   std::vector<std::string> coloring_;           ///< until a pipeline has it
   std::map<int, double> coarse_;                ///< of the next moving picture of each view; for the thread that draws
+  double pace_ = 0;                             ///< of the last one of any view, with which others begin
   mutable std::mutex mutex_;                    ///< for what follows
   std::shared_ptr<const Loaded> loaded_;
   std::map<int, std::shared_ptr<const Planes>> planes_;

@@ -23,13 +23,14 @@ double voxel_edge(const Dataset& data) {
 
 }  // namespace
 
-Scene rough(Scene scene, Quality quality) {
+Scene rough(Scene scene, Quality quality, double coarse) {
   if (quality == Quality::exact) return scene;
   const bool moving = quality == Quality::moving;
   for (Item& item : scene.items) {
     auto* volume = std::get_if<VolumeItem>(&item);
     if (!volume || volume->method != VolumeMethod::ray) continue;
-    if (const double edge = voxel_edge(*volume->data); edge > 0) volume->sampling.step = moving ? edge : edge / 2;
+    if (const double edge = voxel_edge(*volume->data); edge > 0)
+      volume->sampling.step = moving ? edge * std::max(1.0, coarse / most_pixels_a_sample) : edge / 2;
     else volume->sampling.tolerance = std::max(volume->sampling.tolerance, moving ? 0.125 : 0.02);
     volume->sampling.jitter = false, volume->sampling.antialias = VolumeAntialias::none;
     if (moving) volume->sampling.kernel = Kernel::linear, volume->sampling.classify = VolumeClassify::post;
@@ -38,7 +39,7 @@ Scene rough(Scene scene, Quality quality) {
 }
 
 double next_coarseness(double coarse, double seconds, double budget) {
-  constexpr std::array steps{1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0};
+  constexpr std::array steps{1.0, 1.5, 2.0, 3.0, 4.0, 6.0, most_pixels_a_sample, 12.0, 16.0};
   const auto now = std::lower_bound(steps.begin(), steps.end(), coarse);
   if (seconds > budget) return now + 1 < steps.end() ? *(now + 1) : steps.back();
   if (now == steps.begin()) return coarse;

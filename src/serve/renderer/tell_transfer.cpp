@@ -50,7 +50,7 @@ Json histogram_json(const Coloring& c, Context& context) {
   const Range range = c.data->range(*field, c.component);
   if (range.empty() || !(range.lo < range.hi)) return {};
   std::vector<Json> counts;
-  for (const size_t n : histogram(*field, c.component, range.lo, range.hi, bins, context)) counts.emplace_back(uint64_t(n));
+  for (const size_t n : histogram(*c.data, *field, c.component, range.lo, range.hi, bins, context)) counts.emplace_back(uint64_t(n));
   return Json(Json::Members{{"range", numbers({range.lo, range.hi})}, {"counts", Json(std::move(counts))}});
 }
 

@@ -14,6 +14,7 @@ enum class Wish {
   draw,
   shown,
   cursor,
+  together,
   // changes of the pipeline
   edit,
   undo,
@@ -33,23 +34,12 @@ enum class Wish {
 };
 constexpr auto enum_words(Wish) {
   using enum Wish;
-  return std::array{Word{"draw", draw},
-                    Word{"shown", shown},
-                    Word{"cursor", cursor},
-                    Word{"edit", edit},
-                    Word{"undo", undo},
-                    Word{"redo", redo},
-                    Word{"pipeline", pipeline},
-                    Word{"time", time},
-                    Word{"probe", probe},
-                    Word{"rows", rows},
-                    Word{"line", line},
-                    Word{"measures", measures},
-                    Word{"over_time", over_time},
-                    Word{"histogram", histogram},
-                    Word{"plane", plane},
-                    Word{"proposals", proposals},
-                    Word{"save", save}};
+  return std::array{Word{"draw", draw},         Word{"shown", shown},         Word{"cursor", cursor},
+                    Word{"together", together}, Word{"edit", edit},           Word{"undo", undo},
+                    Word{"redo", redo},         Word{"pipeline", pipeline},   Word{"time", time},
+                    Word{"probe", probe},       Word{"rows", rows},           Word{"line", line},
+                    Word{"measures", measures}, Word{"over_time", over_time}, Word{"histogram", histogram},
+                    Word{"plane", plane},       Word{"proposals", proposals}, Word{"save", save}};
 }
 inline bool changes(Wish w) { return w >= Wish::edit && w <= Wish::time; }
 inline bool asks(Wish w) { return w >= Wish::probe; }

@@ -97,9 +97,13 @@ void Session::tell_people() {
     std::vector<Json> cursors;
     for (const auto& [other, c] : clients_)
       if (other != id && !c->cursor.empty()) cursors.push_back(parse_json(c->cursor, "cursor"));
-    client->socket->send_text(
-        Json(Json::Members{{"is", text("people")}, {"count", Json(uint64_t(clients_.size()))}, {"cursors", Json(std::move(cursors))}})
-            .dump());
+    Json::Members people{{"is", text("people")},
+                         {"count", Json(uint64_t(clients_.size()))},
+                         {"cursors", Json(std::move(cursors))},
+                         {"together", Json(together_)}};
+    if (common_) people.emplace_back("camera", camera_json(*common_));
+    if (common_) people.emplace_back("led", Json(leader_ == id));
+    client->socket->send_text(Json(std::move(people)).dump());
   }
 }
 

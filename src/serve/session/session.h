@@ -17,6 +17,7 @@
 #include "pipeline/film/film_times.h"
 #include "serve/door/session_host.h"
 #include "serve/renderer/renderer.h"
+#include "serve/renderer/view_camera.h"
 #include "serve/session/client.h"
 #include "serve/session/edits.h"
 #include "serve/session/history.h"
@@ -73,6 +74,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void send_all(const Json::Members& message);
   void refuse(int client, uint64_t n, const std::vector<EditMistake>& mistakes);
   void tell_people();
+  void take_together(Client& client, const Json& message);
   Context& begin_work(int view);
 
   std::unique_ptr<Renderer> renderer_;
@@ -95,12 +97,17 @@ class Session : public std::enable_shared_from_this<Session> {
   bool loaded_ = false, needs_load_ = true, needs_tell_ = false, cold_ = true;
   uint64_t revision_ = 0;
   std::optional<FilmTimes> film_;
-  std::optional<size_t> time_;  ///< index of the step that is shown; none: what the reader gives
-  std::string state_;           ///< the last message "state", without what depends on the window
+  std::optional<size_t> time_;        ///< index of the step that is shown; none: what the reader gives
+  std::optional<size_t> shown_time_;  ///< that of the revision
+  std::string state_;                 ///< the last message "state", without what depends on the window
   std::unique_ptr<Context> running_, asking_;
   int asking_client_ = 0;  ///< whose question is answered
-  int running_view_ = -1;  ///< of the renderer; -1: something else runs
+  static constexpr int warming = -2;
+  int running_view_ = -1;  ///< of the renderer; -1: something else runs; warming: a picture that nobody sees
   std::deque<std::pair<std::string, Saved>> saved_;
+  bool together_ = false;             ///< all windows look from where the last one of them went
+  std::optional<ViewCamera> common_;  ///< that camera, once one of them has told it
+  int leader_ = 0;                    ///< who told it
 
   std::thread draws_, asks_;
 };

@@ -67,27 +67,34 @@ void Session::answer_next_time(std::unique_lock<std::mutex>& lock, Question ques
     if (film_->times.size() > most_times)
       return refuse(question.client, n,
                     {{"", "", fmt::format("there are {} times, and {} can be asked for", film_->times.size(), most_times)}});
-    question.curve = std::make_shared<TimeCurve>(TimeCurve{good_, *film_, {}, ""});
+    question.curve = std::make_shared<TimeCurve>(TimeCurve{good_, *film_, {}, {}, ""});
   }
   TimeCurve& curve = *question.curve;
   Context& context = begin_answer(question.client);
   lock.unlock();
   Json::Members reply, members = question.message.members();
   std::string problem;
+  bool gap = false;  // a file that cannot be read leaves one; what is wrong with the question is wrong at the first time already
   try {
     members.emplace_back("pipeline", text(emit_pipeline(at_time(curve.file, curve.film, curve.values.size()))));
     members.emplace_back("origin", text(curve.file.origin));
     reply = renderer_->answer(Json(std::move(members)), context);
+  } catch (const Error& e) {
+    problem = e.what();
+    gap = e.kind() == ErrorKind::data || (e.kind() == ErrorKind::usage && curve.gaps.size() < curve.values.size());
   } catch (const std::exception& e) {
     problem = e.what();
   }
   lock.lock();
   asking_.reset();
   if (!clients_.contains(question.client)) return;
-  if (!problem.empty()) return refuse(question.client, n, {{"", "", problem}});
+  const size_t known = curve.values.size() + 1, all = curve.film.times.size();
+  const bool none = gap && known == all && curve.gaps.size() + 1 == all;
+  if (!problem.empty() && (!gap || none)) return refuse(question.client, n, {{"", "", problem}});
   const Json told(std::move(reply));
-  curve.values.push_back(told["value"]), curve.unit = bytes_of_text(told["unit"].text());
-  const size_t known = curve.values.size(), all = curve.film.times.size();
+  if (gap) curve.gaps.emplace_back(Json::Members{{"time", number(curve.film.times[curve.values.size()])}, {"text", text(problem)}});
+  else curve.unit = bytes_of_text(told["unit"].text());
+  curve.values.push_back(gap ? Json() : told["value"]);
   const auto now = std::chrono::steady_clock::now();
   if (known == all || now - curve.told > curve_pause) {
     curve.told = now;
@@ -100,7 +107,8 @@ void Session::answer_next_time(std::unique_lock<std::mutex>& lock, Question ques
                          {"n", Json(n)},
                          {"unit", text(curve.unit)},
                          {"times", Json(std::move(times))},
-                         {"values", Json(curve.values)}});
+                         {"values", Json(curve.values)},
+                         {"gaps", Json(curve.gaps)}});
 }
 
 void Session::answer(std::unique_lock<std::mutex>& lock, const Question& question) {

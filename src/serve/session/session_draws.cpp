@@ -8,9 +8,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "pipeline/picture/picture.h"
 #include "serve/renderer/tell.h"
-#include "serve/session/command_text.h"
 #include "serve/session/limits.h"
 
 namespace sg::serve {
@@ -39,21 +37,6 @@ std::string frame_message(const DrawnView& drawn, const WantedView& view, int nu
   message.reserve(4 + head.size() + drawn.bytes->size());
   for (int i = 0; i < 4; ++i) message += char(head.size() >> 8 * i & 255);
   return message + head + *drawn.bytes;
-}
-
-// Where a mistake belongs that only running has found: to what was just changed.
-EditMistake mistake_of(const Json& change, const std::string& what) {
-  EditMistake m{"", "", what};
-  const Json& edits = change["edits"];
-  if (edits.size() == 0) return m;
-  const Json& last = edits[edits.size() - 1];
-  m.at = last["at"].text();
-  if (last["set"].size() == 1) m.word = last["set"].members()[0].first;
-  return m;
-}
-
-bool shows_automatically(const PipelineFile& file) {
-  return file.show.empty() || std::any_of(file.show.begin(), file.show.end(), [](const auto& s) { return s.kind == auto_show; });
 }
 
 }  // namespace
@@ -99,112 +82,6 @@ Context& Session::begin_work(int view) {
     send_all({{"is", text("progress")}, {"share", number(share)}, {"doing", text(std::string(doing))}});
   };
   return *running_;
-}
-
-void Session::load(std::unique_lock<std::mutex>& lock) {
-  needs_load_ = false;
-  PipelineFile file = history_.now();
-  const Change change = last_change_;
-  const bool times_known = film_.has_value() && loaded_ && file.steps == good_.steps;
-  Context& context = begin_work(-1);
-  std::optional<FilmTimes> film = film_;
-  send_all({{"is", text("busy")}, {"revision", Json(revision_ + 1)}});
-  lock.unlock();
-  PipelineFile completed;
-  std::string problem;
-  bool cancelled = false;
-  try {
-    if (!times_known) try {
-        film = film_times(file, "", context);
-      } catch (const Error& e) {
-        if (e.kind() == ErrorKind::cancelled) throw;
-        film.reset();  // nothing has times
-      }
-    const bool moves = film && time_ && *time_ < film->times.size();
-    completed = renderer_->load(moves ? at_time(file, *film, *time_) : file, context);
-    // Looks that were chosen stay; a time is no part of the pipeline.
-    if (moves) {
-      if (!shows_automatically(file)) completed = file;
-    }
-  } catch (const Error& e) {
-    cancelled = e.kind() == ErrorKind::cancelled, problem = e.what();
-  } catch (const std::exception& e) {
-    problem = e.what();
-  }
-  lock.lock();
-  running_.reset();
-  if (cancelled) {
-    needs_load_ = !stopping_;
-    return;
-  }
-  if (!problem.empty()) {
-    refuse(change.client, change.message["n"].whole(), {mistake_of(change.message, problem)});
-    if (loaded_) history_.complete(good_);  // the picture before it is left standing
-    else needs_tell_ = true;                // so that the mistake can be mended
-    return;
-  }
-  history_.complete(completed);
-  good_ = std::move(completed), film_ = std::move(film), loaded_ = true, needs_tell_ = true;
-  ++revision_;
-  restart_views();
-}
-
-// A picture that nobody sees, before there is a window: what rays need to know of the data is found then.
-void Session::warm_up(std::unique_lock<std::mutex>& lock) {
-  cold_ = false;
-  if (!clients_.empty()) return;
-  DrawRequest request;
-  request.view = -1, request.quality = Quality::moving;
-  Context& context = begin_work(-1);
-  lock.unlock();
-  try {
-    renderer_->draw(request, context);
-    renderer_->forget(-1);
-  } catch (const std::exception&) {  // the window is told when it asks
-  }
-  lock.lock();
-  running_.reset();
-}
-
-void Session::tell(std::unique_lock<std::mutex>& lock) {
-  needs_tell_ = false;
-  const uint64_t revision = revision_, by = last_change_.message["n"].whole();
-  const PipelineFile file = good_;
-  Context& context = begin_work(-1);
-  lock.unlock();
-  Json::Members told;
-  bool cancelled = false;
-  try {
-    told = loaded_ ? renderer_->tell(context) : tell_pipeline(file);
-  } catch (const Error& e) {
-    cancelled = e.kind() == ErrorKind::cancelled;
-    told.emplace_back("notes", list({e.what()}));
-  }
-  lock.lock();
-  running_.reset();
-  if (cancelled) {
-    needs_tell_ = true;
-    return;
-  }
-  Json::Members state{{"is", text("state")},
-                      {"revision", Json(revision)},
-                      {"by", Json(by)},
-                      {"can_undo", Json(history_.can_undo())},
-                      {"can_redo", Json(history_.can_redo())},
-                      {"title", text(title_)},
-                      {"pipeline", text(emit_pipeline(without_lent(file)))},
-                      {"command", text(command_text(file))}};
-  state.insert(state.end(), told.begin(), told.end());
-  std::vector<Json> times;
-  for (size_t i = 0; film_ && i < film_->times.size(); ++i) times.push_back(number(film_->times[i]));
-  state.emplace_back("times", Json(std::move(times)));
-  state.emplace_back("time", film_ && time_ && *time_ < film_->times.size() ? number(film_->times[*time_]) : Json());
-  state_ = Json(state).dump();
-  for (const auto& [id, client] : clients_) {
-    Json::Members own = state;
-    own.emplace_back("may_edit", Json(client->rights == Rights::edit));
-    send(id, own);
-  }
 }
 
 // The view that has waited longest, moving ones and first pictures before others.

@@ -56,6 +56,8 @@ void Session::take_message(int id, std::string_view words) {
       if (view != client.views.end()) view->second.on_its_way = false, view->second.base = message["base"].whole();
     } else if (*wish == Wish::cursor) {
       take_cursor(client, message);
+    } else if (*wish == Wish::together) {
+      take_together(client, message);
     } else if (changes(*wish)) {
       if (client.rights != Rights::edit) fail_usage("this window may look, but not change anything");
       if (changes_.size() >= most_changes) fail_usage("there are more edits than can be made");
@@ -104,11 +106,21 @@ void Session::take_cursor(Client& client, const Json& message) {
                        {"at", numbers({message["at"][0].number(), message["at"][1].number()})}};
   if (const auto camera = stated_camera(message)) cursor.emplace_back("camera", camera_json(*camera));
   client.cursor = Json(std::move(cursor)).dump();
+  // Who only points has not moved the view.
+  if (together_ && message["leads"].boolean()) common_ = stated_camera(message), leader_ = client.id;
+  tell_people();
+}
+
+// All windows have one view from now on: that of whoever says so, then of whoever moves it.
+void Session::take_together(Client& client, const Json& message) {
+  together_ = message["on"].boolean();
+  common_ = together_ ? stated_camera(message) : std::nullopt;
+  leader_ = client.id;
   tell_people();
 }
 
 void Session::interrupt(int view) {
-  if (running_ && running_view_ == view) running_->cancel();
+  if (running_ && (running_view_ == view || running_view_ == warming)) running_->cancel();
 }
 
 void Session::restart_views() {

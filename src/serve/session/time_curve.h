@@ -15,6 +15,7 @@ struct TimeCurve {
   PipelineFile file;
   FilmTimes film;
   std::vector<Json> values;  ///< of the first times
+  std::vector<Json> gaps;    ///< times that could not be read: {"time", "text"}
   std::string unit;
   std::chrono::steady_clock::time_point told;  ///< how far it is
 };

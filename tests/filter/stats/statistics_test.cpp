@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/stats/statistics.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/parallel.h"
 #include "support/test.h"
 
@@ -65,6 +68,33 @@ TEST_CASE("statistics: one row per component and one for the length; empty field
   CHECK(cell(t, "mean", 3) == 5);
   CHECK(cell(t, "count", 4) == 0);
   CHECK(std::isnan(cell(t, "mean", 4)));
+}
+
+TEST_CASE("statistics: quartiles of many numbers are those of their order, with any signs, repeats and magnitudes") {
+  for (const int kind : {0, 1, 2}) {
+    std::vector<double> v;
+    uint64_t state = 7;
+    for (int i = 0; i < 2500003; ++i) {
+      state = state * 6364136223846793005u + 1442695040888963407u;
+      const double x = double(int64_t(state >> 20)) - double(int64_t(1) << 43);
+      v.push_back(kind == 0 ? x : kind == 1 ? double(int64_t(x) >> 38) : std::ldexp(x, int(state >> 60) * 30 - 200));
+    }
+    std::vector<double> order = v;
+    std::sort(order.begin(), order.end());
+    const auto at = [&](double q) {
+      const double place = q * double(order.size() - 1);
+      const auto i = size_t(place);
+      return i + 1 < order.size() ? order[i] + (place - double(i)) * (order[i + 1] - order[i]) : order[i];
+    };
+    Context ctx;
+    const TablePtr t = statistics(with_values(v), {}, ctx);
+    CAPTURE(kind);
+    CHECK(cell(t, "min") == order.front());
+    CHECK(cell(t, "quartile1") == at(0.25));
+    CHECK(cell(t, "median") == at(0.5));
+    CHECK(cell(t, "quartile3") == at(0.75));
+    CHECK(cell(t, "max") == order.back());
+  }
 }
 
 TEST_CASE("statistics: the same numbers for any number of threads") {

@@ -12,6 +12,7 @@ import { drawOverlay, LegendCache } from "./overlay/overlay";
 import { Camera, centerOf } from "./view/camera";
 import type { Vec3 } from "./view/vec";
 
+const leastLevel = 2 ** -3.5, firstStride = 2, mostStride = 6;  // while it moves: samples per pixel along an axis, steps in those of the still picture
 const movingTime = 15, restAfter = 180, bandTime = 40;  // milliseconds
 
 export class Viewer {
@@ -37,6 +38,7 @@ export class Viewer {
   private coarse = 0;  // samples along an axis per pixel while it moves; 0: not known yet
   private level = 1;   // the one that is used
   private lastLevel = 0;
+  private stride = firstStride;  // longer steps where fewer samples would show nothing
   private asked = 0;
   private rest = 0;
   private generation = 0;
@@ -146,7 +148,7 @@ export class Viewer {
     this.composer.finish();  // of what the browser itself had to do
     const drawing = performance.now();
     const layers = this.composer.layersOf(pass, drawables, 3);
-    this.composer.draw(pass, drawables, this.step.volumes, { samples, coarse: 2, layers });
+    this.composer.draw(pass, drawables, this.step.volumes, { samples, coarse: this.stride, layers });
     this.composer.finish();
     const time = performance.now() - drawing;
     this.present(samples);
@@ -155,7 +157,11 @@ export class Viewer {
     this.lastLevel = samples;
     if (!same) return;  // new targets had to be made
     const wanted = this.level * Math.min(2, Math.max(0.25, Math.sqrt(movingTime / time)));
-    this.coarse = Math.min(1, Math.max(2 ** -3.5, this.coarse + (time > 2 * movingTime ? 1 : 0.3) * (wanted - this.coarse)));
+    const slow = time / movingTime;
+    if (slow > 1.2 && this.level <= leastLevel * 1.01 && this.step.volumes.length) this.stride = Math.min(mostStride, this.stride * Math.min(1.5, slow));
+    else if (slow < 0.8 && this.stride > firstStride) this.stride = Math.max(firstStride, this.stride * Math.max(0.8, slow));
+    if (this.stride > firstStride) return;
+    this.coarse = Math.min(1, Math.max(leastLevel, this.coarse + (time > 2 * movingTime ? 1 : 0.3) * (wanted - this.coarse)));
   }
 
   private stillQuality(): Quality {

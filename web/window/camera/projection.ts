@@ -25,6 +25,33 @@ export function placeInView(state: State | null, camera: Camera, size: Size, pla
   return toPixel(camera, size, [place[0] * s[0], place[1] * s[1], place[2] * s[2]]);
 }
 
+const stretchOf = (state: State | null): Vec3 => state?.stretch ?? [1, 1, 1];
+
+/** The bounds of the data, which those of a state are but for the stretch. */
+export function dataBounds(state: State): NonNullable<State["bounds"]> | null {
+  const s = stretchOf(state);
+  if (!state.bounds) return null;
+  const b = state.bounds.map((x, i) => x / s[i >> 1]);
+  for (const i of [0, 2, 4]) if (b[i] > b[i + 1]) [b[i], b[i + 1]] = [b[i + 1], b[i]]; // a negative stretch turns them round
+  return b as NonNullable<State["bounds"]>;
+}
+
+/** How far a place of the data goes in the data when it is dragged by pixels within the plane of the picture. */
+export function placeDragged(state: State | null, camera: Camera, size: Size, place: Vec3, dx: number, dy: number): Vec3 {
+  const s = stretchOf(state);
+  const by = dragged(camera, size, place.map((x, i) => x * s[i]) as Vec3, dx, dy);
+  return by.map((x, i) => x / s[i]) as Vec3;
+}
+
+/** How many times a direction of the data a drag of pixels leads along it. */
+export function placeDraggedAlong(state: State | null, camera: Camera, size: Size, place: Vec3, direction: Vec3, dx: number, dy: number): number {
+  const s = stretchOf(state);
+  const shown = direction.map((x, i) => x * s[i]) as Vec3;
+  const length = Math.hypot(...shown);
+  const unit = scale(shown, 1 / length);
+  return draggedAlong(camera, size, place.map((x, i) => x * s[i]) as Vec3, unit, dx, dy) / length;
+}
+
 /** World length of a CSS pixel at a depth. */
 export function pixelSize(camera: Camera, size: Size, depth: number): number {
   if (camera.parallel) return camera.height / size.height;

@@ -2,6 +2,7 @@
 // A number: a box, and a slider where its range has two ends that are near enough.
 import { html, nothing, type TemplateResult } from "lit";
 import { live } from "lit/directives/live.js";
+import { dataBounds } from "../camera/projection";
 import { plain, short } from "../words";
 import { describedBy, fieldOf, invalid } from "./control";
 import type { Context } from "./form";
@@ -11,7 +12,7 @@ import { defaultText, sliderRange, typesOf } from "./kind";
 /** A position along an axis that another word names goes from end to end of the data. */
 function alongAxis(c: Context): ReturnType<typeof sliderRange> {
   const axis = ["x", "y", "z"].indexOf(c.app.session.word(c.at, "axis") ?? "");
-  const bounds = c.app.state?.bounds;
+  const bounds = c.app.state && dataBounds(c.app.state);
   if (c.name !== "position" || axis < 0 || !bounds || !(bounds[2 * axis + 1] > bounds[2 * axis])) return null;
   const [min, max] = [bounds[2 * axis], bounds[2 * axis + 1]];
   return { min, max, step: (max - min) / 500 };

@@ -5,12 +5,8 @@ import type { Vec3 } from "../protocol";
 import { csv } from "../questions/files";
 import type { View } from "../view/view";
 import { plain } from "../words";
+import { keptFrom, keptText, plainName, type Measurement } from "./kept";
 import { measured, mostUneven, unevenness, type Measured } from "./geometry";
-
-export interface Measurement {
-  name: string;
-  points: Vec3[];
-}
 
 const powers = { distance: "", length: "", area: "²" };
 
@@ -29,10 +25,27 @@ export function summary(points: Vec3[], lengthUnit: string): string {
 
 export class Rulers {
   points: Vec3[] = [];
-  kept: Measurement[] = [];
-  private made = 0;
+  private own: Measurement[] = []; // of a window that may not change the session
+  private read = { text: "", kept: [] as Measurement[] };
 
   constructor(private readonly app: App) {}
+
+  /** Those of the session, which all of its windows see, and which are in its file. */
+  get kept(): Measurement[] {
+    const text = this.app.session.word("picture", "measurements") ?? "";
+    if (text !== this.read.text) this.read = { text, kept: keptFrom(text) };
+    return this.own.length > 0 ? [...this.read.kept, ...this.own] : this.read.kept;
+  }
+
+  private put(kept: Measurement[]): void {
+    if (this.app.state?.may_edit) {
+      this.own = [];
+      this.app.session.set("picture", { measurements: kept.length > 0 ? keptText(kept) : null });
+    } else {
+      this.own = kept.slice(this.read.kept.length);
+    }
+    this.app.changed();
+  }
 
   /** Puts a place on what is seen under a pixel of a view. */
   async click(view: View, at: [number, number]): Promise<void> {
@@ -71,19 +84,20 @@ export class Rulers {
 
   keep(): void {
     if (this.points.length < 2) return;
-    this.kept = [...this.kept, { name: `Measurement ${++this.made}`, points: this.points }];
+    const names = new Set(this.kept.map((m) => m.name));
+    let number = 1;
+    while (names.has(`Measurement ${number}`)) ++number;
+    const points = this.points;
     this.points = [];
-    this.app.changed();
+    this.put([...this.kept, { name: `Measurement ${number}`, points }]);
   }
 
   rename(index: number, name: string): void {
-    this.kept = this.kept.map((m, i) => (i === index ? { ...m, name } : m));
-    this.app.changed();
+    this.put(this.kept.map((m, i) => (i === index ? { ...m, name: plainName(name) } : m)));
   }
 
   drop(index: number): void {
-    this.kept = this.kept.filter((_, i) => i !== index);
-    this.app.changed();
+    this.put(this.kept.filter((_, i) => i !== index));
   }
 
   /** One line per number; places as x y z, one after the other. */

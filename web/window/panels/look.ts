@@ -35,7 +35,7 @@ export function lookPanel(app: App): TemplateResult {
           ${form(app, { at: `show/${index}`, entry, step: shown.of, without: legendWords.filter((w) => w !== "legend") })}
         </section>`
       : nothing}
-    ${app.selected === "picture" ? html`<section><h2>Picture</h2>${form(app, { at: "picture", entry: app.catalog.picture, step: s.steps[0]?.name, without: ["size", "layout", "views", "samples", "adaptive"] })}</section>` : nothing}`;
+    ${app.selected === "picture" ? html`<section><h2>Picture</h2>${form(app, { at: "picture", entry: app.catalog.picture, step: s.steps[0]?.name, without: ["size", "layout", "views", "samples", "adaptive", "measurements"] })}</section>` : nothing}`;
 }
 
 /** Another way to show the same: the words that both know are kept. */

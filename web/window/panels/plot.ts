@@ -54,6 +54,7 @@ function overTime(app: App): TemplateResult {
     </div>
     ${o.problem ? html`<p class="problem" role="alert">${o.problem}</p>` : nothing}
     ${a ? curve(app, "time", { x: a.times, values: a.values }, withUnit(o.field, a.unit), "time", `${o.field}_time`) : nothing}
+    ${a && a.gaps?.length ? html`<p class="quiet" role="status">${a.gaps.length === 1 ? "One time" : `${a.gaps.length} times`} could not be read and ${a.gaps.length === 1 ? "is" : "are"} left out: ${a.gaps[0].text}${a.gaps.length > 1 ? " …" : ""}</p>` : nothing}
   </section>`;
 }
 

@@ -9,6 +9,7 @@ export class Histograms {
   private planes = new Map<string, PlaneAnswer | null>();
   private revision = 0;
   private unknownToServer = false;
+  private readonly begins = performance.now() + 3000;
 
   constructor(private readonly app: App) {}
 
@@ -24,6 +25,7 @@ export class Histograms {
     const key = `${this.app.session.step(step)?.size} ${this.app.state?.time} ${step} ${field}`;
     const known = this.known.get(key);
     if (known !== undefined || this.unknownToServer) return known ?? null;
+    if (!this.app.view.frame && performance.now() < this.begins) return null; // the first picture comes first
     this.known.set(key, null);
     this.app.session
       .ask<HistogramAnswer>({ do: "histogram", step, field })

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Values along a line between two points: dragged in the picture, or typed.
+import { dataBounds } from "../camera/projection";
 import type { App } from "../app";
 import type { Drag } from "../input/pointer";
 import type { LineAnswer, Vec3 } from "../protocol";
@@ -30,8 +31,8 @@ export class Lines {
     const fields = s.steps.find((x) => x.name === this.step)?.fields ?? [];
     if (!fields.some((f) => f.name === this.field))
       this.field = s.show.find((x) => x.of === this.step)?.transfer?.field ?? fields[0]?.name ?? "";
-    if (!this.from && s.bounds) {
-      const b = s.bounds;
+    const b = dataBounds(s);
+    if (!this.from && b) {
       this.from = [b[0], (b[2] + b[3]) / 2, (b[4] + b[5]) / 2];
       this.to = [b[1], (b[2] + b[3]) / 2, (b[4] + b[5]) / 2];
     }

@@ -1,22 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the window knows of the session, and what it can ask for. Everything that changes ends in `changed`, which draws the panels anew.
-import type { Catalog } from "../catalog";
-import type { Cursor, Edit, FrameHeader, Problem, ServerMessage, Shown, State, Step } from "../protocol";
+import type { Camera, Cursor, Edit, FrameHeader, Problem, ServerMessage, Shown, State, Step } from "../protocol";
 import { Edits } from "./edits";
 import { Connection, Refused, type Connected } from "./socket";
 
 export interface People {
   count: number;
   cursors: Cursor[];
+  together: boolean; // all have one view
+  camera: Camera | null; // that view, as it was told last
+  led: boolean; // by this window
 }
+
+const nobody: People = { count: 1, cursors: [], together: false, camera: null, led: false };
 
 export class Session {
   state: State | null = null;
   connected: Connected = "connecting";
-  people: People = { count: 1, cursors: [] };
+  people: People = nobody;
   progress: { share: number; doing: string } | null = null;
   notes: string[] = [];
   private opened = false;
+  private meet = (): void => undefined;
+  /** Once the server has taken the connection, or not. */
+  readonly met = new Promise<void>((resolve) => (this.meet = resolve));
   readonly edits = new Edits();
   /** The number of the last change that the server has not answered, or 0. */
   private changing = 0;
@@ -24,7 +31,6 @@ export class Session {
 
   constructor(
     url: string,
-    readonly catalog: Catalog,
     private readonly changed: () => void,
     private readonly on: {
       frame: (header: FrameHeader, picture: Uint8Array) => void;
@@ -150,7 +156,7 @@ export class Session {
         this.on.say(m.text);
         break;
       case "people":
-        this.people = { count: m.count, cursors: m.cursors ?? [] };
+        this.people = { count: m.count, cursors: m.cursors ?? [], together: m.together ?? false, camera: m.camera ?? null, led: m.led ?? false };
         this.on.people(this.people);
         break;
       default:
@@ -186,12 +192,13 @@ export class Session {
     const before = this.connected;
     this.connected = how;
     if (how === "open") this.opened = true;
+    if (how !== "connecting") this.meet();
     if (how === "lost" && !this.opened) this.on.neverOpened();
     if (how === "lost") {
       this.changing = 0;
       this.edits.lost();
       this.progress = null;
-      this.people = { count: 1, cursors: [] };
+      this.people = nobody;
     }
     if (how === "open" && before !== "open") this.on.restart();
     this.changed();

@@ -2,7 +2,7 @@
 // Handles of cutting planes over the picture: a plane is dragged along its normal, the crosshair of several planes across the view.
 import { nothing, svg, type SVGTemplateResult } from "lit";
 import type { App } from "../app";
-import { dragged, draggedAlong, toPixel } from "../camera/projection";
+import { dataBounds, placeDragged, placeDraggedAlong, placeInView } from "../camera/projection";
 import { add, dot, scale, sub } from "../camera/vector";
 import { beginDrag } from "../input/handle";
 import type { Step, Vec3 } from "../protocol";
@@ -37,13 +37,13 @@ function planeNow(app: App, step: Step): Plane | null {
       return value === undefined ? [] : [[w, value]];
     }),
   );
-  return planeOf(step.operation, words, app.state!.bounds!);
+  return planeOf(step.operation, words, dataBounds(app.state!)!);
 }
 
 /** Moves the plane of a step: a drag from where it began, a key from where it is now. */
 function mover(app: App, step: Step, start: Plane): { drag: (by: Vec3, live: boolean) => void; key: (by: Vec3) => void } {
   const move = (from: Plane, by: Vec3, live: boolean): void =>
-    app.session.set(`steps/${step.name}`, movedTo(from, add(from.origin, by), app.state!.bounds!), live);
+    app.session.set(`steps/${step.name}`, movedTo(from, add(from.origin, by), dataBounds(app.state!)!), live);
   return { drag: (by, live) => move(start, by, live), key: (by) => move(planeNow(app, step) ?? start, by, false) };
 }
 
@@ -52,12 +52,15 @@ const path = (points: (Point | null)[]): string =>
 
 function arrow(app: App, view: View, step: Step, plane: Plane): SVGTemplateResult {
   const camera = view.camera!;
-  const bounds = app.state!.bounds!;
+  const bounds = dataBounds(app.state!)!;
   const normal = plane.normals[0];
-  const reach = Math.hypot(bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4]) * 0.12;
-  const p = toPixel(camera, view.area, plane.origin);
-  const q = toPixel(camera, view.area, add(plane.origin, scale(normal, reach)));
-  const frame = path(outline(plane.origin, normal, bounds).map((c) => toPixel(camera, view.area, c)));
+  // Of the picture's size as it is seen, in lengths of the data.
+  const stretch = app.state!.stretch ?? [1, 1, 1];
+  const size = Math.hypot(...[0, 1, 2].map((i) => (bounds[2 * i + 1] - bounds[2 * i]) * stretch[i]));
+  const reach = (0.12 * size) / Math.hypot(...normal.map((x, i) => x * stretch[i]));
+  const p = placeInView(app.state, camera, view.area, plane.origin);
+  const q = placeInView(app.state, camera, view.area, add(plane.origin, scale(normal, reach)));
+  const frame = path(outline(plane.origin, normal, bounds).map((c) => placeInView(app.state, camera, view.area, c)));
   if (!p || !q) return svg``;
   const along = dot(normal, plane.origin);
   const move = mover(app, step, plane);
@@ -66,7 +69,7 @@ function arrow(app: App, view: View, step: Step, plane: Plane): SVGTemplateResul
       aria-valuetext=${plain(along)}
       @pointerdown=${(e: PointerEvent) =>
         beginDrag(e, () => ({
-          move: (dx, dy, done) => move.drag(scale(normal, draggedAlong(camera, view.area, plane.origin, normal, dx, dy)), !done),
+          move: (dx, dy, done) => move.drag(scale(normal, placeDraggedAlong(app.state, camera, view.area, plane.origin, normal, dx, dy)), !done),
         }))}
       @keydown=${(e: KeyboardEvent) => keyed(e, (by) => move.key(scale(normal, by * reach * 0.1)))}>
       <line x1=${p[0]} y1=${p[1]} x2=${q[0]} y2=${q[1]} class="handle-stem" />
@@ -77,26 +80,26 @@ function arrow(app: App, view: View, step: Step, plane: Plane): SVGTemplateResul
 
 function crosshair(app: App, view: View, step: Step, plane: Plane): SVGTemplateResult {
   const camera = view.camera!;
-  const bounds = app.state!.bounds!;
-  const p = toPixel(camera, view.area, plane.origin);
+  const bounds = dataBounds(app.state!)!;
+  const p = placeInView(app.state, camera, view.area, plane.origin);
   if (!p) return svg``;
   const lines = plane.normals.map((_, i) => {
     const axis = plane.normals[i];
     const k = axis.indexOf(1);
     const end = (side: number): Vec3 => plane.origin.map((x, j) => (j === k ? bounds[2 * k + side] : x)) as Vec3;
-    return svg`<path class="crosshair axis-${k}" d=${path([toPixel(camera, view.area, end(0)), toPixel(camera, view.area, end(1))])} />`;
+    return svg`<path class="crosshair axis-${k}" d=${path([placeInView(app.state, camera, view.area, end(0)), placeInView(app.state, camera, view.area, end(1))])} />`;
   });
   const move = mover(app, step, plane);
   return svg`${lines}<g class="handle" data-handle tabindex="0" role="slider" aria-label="Crosshair of ${step.name}"
       aria-valuetext=${plane.origin.map((x) => plain(x)).join(", ")} aria-valuenow="0"
       @pointerdown=${(e: PointerEvent) =>
-        beginDrag(e, () => ({ move: (dx, dy, done) => move.drag(dragged(camera, view.area, plane.origin, dx, dy), !done) }))}
+        beginDrag(e, () => ({ move: (dx, dy, done) => move.drag(placeDragged(app.state, camera, view.area, plane.origin, dx, dy), !done) }))}
       @keydown=${(e: KeyboardEvent) => {
         const step: Record<string, Point> = { ArrowLeft: [-4, 0], ArrowRight: [4, 0], ArrowUp: [0, -4], ArrowDown: [0, 4] };
         const by = step[e.key];
         if (!by) return;
         e.preventDefault();
-        move.key(dragged(camera, view.area, plane.origin, ...by));
+        move.key(placeDragged(app.state, camera, view.area, plane.origin, ...by));
       }}>
       <circle cx=${p[0]} cy=${p[1]} r="16" class="handle-hit" /><circle cx=${p[0]} cy=${p[1]} r="7" class="handle-ring" />
     </g>`;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from "vitest";
 import { distanceOf, fit, frameOf, heightAtTarget, namedViews, pan, toggleProjection, zoom } from "../camera/camera";
-import { dragged, draggedAlong, toPixel } from "../camera/projection";
+import { dataBounds, dragged, draggedAlong, placeDragged, placeDraggedAlong, placeInView, toPixel } from "../camera/projection";
 import { drag, onBall, roll, turn } from "../camera/trackball";
 import { cross, dot, length, sub } from "../camera/vector";
-import type { Camera, Vec3 } from "../protocol";
+import type { Camera, State, Vec3 } from "../protocol";
 import { follow } from "../view/link";
 import { randomNumbers } from "./random";
 
@@ -72,6 +72,34 @@ describe("trackball", () => {
   it("is smooth where the sphere passes into the hyperbola", () => {
     const edge = 0.8 / Math.SQRT2;
     expect(onBall(edge - 1e-9, 0)[2]).toBeCloseTo(onBall(edge + 1e-9, 0)[2], 6);
+  });
+});
+
+describe("a picture that is stretched", () => {
+  const state = { bounds: [0, 4, -30, 60, -2, 0], stretch: [1, 30, -2] } as unknown as State;
+
+  it("has the bounds of the data back, turned round where it is turned round", () => {
+    near(dataBounds(state)!, [0, 4, -1, 2, 0, 1]);
+  });
+
+  it("moves places of the data with the hand", () => {
+    for (const parallel of [false, true]) {
+      const c = camera({ parallel, position: [10, -80, 30], target: [2, 0, -1] });
+      const place: Vec3 = [1, 0.2, 0.5];
+      const at = placeInView(state, c, size, place)!;
+      const by = placeDragged(state, c, size, place, 12, -7);
+      const after = placeInView(state, c, size, place.map((x, i) => x + by[i]) as Vec3)!;
+      near([after[0] - at[0], after[1] - at[1]], [12, -7], 6);
+    }
+  });
+
+  it("moves a plane along its normal as far as the hand goes along that", () => {
+    const c = camera({ parallel: true, position: [10, -80, 30], target: [2, 0, -1], height: 50 });
+    const place: Vec3 = [1, 0.2, 0.5], normal: Vec3 = [0, 0.6, 0.8];
+    const at = placeInView(state, c, size, place)!;
+    const end = placeInView(state, c, size, place.map((x, i) => x + normal[i]) as Vec3)!;
+    const times = placeDraggedAlong(state, c, size, place, normal, 0.3 * (end[0] - at[0]), 0.3 * (end[1] - at[1]));
+    expect(times).toBeCloseTo(0.3, 9);
   });
 });
 

@@ -2,10 +2,24 @@
 import { describe, expect, it } from "vitest";
 import { length } from "../camera/vector";
 import { angleAt, areaNormal, lengthAlong, measured, simplified, unevenness } from "../measure/geometry";
+import { keptFrom, keptText } from "../measure/kept";
 import { measuredText, summary } from "../measure/rulers";
 import { selectedText } from "../panels/numbers";
 import type { Vec3 } from "../protocol";
 import { regionOf } from "../questions/selections";
+
+describe("measurements that are kept", () => {
+  it("come back from their text, to the last digit", () => {
+    const kept = [
+      { name: "Width, at the base", points: [[0.1, 2, -1e-7], [1 / 3, 0, 5]] as Vec3[] },
+      { name: "Angle 2", points: [[0, 0, 0], [1, 0, 0], [1, 1, 1e20]] as Vec3[] },
+    ];
+    expect(keptFrom(keptText(kept))).toEqual(kept);
+    expect(keptFrom("")).toEqual([]);
+    expect(keptFrom("nothing; half @ 1,2; a place alone @ 1,2,3; good @ 1,2,3 4,5,6").map((m) => m.name)).toEqual(["good"]);
+    expect(keptFrom(keptText([{ name: "a;b @ c", points: [[1, 2, 3], [4, 5, 6]] }]))[0].name).toBe("a b c");
+  });
+});
 
 describe("places that are clicked", () => {
   it("measure what their number allows", () => {

@@ -15,7 +15,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t most_strips = 1024;
+constexpr size_t most_strips = 1024, edges_per_box = 4;
 
 // The square of the distance from a segment.
 template <class Edge>
@@ -70,6 +70,14 @@ LassoRegion::LassoRegion(std::span<const double> corners, const std::optional<Ve
     const double square = along.x * along.x + along.y * along.y;
     edges_.push_back({a, along, square > 0 ? 1 / square : 0});
   }
+  while (leaves_ * edges_per_box < n) leaves_ *= 2;
+  boxes_.assign(2 * leaves_ - 1, {{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}});
+  const auto grow = [](Box& b, Vec2 lo, Vec2 hi) {
+    b.lo = {std::min(b.lo.x, lo.x), std::min(b.lo.y, lo.y)}, b.hi = {std::max(b.hi.x, hi.x), std::max(b.hi.y, hi.y)};
+  };
+  for (size_t i = 0; i < n; ++i)
+    for (const Vec2 end : {edges_[i].from, edges_[i].from + edges_[i].along}) grow(boxes_[leaves_ - 1 + i / edges_per_box], end, end);
+  for (size_t i = boxes_.size() - 1; i > 0; --i) grow(boxes_[(i - 1) / 2], boxes_[i].lo, boxes_[i].hi);
   begin_.assign(std::min(n, most_strips) + 1, 0);
   const auto strips = [&](const Edge& e) {
     const size_t a = row_of(e.from.y), b = row_of(std::clamp(e.from.y + e.along.y, lowest_, highest_));
@@ -116,11 +124,41 @@ bool LassoRegion::odd(Vec2 p) const {
   return inside;
 }
 
+// Of the distances from all edges, the nearer box first; boxes that lie farther than what was found are left out, with room for rounding.
+double LassoRegion::least_square(Vec2 p) const {
+  const auto square_from_box = [&](size_t i) {
+    const Box& b = boxes_[i];
+    const double x = std::max({b.lo.x - p.x, 0.0, p.x - b.hi.x}), y = std::max({b.lo.y - p.y, 0.0, p.y - b.hi.y});
+    return x * x + y * y;
+  };
+  struct Waiting {
+    size_t box;
+    double square;
+  };
+  Waiting stack[64];  // one a level
+  size_t height = 0;
+  stack[height++] = {0, square_from_box(0)};
+  double least = HUGE_VAL;
+  constexpr double room = 1 - 1e-9;
+  while (height > 0) {
+    const auto [box, square] = stack[--height];
+    if (square * room - snap_ * snap_ > least) continue;
+    if (box >= leaves_ - 1) {
+      const size_t begin = (box - (leaves_ - 1)) * edges_per_box, end = std::min(begin + edges_per_box, edges_.size());
+      for (size_t i = begin; i < end; ++i) least = std::min(least, square_from(edges_[i], p));
+      continue;
+    }
+    Waiting near{2 * box + 1, square_from_box(2 * box + 1)}, far{2 * box + 2, square_from_box(2 * box + 2)};
+    if (far.square < near.square) std::swap(near, far);
+    stack[height++] = far, stack[height++] = near;
+  }
+  return least;
+}
+
 double LassoRegion::distance(Vec3 x) const {
   const Projected p = project(x);
   if (p.scale == 0) return length(x - *eye_);
-  double square = HUGE_VAL;
-  for (const Edge& e : edges_) square = std::min(square, square_from(e, p.at));
+  const double square = least_square(p.at);
   if (square <= snap_ * snap_) return 0;
   const bool inside = p.at.y >= lowest_ && p.at.y <= highest_ && odd(p.at);
   return (inside ? -1 : 1) * std::sqrt(square) * p.scale;

@@ -20,7 +20,7 @@ class LassoRegion {
   LassoRegion(std::span<const double> corners, const std::optional<Vec3>& eye, std::string_view who);
 
   /// From the outline, measured in the polygon's plane and, with an eye, scaled by the depth: about a distance in space. Negative inside,
-  /// 0 on the outline; continuous. Behind the eye the distance from it. O(corners).
+  /// 0 on the outline; continuous. Behind the eye the distance from it. About O(log corners): near edges are looked at first.
   double distance(Vec3 x) const;
   /// distance(x) <= 0, without a look at all corners.
   bool holds(Vec3 x) const;
@@ -36,12 +36,19 @@ class LassoRegion {
   };
   Projected project(Vec3 x) const;
   size_t row_of(double v) const;
+  double least_square(Vec2 p) const;
   bool odd(Vec2 p) const;
 
   Vec3 origin_, u_, v_, normal_;
   std::optional<Vec3> eye_;
   double depth_ = 0;  ///< of the plane, from the eye
   std::vector<Edge> edges_;
+  // Boxes around runs of edges: box i holds boxes 2 i + 1 and 2 i + 2, the last `leaves_` of them a run each.
+  struct Box {
+    Vec2 lo, hi;
+  };
+  std::vector<Box> boxes_;
+  size_t leaves_ = 1;
   // Edges of each of the strips into which v is divided, one strip after the other.
   double lowest_ = 0, highest_ = 0;
   double snap_ = 0;  ///< what lies nearer to the outline than this lies on it: rounding

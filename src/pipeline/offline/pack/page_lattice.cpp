@@ -131,6 +131,7 @@ PageLattice page_lattice(const VolumeItem& given, double share, Context& context
   if (!item.data->as<UniformGrid>() && !item.data->as<RectilinearGrid>()) item = on_lattice(given, out, context);
   item.sampling.step = 0;
   item.mode = RayFunction::maximum;  // without what only skips
+  item.light = {};                   // which that has none of
   item.levels.clear();
   const volume::Volume v = volume::prepare(item, 1, {});
   const double diagonal = std::max(given.data->bounds().diagonal(), v.edge);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
+#include "data/memory/memo.h"
 #include "data/patient/patient_frame.h"
 #include "scene/choose/volume/look.h"
 
@@ -65,21 +67,30 @@ HeadPose head_pose(const Dataset& data, const Field& field, double offset) {
   const auto* grid = data.as<UniformGrid>();
   constexpr size_t few = 8, looked_at = 32;
   if (!grid || field.association != Association::point || *std::min_element(grid->dims.begin(), grid->dims.end()) < few) return {};
-  std::vector<double> shares;  // of the body that bone encloses, slice by slice
-  double body_y = 0, bodies = 0, air_y = 0, airs = 0;
+  struct Counts {
+    double samples = 0, body = 0, brain = 0, body_y = 0, air_y = 0, air = 0;
+  };
   const size_t slices = std::min(grid->dims[2], looked_at);
-  for (size_t n = 0; n < slices; ++n) {
+  std::vector<Counts> counts(slices);
+  parallel_for(slices, 1, [&](size_t n, size_t) {
     const Slice s = slice_of(field, grid->dims, n * (grid->dims[2] - 1) / (slices - 1), offset);
     const std::vector<uint8_t> skull = enclosed(s.bone, s.nx, s.ny), cavity = enclosed(s.body, s.nx, s.ny);
-    double body = 0, brain = 0;
+    Counts c;
+    c.samples = double(s.body.size());
     for (size_t at = 0; at < s.body.size(); ++at) {
       const double y = double(at / s.nx) / double(s.ny);
-      if (s.body[at]) body += 1, body_y += y, bodies += 1;
-      if (s.body[at] && skull[at]) brain += 1;
-      if (cavity[at]) air_y += y, airs += 1;
+      if (s.body[at]) c.body += 1, c.body_y += y;
+      if (s.body[at] && skull[at]) c.brain += 1;
+      if (cavity[at]) c.air_y += y, c.air += 1;
     }
+    counts[n] = c;
+  });
+  std::vector<double> shares;  // of the body that bone encloses, slice by slice
+  double body_y = 0, bodies = 0, air_y = 0, airs = 0;
+  for (const Counts& c : counts) {
+    body_y += c.body_y, bodies += c.body, air_y += c.air_y, airs += c.air;
     constexpr double least = 0.03;  // of the slice: else nothing of the patient is in it
-    if (body > least * double(s.body.size())) shares.push_back(brain / body);
+    if (c.body > least * c.samples) shares.push_back(c.brain / c.body);
   }
   HeadPose pose;
   constexpr double aside = 0.02, skull = 0.45;  // of the slice, of the body
@@ -96,11 +107,22 @@ HeadPose head_pose(const Dataset& data, const Field& field, double offset) {
   return pose;
 }
 
-std::optional<HeadPose> unstated_pose(const Dataset& d) {
-  if (!d.as<UniformGrid>() || in_patient_frame(d)) return {};
+namespace {
+
+std::optional<HeadPose> pose_of_first_ct(const Dataset& d) {
   for (const Field& f : d.fields())
     if (double offset = 0; looks_like_ct(d, f, &offset)) return head_pose(d, f, offset);
   return {};
+}
+
+}  // namespace
+
+std::optional<HeadPose> unstated_pose(const Dataset& d) {
+  using Pose = std::optional<HeadPose>;
+  if (!d.as<UniformGrid>() || in_patient_frame(d)) return {};
+  constexpr const char* key = "unstated head pose";
+  if (const auto known = d.memo().find<Pose>(key)) return *known;  // each edit of a window asks again
+  return *d.memo().keep(key, pose_of_first_ct(d), sizeof(Pose));
 }
 
 bool stand_up(const HeadPose& pose, CameraDefaults& camera) {

@@ -27,7 +27,7 @@ bool looks_like_ct(const Dataset& data, const Field& field, double* offset, cons
   if (r.hi < 1500 || r.hi > 8000 || r.lo < -4000 || (!hounsfield && r.lo > 300)) return false;
   // Air: a good part of the volume lies at least 300 HU below water. Of the rest soft tissue is a narrow peak about water; MR images, which
   // begin at 0 as well, are spread over their whole range.
-  const auto h = histogram(field, -1, r.lo, r.hi, 1024, context);
+  const auto h = histogram(data, field, -1, r.lo, r.hi, 1024, context);
   size_t all = 0, air = 0, tissue = 0;
   for (size_t b = 0; b < h.size(); ++b) {
     const double hu = r.lo + (double(b) + 0.5) / double(h.size()) * (r.hi - r.lo) - *offset;
@@ -45,7 +45,7 @@ std::string known_look(const Dataset& data, const Field& field, const Range& r, 
   using Shows = FieldLook::Shows;
   const Shows shows = field.look.shows;
   if (shows == Shows::any || shows == Shows::zero) return "";
-  const auto h = histogram(field, component, r.lo, r.hi, 1024, context);
+  const auto h = histogram(data, field, component, r.lo, r.hi, 1024, context);
   size_t all = 0;
   for (const size_t n : h) all += n;
   const double width = r.hi - r.lo;
@@ -160,7 +160,7 @@ std::string choose_volume_look(const Dataset& data, const Field& field, const Co
     return fmt::format("a scan: in grey, values above {} are shown", short_number(item.opacity.points[1].x, 3));
   }
   // What most samples have about is taken for the background; opacity follows the quantiles away from it.
-  const auto h = histogram(field, params.component, r.lo, r.hi, 256, context);
+  const auto h = histogram(data, field, params.component, r.lo, r.hi, 256, context);
   const size_t peak = fullest_bin(h);
   if (peak > h.size() / 2) {  // bright background: see the low values
     const double q50 = histogram_quantile(h, r.lo, r.hi, 0.5), q10 = histogram_quantile(h, r.lo, r.hi, 0.1);

@@ -144,14 +144,19 @@ void keep_places(const Dataset& d, const std::function<bool(Vec3)>& holds, std::
 size_t hide(Array& ghost, const std::vector<uint8_t>& keep, uint8_t bit) {
   uint8_t* marks = nullptr;
   const Array before = ghost;
+  const uint8_t* old = before.empty() ? nullptr : before.view<uint8_t>().data;
   ghost = Array::make<uint8_t>(keep.size(), 1, &marks);
-  size_t count = 0;
-  for (size_t i = 0; i < keep.size(); ++i) {
-    const auto old = before.empty() ? uint8_t(0) : before.view<uint8_t>()[i];
-    marks[i] = uint8_t(old | (keep[i] ? 0 : bit));
-    count += marks[i] == 0;
-  }
-  return count;
+  return parallel_reduce(
+      keep.size(), values_per_chunk, size_t(0),
+      [&](size_t begin, size_t end) {
+        size_t count = 0;
+        for (size_t i = begin; i < end; ++i) {
+          marks[i] = uint8_t((old ? old[i] : 0) | (keep[i] ? 0 : bit));
+          count += marks[i] == 0;
+        }
+        return count;
+      },
+      std::plus<>());
 }
 
 // The points of the cells that are kept.
@@ -211,6 +216,12 @@ Json steps_of(const Selection& s) {
 
 Selected selected_of(const DatasetPtr& d, const Selection& s, Context& context) {
   const bool cloud = d->as<PointCloud>() != nullptr;
+  if (s.all()) {
+    const auto seen = [](const Array& ghost, size_t all) {
+      return ghost.empty() ? all : size_t(std::count(ghost.view<uint8_t>().data, ghost.view<uint8_t>().data + all, uint8_t(0)));
+    };
+    return {cloud ? nullptr : d, d, cloud ? 0 : seen(d->cell_ghost(), d->cell_count()), seen(d->point_ghost(), d->point_count())};
+  }
   std::vector<uint8_t> cells(d->cell_count(), 1), points(d->point_count(), 1);
   if (!s.field.empty()) {
     const Field& f = field_of(*d, s);
