@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Instances: shapes placed many times, as glyphs are. A tree over their boxes; a ray that meets one is moved into the shape's own coordinates.
+// Instances: shapes placed many times, as glyphs are. A tree over their boxes; a ray that meets one is moved into the shape's own
+// coordinates.
 #pragma once
 #include <memory>
 #include <vector>

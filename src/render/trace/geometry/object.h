@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One item of a scene as the path tracer keeps it: in coordinates of its own, so that its tree serves every scene it is part of.
 #pragma once
+#include <cmath>
 #include <memory>
 
 #include "render/prepare/prepared.h"
@@ -34,7 +35,8 @@ class Geometry::Object {
     moved_ = !(offset_ == Vec3());
     const Box3f b = bounds();
     for (int a = 0; a < 3; ++a) {
-      const double lo = outward(b.lo[a], offset_[a]), hi = outward(b.hi[a], offset_[a]), reach = std::abs(lo) > std::abs(hi) ? std::abs(lo) : std::abs(hi);
+      const double lo = outward(b.lo[a], offset_[a]), hi = outward(b.hi[a], offset_[a]),
+                   reach = std::abs(lo) > std::abs(hi) ? std::abs(lo) : std::abs(hi);
       box_.lo[a] = float(lo - reach * 0x1p-22), box_.hi[a] = float(hi + reach * 0x1p-22);
     }
   }
@@ -65,5 +67,12 @@ using ObjectPtr = std::unique_ptr<Geometry::Object>;
 
 /// What a prepared item becomes; null when there is nothing of it. `pixel` > 0.
 ObjectPtr make_object(const raster::PreparedItem& item, const GeometryOptions& options, double pixel, Context& context);
+
+/// Those that points and lines become; lengths in the world.
+ObjectPtr ball_object(const raster::PreparedItem& item, double radius, Context& context);
+ObjectPtr disc_object(const raster::PreparedItem& item, Context& context);
+ObjectPtr tube_object(const raster::PreparedItem& item, double radius, Context& context);
+/// The lines of glyphs, each by itself.
+ObjectPtr glyph_tube_object(const raster::PreparedItem& item, double radius, double pixel, Context& context);
 
 }  // namespace sg::trace

@@ -8,8 +8,8 @@
 
 namespace sg::trace {
 
-/// Traced coordinates are f32 numbers of about [-1, 1] for whatever size and place in the world: moved to the middle of the scene and scaled
-/// by a power of two, which rounds nothing.
+/// Traced coordinates are f32 numbers of about [-1, 1] for whatever size and place in the world: moved to the middle of the scene and
+/// scaled by a power of two, which rounds nothing.
 struct Placement {
   Vec3 middle;
   double scale = 1;  ///< traced length of a world length of 1

@@ -2,7 +2,10 @@
 // Solids: many balls, discs or capsules and the tree over them.
 #pragma once
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "base/context.h"

@@ -13,8 +13,8 @@ using LeafFn = bool (*)(void* caller, uint32_t first, uint32_t count);
 void walk_leaves(const WideBvh& tree, const Ray& ray, const float& t_max, bool ordered, LeafFn leaf, void* caller);
 }  // namespace detail
 
-/// Calls leaf(first, count) at least for each leaf of the tree that the ray meets before t_max, which is read again after each call; near ones
-/// first where that is `ordered`.
+/// Calls leaf(first, count) at least for each leaf of the tree that the ray meets before t_max, which is read again after each call; near
+/// ones first where that is `ordered`.
 template <class Leaf>
 void walk_leaves(const WideBvh& tree, const Ray& ray, const float& t_max, bool ordered, Leaf&& leaf) {
   using Caller = std::remove_reference_t<Leaf>;
