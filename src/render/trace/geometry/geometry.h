@@ -7,7 +7,6 @@
 
 #include "base/context.h"
 #include "render/prepare/prepare.h"
-#include "render/trace/geometry/placement.h"
 #include "render/trace/geometry/ray.h"
 #include "render/trace/geometry/surface_point.h"
 

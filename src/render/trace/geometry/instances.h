@@ -7,7 +7,7 @@
 
 #include "base/context.h"
 #include "render/prepare/glyph_set.h"
-#include "render/trace/geometry/placement.h"
+#include "render/trace/geometry/ray.h"
 #include "render/trace/geometry/triangles.h"
 
 namespace sg::trace {

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "render/trace/geometry/instances.h"
-#include "render/trace/geometry/item_points.h"
 #include "render/trace/geometry/triangles.h"
 
 namespace sg::trace {

@@ -7,7 +7,6 @@
 
 #include "filter/glyph/instances.h"
 #include "render/prepare/glyph_set.h"
-#include "render/trace/geometry/item_points.h"
 #include "render/trace/geometry/object.h"
 #include "render/trace/geometry/solids.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/vector_targets.h"
-#include "render/trace/geometry/wide_walk.h"
+#include "render/trace/geometry/wide_bvh.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "render/trace/geometry/wide_walk_simd.cpp"
+#define HWY_TARGET_INCLUDE "render/trace/geometry/wide_bvh_simd.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
