@@ -49,6 +49,8 @@ void add_ftle_tasks(std::vector<Task>& tasks);
 void add_lic_tasks(std::vector<Task>& tasks);
 void add_lic2d_tasks(std::vector<Task>& tasks);
 void add_smoke_tasks(std::vector<Task>& tasks);
+/// The path tracer beside Embree, by the peers' mesh_1M.raw in the data folder.
+void add_trace_tasks(std::vector<Task>& tasks, const std::string& data_folder);
 /// Pictures of a volume of size^3 f32 that stays on disk: with --only volume_large alone, for it takes 11 GB there at 1625^3.
 void make_large_volume(const std::string& data_folder, const std::string& program, int size);
 std::vector<ProcessTask> volume_large_tasks(const std::string& data_folder, const std::string& program, int size);

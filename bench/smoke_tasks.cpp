@@ -28,7 +28,7 @@ void add_smoke_tasks(std::vector<Task>& tasks) {
     for (const bool obstacle : {false, true})
       tasks.push_back(
           {"smoke_step", fmt::format("{}^3{}", size, obstacle ? " round a ball" : ""), "sightglass:maccormack", "iterations", [=] {
-             auto run = std::make_shared<fluid::Smoke<float>>(params(size, obstacle), fluid::TriangleSoup(), false, Context());
+             auto run = std::make_shared<fluid::Smoke<float>>(params(size, obstacle), fluid::SmokeInput(), Context());
              for (int i = 0; i < 10; ++i) run->advance(Context());
              return [=] {
                run->advance(Context());

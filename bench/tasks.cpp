@@ -181,6 +181,7 @@ std::vector<Task> tasks(const std::string& folder) {
   add_lic_tasks(t);
   add_lic2d_tasks(t);
   add_smoke_tasks(t);
+  add_trace_tasks(t, folder);
   t.push_back(gradients("grid", "uniform256"));
   t.push_back(gradients("tets", "tet1M"));
   t.push_back(writing(folder));

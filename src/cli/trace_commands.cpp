@@ -54,7 +54,7 @@ int run_lookdev(const Options& o, Context& context) {
       fail_usage(fmt::format("there is no material '{}'", names[i]), "sightglass lookdev", unknown_name_hint(names[i], known));
     }
     Context part(context, double(i) / double(names.size()), double(i + 1) / double(names.size()));
-    balls.push_back({names[i], lookdev_ball(preset_material(*preset), 320, o.noise, part)});
+    balls.push_back({lookdev_ball(preset_material(*preset), 320, o.noise, part), names[i]});
   }
   write_image(output, balls.size() == 1 ? balls[0].image : contact_sheet(balls, 5, 240));
   if (!o.quiet) say(fmt::format("{}: {} materials\n", printable(output), balls.size()));

@@ -5,7 +5,7 @@
 
 #include "base/context.h"
 #include "image/image.h"
-#include "render/trace/trace_options.h"
+#include "render/trace/light_options.h"
 #include "scene/scene.h"
 
 namespace sg {
@@ -18,7 +18,7 @@ struct RenderOptions {
   double adaptive = 0;
   /// Volumes larger than memory: largest number of pixels that a voxel may cover (data/bricked.h). 0: draw only from the level in memory.
   double coarser = 1;
-  std::optional<TraceOptions> light;  ///< by paths of light instead of the rasterizer; samples and adaptive do not count then
+  std::optional<LightOptions> light;  ///< by paths of light instead of the rasterizer; samples and adaptive do not count then
 };
 
 /// Throws Error(usage) when the frames of a picture of that size, and the image made from them, exceed the memory allowed

@@ -14,7 +14,7 @@
 #include "color/legend_content.h"
 #include "image/image.h"
 #include "pipeline/file/pipeline_file.h"
-#include "render/trace/trace_options.h"
+#include "render/trace/light_options.h"
 
 namespace sg {
 
@@ -36,7 +36,7 @@ struct PictureParams {
   double adaptive = 0;
   double text = 1;
   std::optional<trace::IntegratorKind> integrator;
-  TraceOptions light;
+  LightOptions light;
 };
 void describe(Schema& s, PictureParams& p);
 

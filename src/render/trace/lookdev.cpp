@@ -75,7 +75,7 @@ Image lookdev_ball(const SurfaceMaterial& material, int width, double noise, Con
   Camera camera;
   camera.position = {0, -6.2, 3}, camera.target = {0, 0, 0.85}, camera.up = {0, 0, 1}, camera.view_angle = 26;
   camera.near_plane = 0.1, camera.far_plane = 100;
-  TraceOptions options;
+  LightOptions options;
   options.noise = noise, options.paths = 1024, options.bounces = 24;
   TraceReport report;
   Frame frame = trace_scene(scene, prepare_scene(scene, context), make_projection(camera, width, width), options, report, context);

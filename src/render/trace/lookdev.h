@@ -7,7 +7,7 @@
 
 namespace sg {
 
-/// A square picture. `noise` as in TraceOptions.
+/// A square picture. `noise` as in LightOptions.
 Image lookdev_ball(const SurfaceMaterial& material, int width, double noise, Context& context);
 
 }  // namespace sg

@@ -56,7 +56,9 @@ struct PixelSum {
   /// The variance of the mean of n, as displayed: by the slope of sRGB's curve there, at least that of a dark grey.
   double variance(uint32_t n) const {
     const double mean = (0.2126 * light.x + 0.7152 * light.y + 0.0722 * light.z) / n, v = std::max(0.0, square / n - mean * mean) / (n - 1);
-    const double y = std::clamp(mean, 0.02, 1.0), slope = 1.055 / 2.4 * std::pow(y, 1 / 2.4 - 1);
+    constexpr float step = 0.01f;
+    const float y = std::clamp(float(mean), 2 * step, 1.f);
+    const double slope = double(srgb_encode(y + step) - srgb_encode(y - step)) / (2 * double(step));
     return v * slope * slope;
   }
 };
@@ -67,13 +69,13 @@ struct SquareReport {
   bool reached = true;
 };
 
-void check(const TraceOptions& o) {
+void check(const LightOptions& o) {
   if (!(o.noise > 0)) fail_usage(fmt::format("noise {}", o.noise), "trace", "give a share of full scale above 0, e.g. 0.02");
   if (o.paths < 1 || o.paths > 1 << 24) fail_usage(fmt::format("{} paths a pixel", o.paths), "trace", "give 1 to 16777216");
   if (o.bounces < 0 || o.bounces > 1000) fail_usage(fmt::format("{} bounces", o.bounces), "trace", "give 0 to 1000");
 }
 
-std::unique_ptr<Integrator> make_integrator(const TraceOptions& o) {
+std::unique_ptr<Integrator> make_integrator(const LightOptions& o) {
   switch (o.integrator) {
     case IntegratorKind::ambient_occlusion: return occlusion_integrator(0.5f);
     case IntegratorKind::whitted: return whitted_integrator(o.bounces);
@@ -99,7 +101,7 @@ World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Proje
 
 }  // namespace
 
-Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Projection& projection, const TraceOptions& options,
+Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Projection& projection, const LightOptions& options,
                   TraceReport& report, Context& context) {
   check(options);
   for (const Item& item : scene.items)

@@ -4,7 +4,7 @@
 #include "base/context.h"
 #include "image/image.h"
 #include "render/prepare/prepare.h"
-#include "render/trace/trace_options.h"
+#include "render/trace/light_options.h"
 #include "scene/scene.h"
 
 namespace sg {
@@ -19,7 +19,7 @@ struct TraceReport {
 /// Surfaces, lines, points and glyphs in the light of the scene: linear and premultiplied, without the background. Pixels are drawn by
 /// squares, each until its error is below `noise`; a path belongs to a pixel by where it starts (box filter). The same bytes for any number
 /// of threads. Throws Error(usage) for a scene with volumes, and for options out of range.
-Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Projection& projection, const TraceOptions& options,
+Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Projection& projection, const LightOptions& options,
                   TraceReport& report, Context& context);
 
 }  // namespace sg

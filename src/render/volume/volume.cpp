@@ -8,6 +8,7 @@
 #include "base/random.h"
 #include "data/bricked.h"
 #include "render/composite/background.h"
+#include "render/prepare/shared_progress.h"
 #include "render/shade/lamp.h"
 #include "render/volume/effects/effects.h"
 #include "render/volume/engines/engine.h"
@@ -15,7 +16,6 @@
 #include "render/volume/natural_units.h"
 #include "render/volume/prepare_cast.h"
 #include "render/volume/rays/split_rays.h"
-#include "render/prepare/shared_progress.h"
 
 namespace sg::volume {
 

@@ -3,6 +3,7 @@
 // tree's. Surface-area heuristic, binned (index/box_tree.h).
 #pragma once
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>

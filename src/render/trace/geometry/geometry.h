@@ -7,7 +7,6 @@
 
 #include "base/context.h"
 #include "render/prepare/prepare.h"
-#include "render/trace/geometry/placement.h"
 #include "render/trace/geometry/ray.h"
 #include "render/trace/geometry/surface_point.h"
 
@@ -20,8 +19,8 @@ struct GeometryOptions {
   double point_radius = 0;  ///< the same of points that are no discs
 };
 
-/// Objects are numbered like PreparedScene::items, primitives from 0 in each (the picture's number less first_primitive): what a hit's colour is
-/// the items tell. All numbers are in traced coordinates (placement()). Nothing is altered by asking: any number of threads may.
+/// Objects are numbered like PreparedScene::items, primitives from 0 in each (the picture's number less first_primitive): what a hit's
+/// colour is the items tell. All numbers are in traced coordinates (placement()). Nothing is altered by asking: any number of threads may.
 class Geometry {
  public:
   Geometry();
@@ -35,8 +34,8 @@ class Geometry {
 
   /// The nearest hit with 0 < t <= ray.t_max; false leaves `hit` as it is.
   bool nearest(const Ray& ray, Hit& hit) const;
-  /// Of up to 16 rays that start at about the same place in about the same direction, as those of neighbouring pixels: faster than one by one,
-  /// with the same result. Bit i tells whether hits[i] was set.
+  /// Of up to 16 rays that start at about the same place in about the same direction, as those of neighbouring pixels: faster than one by
+  /// one, with the same result. Bit i tells whether hits[i] was set.
   uint32_t nearest(const Ray* rays, int count, Hit* hits) const;
   /// Whether anything is met at 0 < t <= ray.t_max.
   bool blocked(const Ray& ray) const;

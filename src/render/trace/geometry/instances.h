@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Instances: shapes placed many times, as glyphs are. A tree over their boxes; a ray that meets one is moved into the shape's own coordinates.
+// Instances: shapes placed many times, as glyphs are. A tree over their boxes; a ray that meets one is moved into the shape's own
+// coordinates.
 #pragma once
 #include <memory>
 #include <vector>
 
 #include "base/context.h"
 #include "render/prepare/glyph_set.h"
-#include "render/trace/geometry/placement.h"
+#include "render/trace/geometry/ray.h"
 #include "render/trace/geometry/triangles.h"
 
 namespace sg::trace {

@@ -15,8 +15,8 @@ struct Interval {
   }
 };
 
-/// Where q(t) = a t^2 - 2 b t + c <= 0; a > 0. `rest` is the least value of q, which the caller knows better than b^2 / a - c tells it. The root
-/// that is near zero comes from the product of both, so that its sign is that of c.
+/// Where q(t) = a t^2 - 2 b t + c <= 0; a > 0. `rest` is the least value of q, which the caller knows better than b^2 / a - c tells it. The
+/// root that is near zero comes from the product of both, so that its sign is that of c.
 Interval below_zero(double a, double b, double c, double rest) {
   if (!(rest <= 0)) return {};
   const double middle = b / a, half = std::sqrt(-rest / a);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Balls, discs and capsules: what points and lines become. A ray is taken against them in double, from f32 numbers: what is left of rounding
-// is far below a step off the surface (surface_point.h).
+// Balls, discs and capsules: what points and lines become. A ray is taken against them in double, from f32 numbers: what is left of
+// rounding is far below a step off the surface (surface_point.h).
 #pragma once
 #include <cstdint>
 

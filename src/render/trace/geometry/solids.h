@@ -2,13 +2,16 @@
 // Solids: many balls, discs or capsules and the tree over them.
 #pragma once
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "base/context.h"
 #include "base/parallel.h"
 #include "render/trace/geometry/solid_shapes.h"
-#include "render/trace/geometry/wide_walk.h"
+#include "render/trace/geometry/wide_bvh.h"
 
 namespace sg::trace {
 

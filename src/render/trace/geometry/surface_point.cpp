@@ -31,7 +31,8 @@ Vec3f leave(const SurfacePoint& p, Vec3f direction) {
   const double out = dot(n, Vec3(direction)) < 0 ? -1 : 1;
   const double reach = std::abs(n.x) * p.error.x + std::abs(n.y) * p.error.y + std::abs(n.z) * p.error.z;
   const Vec3 step = n * (out * 2 * reach);
-  return {away(double(p.position.x) + step.x, step.x), away(double(p.position.y) + step.y, step.y), away(double(p.position.z) + step.z, step.z)};
+  return {away(double(p.position.x) + step.x, step.x), away(double(p.position.y) + step.y, step.y),
+          away(double(p.position.z) + step.z, step.z)};
 }
 
 Vec3f tangent_of(Vec3f normal, Vec3f along) {

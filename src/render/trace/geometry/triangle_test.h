@@ -2,10 +2,10 @@
 // One ray against one triangle: the reference of triangles_simd.cpp, operation by operation.
 //
 // The corners are moved to where the ray starts and sheared so that it runs along an axis (Woop, Benthin, Wald 2013); the triangle is met
-// when the origin lies inside its shadow. Of a sheared edge the test takes the sign of x1 y2 - y1 x2, two products that are each rounded once:
-// rounding keeps the order of the products, so the sign is right or the difference is zero, and it is the same from both sides of a shared
-// edge. With zero as inside no ray slips between neighbours, nor through a corner; what double precision was taken for in the paper is
-// not needed, as long as nothing fuses a product with the difference.
+// when the origin lies inside its shadow. Of a sheared edge the test takes the sign of x1 y2 - y1 x2, two products that are each rounded
+// once: rounding keeps the order of the products, so the sign is right or the difference is zero, and it is the same from both sides of a
+// shared edge. With zero as inside no ray slips between neighbours, nor through a corner; what double precision was taken for in the paper
+// is not needed, as long as nothing fuses a product with the difference.
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/trace/geometry/triangles.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 

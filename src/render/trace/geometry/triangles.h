@@ -13,8 +13,8 @@
 
 namespace sg::trace {
 
-/// Corners in traced coordinates, three numbers a point and three points a triangle, as they lie in a dataset: position = (xyz - middle) scale
-/// in double, rounded once.
+/// Corners in traced coordinates, three numbers a point and three points a triangle, as they lie in a dataset: position = (xyz - middle)
+/// scale in double, rounded once.
 struct TriangleInput {
   const float* xyz;
   const uint32_t* indices;

@@ -37,8 +37,9 @@ HWY_INLINE void prefetch_lines(const void* p, int lines) {
 }
 HWY_INLINE void prefetch_node(const WideNode* n) { prefetch_lines(n, 4); }
 
-/// The boxes of a node against rays that start and point within some bounds (BoxRay; of one ray the bounds are one number): one bit for each
-/// that some ray may meet by t_max, and where, at the least.
+/// The boxes of a node against rays that start and point within some bounds (BoxRay; of one ray the bounds are one number): one bit for
+/// each that some ray may meet by t_max, and where, at the least.
+template <bool many>
 struct NodeRay {
   float near_origin[3], far_origin[3], near_inverse[3], far_inverse[3];
   int near_side[3], far_side[3];
@@ -71,7 +72,8 @@ struct NodeRay {
       F8 near = set(d, 0), far = set(d, t_max);
       for (int a = 0; a < 3; ++a) {
         near = max((hn::Load(d, n.side[near_side[a]] + i) - near_origin[a]) * near_inverse[a], near);
-        far = min((hn::Load(d, n.side[far_side[a]] + i) - far_origin[a]) * far_inverse[a], far);
+        // Of one ray both origins are the same number, which then needs one register.
+        far = min((hn::Load(d, n.side[far_side[a]] + i) - (many ? far_origin : near_origin)[a]) * far_inverse[a], far);
       }
       hn::Store(near, d, near_out + i);
       bits |= bits_of(d, near <= far) << i;
@@ -80,10 +82,10 @@ struct NodeRay {
   }
 };
 
-/// Calls leaf(number) for each leaf that may be met by t_max (read again after each call), near ones first where that is `ordered`; it
-/// returns true to stop. fetch(number) tells that a leaf will be needed soon.
-template <bool ordered, class Leaf, class Fetch>
-HWY_INLINE void walk(const WideNode* nodes, const NodeRay& ray, const float& t_max, Leaf&& leaf, Fetch&& fetch) {
+/// Calls leaf(number), near ones first, for each leaf that may be met by t_max (read again after each call); it returns true to stop.
+/// fetch(number) tells that a leaf will be needed soon.
+template <class Bounds, class Leaf, class Fetch>
+HWY_INLINE void walk(const WideNode* nodes, const Bounds& ray, const float& t_max, Leaf&& leaf, Fetch&& fetch) {
   // Where the box is entered in the upper half: t >= 0, whose bits are ordered like the numbers.
   uint64_t stack[WideBvh::stack_size];
   HWY_ALIGN float near[wide];
@@ -108,8 +110,7 @@ HWY_INLINE void walk(const WideNode* nodes, const NodeRay& ray, const float& t_m
         uint64_t e = entry();
         if (e < nearest) std::swap(e, nearest);
         size_t k = top;
-        if constexpr (ordered)
-          for (; k > base && stack[k - 1] < e; --k) stack[k] = stack[k - 1];
+        for (; k > base && stack[k - 1] < e; --k) stack[k] = stack[k - 1];
         stack[k] = e;
       }
       at = uint32_t(nearest);
@@ -121,6 +122,29 @@ HWY_INLINE void walk(const WideNode* nodes, const NodeRay& ray, const float& t_m
       --top;
     } while (std::bit_cast<float>(uint32_t(stack[top] >> 32)) > t_max);
     at = uint32_t(stack[top]);
+  }
+}
+
+/// The same in any order, for a limit that stays.
+template <class Bounds, class Leaf, class Fetch>
+HWY_INLINE void walk_any(const WideNode* nodes, const Bounds& ray, float t_max, Leaf&& leaf, Fetch&& fetch) {
+  uint32_t stack[WideBvh::stack_size];
+  HWY_ALIGN float near[wide];
+  size_t top = 0;
+  for (uint32_t at = 0;;) {
+    if (at & leaf_bit) {
+      if (leaf(at & ~leaf_bit)) return;
+    } else {
+      const WideNode& n = nodes[at];
+      for (uint32_t bits = ray.meet(n, t_max, near); bits; bits &= bits - 1) {
+        const uint32_t child = n.child[std::countr_zero(bits)];
+        if (child & leaf_bit) fetch(child & ~leaf_bit);
+        else prefetch_node(nodes + child);
+        stack[top++] = child;
+      }
+    }
+    if (top == 0) return;
+    at = stack[--top];
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/trace/geometry/wide_bvh.h"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -27,6 +28,8 @@ int open_up(std::span<const TreeNode> nodes, uint32_t of, uint32_t* out) {
     const uint32_t first = nodes[out[largest]].first;
     out[largest] = first, out[n++] = first + 1;
   }
+  // Where any hit will do the last one is looked at first: the largest, which is the likeliest to hold one.
+  std::stable_sort(out, out + n, [&](uint32_t a, uint32_t b) { return half_area(nodes[a]) < half_area(nodes[b]); });
   return n;
 }
 

@@ -89,9 +89,10 @@ TEST_CASE("trace: and for those along the axes, with limits, in bundles, from tr
   };
   CHECK(disagreements(tree, 20000, [&](size_t i) { return Ray{any_place(5, i, 1), axis(i / 16)}; }) == 0);
   CHECK(disagreements(tree, 20000, [&](size_t i) { return Ray{any_place(6, i, 1), any_direction(7, i), uniform(8, i, 0, 1)}; }) == 0);
-  CHECK(disagreements(tree, 20000, [&](size_t i) {  // neighbours
-          return Ray{{0, 0, 3}, normalize(Vec3f(uniform(9, i / 16, -0.2, 0.2), uniform(10, i / 16, -0.2, 0.2), -1) + any_place(11, i, 0.02))};
-        }) == 0);
+  CHECK(
+      disagreements(tree, 20000, [&](size_t i) {  // neighbours
+        return Ray{{0, 0, 3}, normalize(Vec3f(uniform(9, i / 16, -0.2, 0.2), uniform(10, i / 16, -0.2, 0.2), -1) + any_place(11, i, 0.02))};
+      }) == 0);
   CHECK(disagreements(tree, 20000, [&](size_t i) {  // starts at corners and inside
           const auto c = tree.corners(uint32_t(i % 300));
           return Ray{i % 2 ? c[i % 3] : (c[0] + c[1] + c[2]) / 3.0f, any_direction(12, i)};
@@ -160,7 +161,9 @@ TEST_CASE("trace: the same bytes for every vector width and number of threads") 
       Ray rays[packet_rays];
       Hit out[packet_rays];
       for (size_t k = 0; k < packet_rays; ++k)
-        rays[k] = {{0, 0, 3}, normalize(Vec3f(uniform(3, i, -0.3, 0.3) + 0.002f * float(k % 4), uniform(4, i, -0.3, 0.3) + 0.002f * float(k / 4), -1))};
+        rays[k] = {
+            {0, 0, 3},
+            normalize(Vec3f(uniform(3, i, -0.3, 0.3) + 0.002f * float(k % 4), uniform(4, i, -0.3, 0.3) + 0.002f * float(k / 4), -1))};
       tree.nearest_packet(rays, packet_rays, out);
       hits.insert(hits.end(), out, out + packet_rays);
     }

@@ -172,7 +172,7 @@ TEST_CASE("trace: pictures are the same bytes for any number of threads, and say
   Context context;
   const PreparedScenePtr prepared = prepare_scene(scene, context);
   const Projection p = make_projection(camera, 60, 45);
-  TraceOptions options;
+  LightOptions options;
   options.noise = 0.05;
   const int before = thread_count();
   TraceReport one, many;

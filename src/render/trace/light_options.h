@@ -22,7 +22,7 @@ constexpr auto enum_words(IntegratorKind) {
 
 }  // namespace trace
 
-struct TraceOptions {
+struct LightOptions {
   trace::IntegratorKind integrator = trace::IntegratorKind::path;
   trace::SamplerKind sampler = trace::SamplerKind::blue_noise;
   double noise = 0.02;  ///< standard error at which a part of the picture is finished, as a share of full scale as displayed

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/vector_targets.h"
-#include "render/trace/geometry/wide_walk.h"
+#include "render/trace/geometry/wide_bvh.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "render/trace/geometry/wide_walk_simd.cpp"
+#define HWY_TARGET_INCLUDE "render/trace/geometry/wide_bvh_simd.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -16,9 +16,9 @@ void walk_tree(const WideBvh& tree, const Ray& ray, const float& t_max, bool ord
   const WideLeaf* leaves = tree.leaves().data();
   const auto look = [&](uint32_t i) { return leaf(caller, leaves[i].first, leaves[i].count); };
   const auto nothing = [](uint32_t) {};
-  const NodeRay r{BoxRay(ray)};
-  if (ordered) walk<true>(tree.nodes().data(), r, t_max, look, nothing);
-  else walk<false>(tree.nodes().data(), r, t_max, look, nothing);
+  const NodeRay<false> r{BoxRay(ray)};
+  if (ordered) walk(tree.nodes().data(), r, t_max, look, nothing);
+  else walk_any(tree.nodes().data(), r, t_max, look, nothing);
 }
 
 }  // namespace sg::trace::HWY_NAMESPACE
