@@ -42,7 +42,7 @@ struct Options {
   std::string source;                ///< --source: a source operation instead of a file
   std::string output;
   bool progressive = false;  ///< render: coarse pictures first
-  double noise = 0.012;      ///< lookdev: standard error of its pictures
+  double noise = 0.03;       ///< lookdev: standard error of its pictures
   double within = 0;         ///< render: seconds, 0 = no limit
   std::string camera, size, title, background, field, map, scale, range, below, above, legend, layout, views;
   std::vector<std::string> notes;    ///< each one --note

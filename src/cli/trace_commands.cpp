@@ -39,6 +39,7 @@ int run_samples(const Options& o, Context& context) {
 }
 
 int run_lookdev(const Options& o, Context& context) {
+  constexpr int balls_wide = 240;
   std::vector<CaptionedImage> balls;
   const std::string output = o.output.empty() ? "lookdev.png" : o.output;
   std::vector<std::string> names = o.inputs;
@@ -54,9 +55,9 @@ int run_lookdev(const Options& o, Context& context) {
       fail_usage(fmt::format("there is no material '{}'", names[i]), "sightglass lookdev", unknown_name_hint(names[i], known));
     }
     Context part(context, double(i) / double(names.size()), double(i + 1) / double(names.size()));
-    balls.push_back({lookdev_ball(preset_material(*preset), 320, o.noise, part), names[i]});
+    balls.push_back({lookdev_ball(preset_material(*preset), balls_wide, o.noise, part), names[i]});
   }
-  write_image(output, balls.size() == 1 ? balls[0].image : contact_sheet(balls, 5, 240));
+  write_image(output, balls.size() == 1 ? balls[0].image : contact_sheet(balls, 5, balls_wide));
   if (!o.quiet) say(fmt::format("{}: {} materials\n", printable(output), balls.size()));
   return 0;
 }

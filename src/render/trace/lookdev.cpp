@@ -76,7 +76,8 @@ Image lookdev_ball(const SurfaceMaterial& material, int width, double noise, Con
   camera.position = {0, -6.2, 3}, camera.target = {0, 0, 0.85}, camera.up = {0, 0, 1}, camera.view_angle = 26;
   camera.near_plane = 0.1, camera.far_plane = 100;
   LightOptions options;
-  options.noise = noise, options.paths = 1024, options.bounces = 24;
+  options.noise = noise, options.paths = 256, options.bounces = 24;
+  options.sampler = trace::SamplerKind::sobol;
   TraceReport report;
   Frame frame = trace_scene(scene, prepare_scene(scene, context), make_projection(camera, width, width), options, report, context);
   composite_background(scene, frame);
