@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/file/file.h"
 #include "base/text/text.h"
+#include "base/text/utf8.h"
 #include "cli/chain.h"
 #include "cli/cli.h"
 #include "cli/hints/step_files.h"
