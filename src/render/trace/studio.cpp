@@ -4,11 +4,12 @@
 #include <cmath>
 
 #include "render/shade/lamp.h"
+#include "render/trace/sampling/warp.h"
 
 namespace sg::trace {
 
 Studio studio_of(const Scene& scene, const Projection& projection) {
-  constexpr float sky = 0.35f, pi = 3.14159265f, across = 12;
+  constexpr float sky = 0.35f, across = 12;
   const float rise = 1 - std::cos(across / 2 * pi / 180);
   Studio studio;
   studio.environment = Environment(Vec3f{sky, sky, sky});

@@ -44,9 +44,8 @@ class PathIntegrator : public Integrator {
         const float p = world.lights().triangle_pdf(hit.object, hit.primitive, since + hit.t, dot(ray.direction, v.point.face_normal));
         out.radiance += throughput * v.emission * power_weight(pdf, p);
       }
-      if (turns >= bounces_) break;
       const Vec3f wo = v.frame.to_local(-ray.direction);
-      out.radiance += throughput * direct(world, v, wo, sampler);
+      if (turns < bounces_) out.radiance += throughput * direct(world, v, wo, sampler);
 
       // On to the next surface.
       const float choice = sampler.next();
@@ -54,6 +53,7 @@ class PathIntegrator : public Integrator {
       const float roulette = sampler.next();
       if (!s || is_dark(s->weight) || (mirrors_only_ && !s->delta)) break;
       const bool passes = s->delta && s->transmitted && s->eta == 1 && dot(s->direction, wo) < -0.9999f;
+      if (!passes && turns >= bounces_) break;  // what is translucent is seen through all the same
       const Vec3f direction = normalize(v.frame.to_world(s->direction));
       // What the shading normal calls one side and the surface the other is no way for light.
       if ((dot(direction, v.point.face_normal) > 0) != (s->direction.z > 0)) break;

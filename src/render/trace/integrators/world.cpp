@@ -9,9 +9,9 @@ namespace sg::trace {
 
 namespace {
 
-// The triangles of items that shine are lights.
-void add_emitters(const PreparedScene& scene, const std::vector<std::shared_ptr<const Material>>& materials, const Placement& placement,
-                  std::vector<AnyLight>& lights) {
+// The triangles of items that shine are lights, too.
+std::vector<AnyLight> with_emitters(const PreparedScene& scene, const std::vector<std::shared_ptr<const Material>>& materials,
+                                    const Placement& placement, std::vector<AnyLight> lights) {
   for (size_t i = 0; i < scene.items.size(); ++i) {
     const raster::PreparedItem& item = scene.items[i];
     if (!materials[i]->emits() || item.kind != raster::PreparedItem::Kind::surface || item.glyphs) continue;
@@ -26,17 +26,12 @@ void add_emitters(const PreparedScene& scene, const std::vector<std::shared_ptr<
       if (area > 0 && std::isfinite(area)) lights.emplace_back(l);
     }
   }
+  return lights;
 }
 
 float reach_of(const Geometry& geometry) {
   const Box3f& b = geometry.bounds();
   return b.empty() ? 1 : length(b.hi - b.lo) / 2;
-}
-
-std::vector<AnyLight> with_emitters(const PreparedScene& scene, const std::vector<std::shared_ptr<const Material>>& materials,
-                                    const Placement& placement, std::vector<AnyLight> lights) {
-  add_emitters(scene, materials, placement, lights);
-  return lights;
 }
 
 }  // namespace

@@ -159,6 +159,7 @@ Lights::Lights(std::vector<AnyLight> lights, Environment environment, float reac
     if (!(p > 0 && std::isfinite(p)))
       fail_usage("a light has no size or no power", "lights", "give every light a size and a brightness above 0");
     if (const auto* t = std::get_if<TriangleLight>(&l)) triangles_.emplace_back(key_of(t->object, t->primitive), uint32_t(powers.size()));
+    else if (!std::holds_alternative<PointLight>(l)) met_.push_back(uint32_t(powers.size()));
     powers.push_back(p);
   }
   std::sort(triangles_.begin(), triangles_.end());
@@ -189,7 +190,7 @@ std::optional<LightSample> Lights::sample(Vec3f from, float choice, Vec2f u) con
 
 Vec3f Lights::seen(const Ray& ray, float t_min, float pdf) const {
   Vec3f sum;
-  for (size_t i = 0; i < lights_.size(); ++i)
+  for (const uint32_t i : met_)
     if (const auto s = std::visit([&](const auto& l) { return seen_one(l, ray, t_min); }, lights_[i]))
       sum += s->radiance * power_weight(pdf, choice_->probability(i) * s->pdf);
   if (ray.t_max == infinite && choice_ && choice_->cells() > lights_.size())

@@ -74,6 +74,7 @@ class Lights {
   std::vector<AnyLight> lights_;
   Environment environment_;
   std::optional<Distribution1D> choice_;                  // the environment is the last one
+  std::vector<uint32_t> met_;                             // those that rays may meet, which are no items
   std::vector<std::pair<uint64_t, uint32_t>> triangles_;  // (object, primitive) to number, sorted
 };
 

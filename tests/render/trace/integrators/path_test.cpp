@@ -138,6 +138,7 @@ TEST_CASE("path: what passes translucent sheets is not light, and shadows have s
   const Mean through = mean(world, *path_integrator(8), {{0, 0, 2}, {0, 0, -1}}, 4000);
   CHECK(through.value == 0);
   CHECK(through.passed == Approx(0.25).epsilon(0.1));
+  CHECK(mean(world, *path_integrator(0), {{0, 0, 2}, {0, 0, -1}}, 4000).passed == Approx(0.25).epsilon(0.1));
   CHECK(world.passes({{0, 0, 2}, {0, 0, -1}}).x == Approx(0.25));
   CHECK(world.passes({{0, 0, 2}, {0, 0, -1}, 2}).x == Approx(0.5));
   CHECK(world.passes({{0, 0, 2}, {0, 0, -1}, 1}).x == 1);
