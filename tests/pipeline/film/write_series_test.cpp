@@ -41,5 +41,7 @@ TEST_CASE("series: a run that is broken off and resumed writes what an unbroken 
       CHECK(test::same_array(step_of(whole, k)->fields().require(field).array, step_of(broken, k)->fields().require(field).array));
   // Where its state is kept is no part of a series; what is computed is.
   CHECK(write_series(smoke_run(""), {broken, "0:0.5:6", true}, {}, context).before == 6);
+  CHECK_THROWS_WITH_AS(write_series(smoke_run(", time: 0.1"), {folder + "still.pvd", "0:0.5:6", false}, {}, context),
+                       doctest::Contains("time"), Error);
   CHECK_THROWS_AS(write_series(smoke_run(", lift: 2"), {broken, "0:0.5:6", true}, {}, context), Error);
 }
