@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/scene.h"
 
+#include <algorithm>
+
 namespace sg {
 
 namespace {
@@ -32,6 +34,13 @@ Box3 scene_bounds(const Scene& scene) {
   Box3 box;
   for (const Item& item : scene.items) std::visit([&](const auto& i) { add_bounds(i, box); }, item);
   return box;
+}
+
+bool scatters_light(const Scene& scene) {
+  return std::any_of(scene.items.begin(), scene.items.end(), [](const Item& item) {
+    const auto* v = std::get_if<VolumeItem>(&item);
+    return v && (v->scattering.light == VolumeLighting::single || v->scattering.light == VolumeLighting::path);
+  });
 }
 
 std::vector<Light> lights_of(const Scene& scene) {

@@ -116,6 +116,9 @@ struct Scene {
 
 /// Bounds of everything in the scene.
 Box3 scene_bounds(const Scene& scene);
+/// Whether a volume asks for light that only paths find (VolumeScattering::light).
+bool scatters_light(const Scene& scene);
+
 /// The lights that renderers use: the scene's own, or the default two.
 std::vector<Light> lights_of(const Scene& scene);
 

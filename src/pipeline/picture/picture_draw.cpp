@@ -99,7 +99,10 @@ DrawnPicture draw_picture(const Scene& scene, const Camera& camera, const Stated
   RenderOptions options;
   options.width = int(area.width), options.height = int(area.height), options.samples = s.picture.samples;
   options.adaptive = s.picture.adaptive, options.coarser = coarser;
-  if (s.picture.integrator) options.light = s.picture.light, options.light->integrator = *s.picture.integrator;
+  if (s.picture.integrator || scatters_light(scene)) {
+    options.light = s.picture.light;
+    options.light->integrator = s.picture.integrator.value_or(trace::IntegratorKind::path);
+  }
   const bool beside = options.width < s.width || options.height < s.height;
   // The frame, one of single samples, and one of all pixels if a legend is next to it.
   check_picture_memory(s.width, s.height, 1 + (beside || options.adaptive > 0 ? 1 : 0));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lights of a scene in world space, and as seen along a ray.
 #pragma once
+#include <numbers>
 #include <vector>
 
 #include "base/vec.h"
@@ -13,6 +14,8 @@ struct Lamp {
   Vec3 direction;  ///< towards the light: world, unit
   float intensity;
 };
+/// Of a surface that faces a lamp of intensity 1, where a white one is as bright as 0.75.
+constexpr float lamp_irradiance = 0.75f * std::numbers::pi_v<float>;
 /// The lights of a picture: those that follow the camera are turned with it.
 std::vector<Lamp> lamps_of(const std::vector<Light>& lights, const Projection& projection);
 

@@ -15,8 +15,7 @@ Studio studio_of(const Scene& scene, const Projection& projection) {
   studio.environment = Environment(Vec3f{sky, sky, sky});
   for (const Lamp& lamp : lamps_of(lights_of(scene), projection)) {
     if (!(lamp.intensity > 0)) continue;
-    // Irradiance pi makes a white diffuse surface that faces it as bright as 1.
-    const float e = pi * 0.75f * lamp.intensity;
+    const float e = lamp_irradiance * lamp.intensity;
     studio.lights.emplace_back(DistantLight{Vec3f(lamp.direction), {e, e, e}, rise});
   }
   return studio;

@@ -85,10 +85,13 @@ std::unique_ptr<Integrator> make_integrator(const LightOptions& o) {
 }
 
 World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Projection& projection, Context& context) {
+  const std::shared_ptr<Media> media = Media::make(scene, projection, context);
   GeometryOptions size;
+  size.around = media->bounds();
   const double depth = projection.to_eye(scene_bounds(scene).center()).z;
   size.pixel = projection.parallel ? 1 / projection.scale : std::max(depth, projection.near_plane) / projection.scale;
   Geometry geometry = Geometry::make(*prepared, size, context);
+  media->place(geometry.placement());
   SurfaceMaterial plain;
   plain.specular_roughness = 0.45, plain.specular_weight = 0.6;
   const auto of_data = std::make_shared<const trace::Material>(plain);
@@ -96,7 +99,7 @@ World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Proje
   for (const raster::PreparedItem& item : prepared->items)
     materials.push_back(item.made_of ? std::make_shared<const trace::Material>(*item.made_of) : of_data);
   Studio studio = studio_of(scene, projection);
-  return {prepared, std::move(geometry), std::move(materials), std::move(studio.lights), std::move(studio.environment)};
+  return {prepared, std::move(geometry), std::move(materials), std::move(studio.lights), std::move(studio.environment), media};
 }
 
 }  // namespace
@@ -104,13 +107,10 @@ World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Proje
 Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Projection& projection, const LightOptions& options,
                   TraceReport& report, Context& context) {
   check(options);
-  for (const Item& item : scene.items)
-    if (std::holds_alternative<VolumeItem>(item))
-      fail_usage("volumes are not lit by paths yet", "integrator", "leave integrator out, or show surfaces: contour, slice");
   const World world = world_of(scene, prepared, projection, context);
   const auto integrator = make_integrator(options);
   Frame frame(projection.width, projection.height);
-  if (world.geometry().bounds().empty()) return frame;
+  if (world.empty()) return frame;
   const Eye eye(projection, world.geometry());
 
   const auto across = size_t(projection.width + side - 1) / side, down = size_t(projection.height + side - 1) / side;
@@ -119,6 +119,7 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
   parallel_for(
       across * down, 1,
       [&](size_t begin, size_t end) {
+        const Media::Borrowed media = world.borrow_media();
         for (size_t square = begin; square < end; ++square) {
           const int x0 = int(square % across) * side, y0 = int(square / across) * side;
           const int w = std::min(side, projection.width - x0), h = std::min(side, projection.height - y0);
@@ -152,10 +153,14 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
             // What the middle of the pixel sees.
             double start = 0, per_depth = 1;
             const Ray ray = eye.ray({float(x) + 0.5f, float(y) + 0.5f}, start, per_depth);
-            if (Hit hit; world.geometry().nearest(ray, hit)) {
-              frame.depth[at] = float((start + eye.world_length(hit.t)) / per_depth);
-              frame.ids[at] = prepared->items[hit.object].id;
+            Hit hit;
+            if (world.geometry().nearest(ray, hit)) frame.ids[at] = prepared->items[hit.object].id;
+            if (media) {
+              RandomStream random(at);
+              const auto matter = media->collide({ray.origin, ray.direction, hit.t}, 0.5f, random);  // where half of the light is gone
+              if (matter) hit.t = matter->t, frame.ids[at] = matter->item + 1;
             }
+            if (frame.ids[at] != 0) frame.depth[at] = float((start + eye.world_length(hit.t)) / per_depth);
           }
           progress.step();
         }

@@ -10,6 +10,7 @@
 #include "color/widgets/transfer_widget.h"
 #include "data/bricked.h"
 #include "data/memory/memo.h"
+#include "render/volume/effects/effects.h"
 #include "render/volume/prepare_cast.h"
 
 namespace sg::volume {
@@ -221,7 +222,7 @@ std::optional<NaturalScene> natural_scene(const Scene& scene) {
     const bool steep = !slopes_near.holds(value - length);
     if (steep || !values_near.holds(value)) values[i] = factor_of(value);
     other_lengths = other_lengths || steep;
-    needed = needed || steep || values[i] != 1, shadows = shadows || volume(i)->light.shadows > 0;
+    needed = needed || steep || values[i] != 1, shadows = shadows || volume(i)->light.shadows > 0 || scatters_by_map(*volume(i));
   }
   if (other_lengths) natural.length = factor_of(length);
   if (!needed) return {};

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "data/bricked.h"
 #include "data/fields/field_component.h"
 #include "render/volume/effects/effects.h"
 #include "render/volume/sources/bricks/bricked_source.h"
@@ -54,6 +55,17 @@ std::unique_ptr<RaySource> source_of(const VolumeItem& item, std::shared_ptr<con
     second = std::make_shared<const Volume>(prepare(other, 0, {}));
   }
   return lattice_source(std::move(lattice), std::move(second));
+}
+
+// Samples of a coarse level are means: the outermost lie inside the box of the volume, or beyond it when they are means of few.
+void reach_ends(const BrickedVolume& bricks, Volume& v) {
+  if (!(v.hi.x > v.lo.x) || !v.affine) return;
+  const BrickedVolume::Level& fine = bricks.levels[0];
+  Vec3 last;
+  for (int a = 0; a < 3; ++a) last[a] = double(fine.dims[size_t(a)] - 1) * fine.spacing[a];
+  const Vec3 lo = v.q(fine.origin), hi = v.q(fine.origin + bricks.direction * last);
+  for (int a = 0; a < 3; ++a)
+    if (fine.dims[size_t(a)] > 1) v.lo[a] = lo[a], v.hi[a] = hi[a];
 }
 
 bool clear_transfer(const void* transfer, float lo, float hi) { return static_cast<const TransferFunction*>(transfer)->clear(lo, hi); }
@@ -135,6 +147,21 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
   // A fixed step counts with the length on which there is a volume, whether that draws anything or not.
   if (!knobs.skip_empty || (v.step > 0 && item.mode == RayFunction::composite && !v.detail)) source.invisible = {};
   return v;
+}
+
+CastVolume prepare_volume(const VolumeItem& item, uint32_t id, const Projection& projection, const Knobs& knobs, Context& context,
+                          std::shared_ptr<const Volume>& lattice) {
+  check(item);
+  lattice.reset();
+  const BrickedPtr bricks = item.data->bricks();
+  const bool of_bricks = bricks && (item.field.empty() || item.field == bricks->field), in_bricks = of_bricks && knobs.coarser > 0;
+  if (!in_bricks && (item.data->as<UniformGrid>() || item.data->as<RectilinearGrid>())) {
+    Volume prepared = prepare(item, id, knobs);
+    if (of_bricks) reach_ends(*bricks, prepared);
+    lattice = std::make_shared<const Volume>(std::move(prepared));
+    if (!(lattice->hi.x > lattice->lo.x)) return {};
+  }
+  return prepare_cast(item, id, lattice, projection, knobs, context);
 }
 
 }  // namespace sg::volume

@@ -12,4 +12,9 @@ namespace sg::volume {
 CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<const Volume> lattice, const Projection& projection,
                         const Knobs& knobs, Context& context);
 
+/// The same of any item, with its checks. `lattice` becomes that of a uniform or rectilinear grid, else null. A grid without extent has no
+/// source: nothing is drawn of it.
+CastVolume prepare_volume(const VolumeItem& item, uint32_t id, const Projection& projection, const Knobs& knobs, Context& context,
+                          std::shared_ptr<const Volume>& lattice);
+
 }  // namespace sg::volume

@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/random.h"
-#include "data/bricked.h"
 #include "render/composite/background.h"
 #include "render/prepare/shared_progress.h"
 #include "render/shade/lamp.h"
@@ -115,14 +114,15 @@ float leaves(const Projection& p, const Volume& volume, int x, int y) {
 
 /// Where a volume asks for shadows, all composited volumes cast them, on each other and on surfaces; surfaces on volumes.
 void shadow_lamps(const Scene& scene, Picture& picture, const Box3& drawn, Context& context) {
+  const auto shadows = [](const CastVolume& v) { return scatters_by_map(*v.item) ? 1.0 : v.item->light.shadows; };
   const CastVolume* deepest = nullptr;
   for (const CastVolume& v : picture.volumes)
-    if (!deepest || v.item->light.shadows > deepest->item->light.shadows) deepest = &v;
-  if (!deepest || !(deepest->item->light.shadows > 0)) return;
+    if (!deepest || shadows(v) > shadows(*deepest)) deepest = &v;
+  if (!deepest || !(shadows(*deepest) > 0)) return;
   std::vector<Vec3> directions;
   for (const Lamp& l : picture.lamps) directions.push_back(l.direction);
   picture.shadows.resize(directions.size()), picture.scene = &scene;
-  picture.darkest = float(deepest->item->light.shadows);
+  picture.darkest = float(shadows(*deepest));
   for (const CastVolume& v : picture.volumes) {
     if (!info_of(v.item->mode).absorbs) continue;
     const auto maps = light_maps(*v.item, *v.source, v.extinction(), directions, &context);
@@ -141,17 +141,6 @@ void add_effects(const Scene& scene, Picture& picture, Context& context) {
     picture.shaded = picture.shaded || v.effects;
     if (v.item->light.depth_cue > 0) picture.fading = &scene;
   }
-}
-
-// Samples of a coarse level are means: the outermost lie inside the box of the volume, or beyond it when they are means of few.
-void reach_ends(const BrickedVolume& bricks, Volume& v) {
-  if (!(v.hi.x > v.lo.x) || !v.affine) return;
-  const BrickedVolume::Level& fine = bricks.levels[0];
-  Vec3 last;
-  for (int a = 0; a < 3; ++a) last[a] = double(fine.dims[size_t(a)] - 1) * fine.spacing[a];
-  const Vec3 lo = v.q(fine.origin), hi = v.q(fine.origin + bricks.direction * last);
-  for (int a = 0; a < 3; ++a)
-    if (fine.dims[size_t(a)] > 1) v.lo[a] = lo[a], v.hi[a] = hi[a];
 }
 
 // Packets where no pixel has fragments inside the volume: those behind it come first. The other pixels go by single rays.
@@ -218,18 +207,11 @@ void cast_volumes(const Scene& scene, const Projection& projection, const Fragme
   for (size_t i = 0; i < scene.items.size(); ++i)
     if (const auto* item = std::get_if<VolumeItem>(&scene.items[i]); item && item->method == VolumeMethod::ray) {
       context.check();
-      check(*item);
       std::shared_ptr<const Volume> lattice;
-      const BrickedPtr bricks = item->data->bricks();
-      const bool of_bricks = bricks && (item->field.empty() || item->field == bricks->field), in_bricks = of_bricks && knobs.coarser > 0;
-      if (!in_bricks && (item->data->as<UniformGrid>() || item->data->as<RectilinearGrid>())) {
-        Volume prepared = prepare(*item, uint32_t(i + 1), knobs);
-        if (of_bricks) reach_ends(*bricks, prepared);
-        lattice = std::make_shared<const Volume>(std::move(prepared));
-        if (!(lattice->hi.x > lattice->lo.x)) continue;  // a grid without extent
-      }
-      picture.lattices.push_back(lattice);
-      picture.volumes.push_back(prepare_cast(*item, uint32_t(i + 1), std::move(lattice), projection, knobs, context));
+      CastVolume volume = prepare_volume(*item, uint32_t(i + 1), projection, knobs, context, lattice);
+      if (!volume.source) continue;
+      picture.lattices.push_back(std::move(lattice));
+      picture.volumes.push_back(std::move(volume));
       picture.shaded = picture.shaded || item->shaded;
     }
   if (picture.volumes.empty()) return composite_fragments(fragments, frame, context);

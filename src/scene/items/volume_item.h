@@ -11,6 +11,7 @@
 #include "filter/field/sampling/reconstruction.h"
 #include "scene/items/material.h"
 #include "scene/items/ray_function.h"
+#include "scene/items/volume_scattering.h"
 
 namespace sg {
 
@@ -115,6 +116,7 @@ struct VolumeItem {
   bool shaded = true;
   VolumeSampling sampling;
   VolumeLight light;
+  VolumeScattering scattering;
   std::vector<ClipPlane> clip;
   uint32_t group = 0;  ///< items of the same one (not 0) are parts of one volume: a ray's maximum, first hit, ... is that of all of them
 };

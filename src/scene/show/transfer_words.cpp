@@ -47,7 +47,7 @@ std::vector<std::string> transfer_words(const VolumeItem& item) {
     words.push_back("levels=" + levels);
   }
   words.push_back(std::string("shaded=") + (item.shaded ? "true" : "false"));
-  for (const ParamSet& rest : {param_set_of(item.sampling), param_set_of(item.light)})
+  for (const ParamSet& rest : {param_set_of(item.sampling), param_set_of(item.light), param_set_of(item.scattering)})
     for (std::string& word : changed_words(rest)) words.push_back(std::move(word));
   return words;
 }

@@ -246,6 +246,8 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const VolumeSho
   item.unit_distance = p.unit;
   item.sampling = p.sampling;
   item.light = p.light;
+  item.scattering = p.scattering;
+  if (p.scattering.light == VolumeLighting::map && !schema.stated("shaded")) item.shaded = false;
   if (!p.clip.empty()) item.clip = parse_clip(p.clip);
 
   // Colours as requested, over the field that they belong to.

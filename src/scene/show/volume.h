@@ -37,6 +37,7 @@ struct VolumeShow {
   bool shaded = true;
   VolumeSampling sampling;
   VolumeLight light;
+  VolumeScattering scattering;
   std::string clip;
 };
 void describe(Schema& s, VolumeShow& p);

@@ -59,6 +59,7 @@ void describe(Schema& s, VolumeShow& p) {
   s("shaded", p.shaded, "Light the volume by the gradient of the field.");
   describe(s, p.sampling);
   describe(s, p.light);
+  describe(s, p.scattering);
   s("clip", p.clip,
     "Clip the volume: planes 'nx,ny,nz,offset; ...' keep the side where n.x <= offset, 'box x0,x1,y0,y1,z0,z1' keeps its inside.");
 }

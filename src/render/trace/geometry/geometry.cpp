@@ -40,7 +40,7 @@ Geometry::~Geometry() = default;
 Geometry Geometry::make(const PreparedScene& scene, const GeometryOptions& options, Context& context) {
   const double pixel = options.pixel > 0 ? options.pixel : diagonal_of(scene) / 1000;
   Geometry g;
-  Box3 box;
+  Box3 box = options.around;
   for (size_t i = 0; i < scene.items.size(); ++i) {
     context.check();
     ObjectPtr o = make_object(scene.items[i], options, pixel, context);
@@ -49,7 +49,7 @@ Geometry Geometry::make(const PreparedScene& scene, const GeometryOptions& optio
     box.add(world_box(*o));
     g.objects_.push_back(std::move(o));
   }
-  g.placement_ = g.objects_.size() == 1 ? g.objects_[0]->local : Placement::of(box);  // alone it need not be moved
+  g.placement_ = g.objects_.size() == 1 && options.around.empty() ? g.objects_[0]->local : Placement::of(box);  // alone it need not be moved
   for (const auto& o : g.objects_) {
     o->place(g.placement_);
     for (int a = 0; a < 3; ++a) {

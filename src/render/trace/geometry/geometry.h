@@ -17,6 +17,7 @@ struct GeometryOptions {
   double pixel = 0;         ///< world length of a pixel at the scene's distance; 0: a thousandth of the scene's diagonal
   double line_radius = 0;   ///< world radius of lines; 0: half their width in pixels
   double point_radius = 0;  ///< the same of points that are no discs
+  Box3 around;              ///< world: what traced coordinates hold besides
 };
 
 /// Objects are numbered like PreparedScene::items, primitives from 0 in each (the picture's number less first_primitive): what a hit's

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <limits>
+
 #include "render/trace/integrators/integrator.h"
 #include "render/trace/integrators/surface_color.h"
 #include "render/trace/sampling/warp.h"
@@ -12,10 +14,28 @@ class OcclusionIntegrator : public Integrator {
   explicit OcclusionIntegrator(float reach) : reach_(reach) {}
 
   Estimate along(const World& world, const Ray& first, Sampler& sampler) const override {
+    const Media::Borrowed media = world.borrow_media();
     Estimate out;
     float share = 1;  // that has not met anything
     Ray ray = first;
-    for (Hit hit; share > 0 && world.geometry().nearest(ray, hit); hit = Hit()) {
+    for (Hit hit; share > 0; hit = Hit()) {
+      const bool met = world.geometry().nearest(ray, hit);
+      if (media) {
+        ray.t_max = met ? hit.t : std::numeric_limits<float>::infinity();
+        const float u = sampler.next();
+        RandomStream random(sampler.stream());
+        if (const auto matter = media->collide(ray, u, random)) {
+          const Vec3f at = ray.origin + ray.direction * matter->t, from = matter->on_surface ? at + matter->normal * matter->clear : at;
+          const Vec2f v = sampler.next2();
+          const Vec3f direction = matter->on_surface ? LocalFrame::about(matter->normal).to_world(cosine_hemisphere(v)) : uniform_sphere(v);
+          const Ray open{from, normalize(direction), reach_};
+          const float passes = world.geometry().blocked(open) ? 0 : media->passes(open, random);
+          out.radiance += (matter->albedo * passes + matter->emission) * share;
+          share = 0;
+          break;
+        }
+      }
+      if (!met) break;
       const SurfacePoint point = world.geometry().at(ray, hit);
       const Vec4f color = surface_color(world.scene().items[hit.object], hit);
       const bool below = dot(point.face_normal, ray.direction) > 0;

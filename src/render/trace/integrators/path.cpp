@@ -1,95 +1,180 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "render/trace/integrators/integrator.h"
 #include "render/trace/light/luminance.h"
 #include "render/trace/sampling/mis.h"
+#include "render/trace/sampling/warp.h"
 
 namespace sg::trace {
 
 namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
+/// Matter turns light much more often than surfaces do.
+constexpr int turns_in_media = 128;
 
 bool is_dark(Vec3f c) { return !(c.x > 0 || c.y > 0 || c.z > 0); }
+float most(Vec3f c) { return std::max({c.x, c.y, c.z}); }
+
+/// A path on its way.
+struct Path {
+  Ray ray;
+  Vec3f throughput{1, 1, 1}, absorption;  // of the matter around it
+  float pdf = infinite;                   // of the last turn; of deltas and the camera infinite: lights are met by chance alone
+  bool straight = true;                   // from the camera on, through what is translucent
+  Vec3f turned_at;                        // where the direction was drawn
+  float since = 0;                        // and how far the path has come
+  int turns = 0;
+
+  explicit Path(const Ray& first) : ray(first), turned_at(first.origin) {}
+
+  void turn(Vec3f from, Vec3f direction, float density) {
+    ++turns, straight = false, pdf = density, turned_at = from, since = 0;
+    ray = {from, direction, infinite};
+  }
+  void go_straight(Vec3f from, float length) { since += length, ray = {from, ray.direction, infinite}; }
+};
 
 class PathIntegrator : public Integrator {
  public:
   explicit PathIntegrator(int bounces, bool mirrors_only) : bounces_(bounces), mirrors_only_(mirrors_only) {}
 
   Estimate along(const World& world, const Ray& first, Sampler& sampler) const override {
+    const Media::Borrowed media = world.borrow_media();
     Estimate out;
-    Ray ray = first;
-    Vec3f throughput{1, 1, 1}, absorption;  // of the matter around the path
-    float pdf = infinite;                   // of the last turn; of deltas and the camera infinite: lights are met by chance alone
-    bool straight = true;                   // from the camera on, through what is translucent
-    Vec3f turned_at = first.origin;         // where the direction was drawn
-    float since = 0;                        // and how far the path has come
-    for (int turns = 0;;) {
+    for (Path path(first);;) {
       Hit hit;
-      const bool met = world.geometry().nearest(ray, hit);
-      ray.t_max = met ? hit.t : infinite;
-      if (!straight) {
-        out.radiance += throughput * world.lights().seen({turned_at, ray.direction, since + ray.t_max}, since, pdf);
-      } else if (!met) {
-        out.passed = luminance(throughput);
+      const bool met = world.geometry().nearest(path.ray, hit);
+      path.ray.t_max = met ? hit.t : infinite;
+      std::optional<Collision> matter;
+      if (media) {
+        const float u = sampler.next();
+        RandomStream random(sampler.stream());
+        matter = media->collide(path.ray, u, random);
+        if (matter) path.ray.t_max = matter->t;
       }
-      if (!met) break;
-      if (!is_dark(absorption))
-        for (int c = 0; c < 3; ++c) throughput[c] *= std::exp(-absorption[c] * hit.t);
-
-      const Vertex v = world.at(ray, hit);
-      if (!is_dark(v.emission)) {
-        const float p = world.lights().triangle_pdf(hit.object, hit.primitive, since + hit.t, dot(ray.direction, v.point.face_normal));
-        out.radiance += throughput * v.emission * power_weight(pdf, p);
+      if (!path.straight) {
+        const Ray seen{path.turned_at, path.ray.direction, path.since + path.ray.t_max};
+        out.radiance += path.throughput * world.lights().seen(seen, path.since, path.pdf);
+      } else if (!met && !matter) {
+        out.passed = luminance(path.throughput);
       }
-      const Vec3f wo = v.frame.to_local(-ray.direction);
-      if (turns < bounces_) out.radiance += throughput * direct(world, v, wo, sampler);
-
-      // On to the next surface.
-      const float choice = sampler.next();
-      const auto s = v.bsdf.sample(wo, choice, sampler.next2());
-      const float roulette = sampler.next();
-      if (!s || is_dark(s->weight) || (mirrors_only_ && !s->delta)) break;
-      const bool passes = s->delta && s->transmitted && s->eta == 1 && dot(s->direction, wo) < -0.9999f;
-      if (!passes && turns >= bounces_) break;  // what is translucent is seen through all the same
-      const Vec3f direction = normalize(v.frame.to_world(s->direction));
-      // What the shading normal calls one side and the surface the other is no way for light.
-      if ((dot(direction, v.point.face_normal) > 0) != (s->direction.z > 0)) break;
-      throughput = throughput * s->weight;
-      const Vec3f from = leave(v.point, direction);
-      if (passes) since += hit.t;
-      else ++turns, straight = false, pdf = s->delta ? infinite : s->pdf, turned_at = from, since = 0;
-      if (s->transmitted && v.material->has_inside() && !passes) absorption = s->direction.z < 0 ? v.material->absorption() : Vec3f();
-      if (turns > 3) {
-        const float stay = std::min(0.95f, std::max({throughput.x, throughput.y, throughput.z}));
-        if (roulette >= stay) break;
-        throughput = throughput / stay;
-      }
-      ray = {from, direction, infinite};
+      if (!met && !matter) break;
+      if (!is_dark(path.absorption))
+        for (int c = 0; c < 3; ++c) path.throughput[c] *= std::exp(-path.absorption[c] * path.ray.t_max);
+      if (!(matter ? scatter(world, media.get(), *matter, path, sampler, out) : meet(world, media.get(), hit, path, sampler, out))) break;
     }
     return out;
   }
 
  private:
-  // One light, chosen by its power, if nothing is in the way.
-  Vec3f direct(const World& world, const Vertex& v, Vec3f wo, Sampler& sampler) const {
+  /// On from a surface; false where the path ends.
+  bool meet(const World& world, MediaWalk* media, const Hit& hit, Path& path, Sampler& sampler, Estimate& out) const {
+    const Vertex v = world.at(path.ray, hit);
+    if (!is_dark(v.emission)) {
+      const float p = world.lights().triangle_pdf(hit.object, hit.primitive, path.since + hit.t, dot(path.ray.direction, v.point.face_normal));
+      out.radiance += path.throughput * v.emission * power_weight(path.pdf, p);
+    }
+    const Vec3f wo = v.frame.to_local(-path.ray.direction);
+    if (path.turns < bounces_) {
+      const float choice = sampler.next();
+      const Vec2f u = sampler.next2();
+      if (!v.bsdf.delta_only()) {
+        const auto scattered = [&](Vec3f direction) -> Scattered {
+          const Vec3f wi = v.frame.to_local(direction);
+          if ((dot(direction, v.point.face_normal) > 0) != (wi.z > 0)) return {};
+          return {v.bsdf.evaluate(wo, wi) * std::abs(wi.z), mirrors_only_ ? 0 : v.bsdf.pdf(wo, wi)};
+        };
+        const auto from = [&](Vec3f direction) { return leave(v.point, direction); };
+        out.radiance += path.throughput * direct(world, media, v.point.position, from, scattered, choice, u, sampler);
+      }
+    }
+
+    // On to the next surface.
+    const float choice = sampler.next();
+    const auto s = v.bsdf.sample(wo, choice, sampler.next2());
+    const float roulette = sampler.next();
+    if (!s || is_dark(s->weight) || (mirrors_only_ && !s->delta)) return false;
+    const bool passes = s->delta && s->transmitted && s->eta == 1 && dot(s->direction, wo) < -0.9999f;
+    if (!passes && path.turns >= bounces_) return false;  // what is translucent is seen through all the same
+    const Vec3f direction = normalize(v.frame.to_world(s->direction));
+    // What the shading normal calls one side and the surface the other is no way for light.
+    if ((dot(direction, v.point.face_normal) > 0) != (s->direction.z > 0)) return false;
+    path.throughput = path.throughput * s->weight;
+    const Vec3f from = leave(v.point, direction);
+    if (passes) path.go_straight(from, hit.t);
+    else path.turn(from, direction, s->delta ? infinite : s->pdf);
+    if (s->transmitted && v.material->has_inside() && !passes) path.absorption = s->direction.z < 0 ? v.material->absorption() : Vec3f();
+    return path.turns <= 3 || survives(path, 0.95f, roulette);
+  }
+
+  /// On from a place in a volume; false where the path ends.
+  bool scatter(const World& world, MediaWalk* media, const Collision& c, Path& path, Sampler& sampler, Estimate& out) const {
+    out.radiance += path.throughput * c.emission;
+    path.throughput = path.throughput * c.albedo;
+    if (is_dark(path.throughput) || path.turns >= turns_in_media * bounces_) return false;
+    const bool last = c.last || mirrors_only_;
+    const Vec3f along = path.ray.direction, at = path.ray.origin + along * c.t, from = c.on_surface ? at + c.normal * c.clear : at;
+    const auto scattered = [&](Vec3f direction) -> Scattered {
+      const float density = c.on_surface ? std::max(0.f, dot(direction, c.normal)) / std::numbers::pi_v<float>
+                                         : c.phase.density(dot(along, direction));
+      return {{density, density, density}, last ? 0 : density};
+    };
     const float choice = sampler.next();
     const Vec2f u = sampler.next2();
-    if (v.bsdf.delta_only()) return {};
-    const auto light = world.lights().sample(v.point.position, choice, u);
+    out.radiance += path.throughput * direct(world, media, from, [&](Vec3f) { return from; }, scattered, choice, u, sampler);
+
+    const Vec2f v = sampler.next2();
+    const float roulette = sampler.next();
+    if (last) return false;
+    Vec3f direction;
+    if (c.on_surface) {
+      direction = LocalFrame::about(c.normal).to_world(cosine_hemisphere(v));
+    } else {
+      const float cosine = c.phase.sample(v.x), sine = std::sqrt(std::max(0.f, 1 - cosine * cosine));
+      const float turn = 2 * std::numbers::pi_v<float> * v.y;
+      direction = LocalFrame::about(along).to_world({sine * std::cos(turn), sine * std::sin(turn), cosine});
+    }
+    direction = normalize(direction);
+    path.turn(from, direction, scattered(direction).pdf);
+    return path.turns <= 3 || survives(path, 1, roulette);
+  }
+
+  static bool survives(Path& path, float chance, float u) {
+    const float stay = std::min(chance, most(path.throughput));
+    if (u >= stay) return false;
+    path.throughput = path.throughput / stay;
+    return true;
+  }
+
+  /// What goes on of light from a direction, and the density with which the path would turn there: 0 where it would not.
+  struct Scattered {
+    Vec3f share;  ///< with the cosine of a surface
+    float pdf = 0;
+  };
+  /// One light, chosen by its power, if nothing is in the way. `from(direction)`: where rays to it start.
+  template <class From, class F>
+  Vec3f direct(const World& world, MediaWalk* media, Vec3f position, From&& from, F&& scattered, float choice, Vec2f u,
+               Sampler& sampler) const {
+    const uint64_t stream = media ? sampler.stream() : 0;
+    const auto light = world.lights().sample(position, choice, u);
     if (!light) return {};
-    const Vec3f wi = v.frame.to_local(light->direction), f = v.bsdf.evaluate(wo, wi);
-    if ((dot(light->direction, v.point.face_normal) > 0) != (wi.z > 0)) return {};
-    if (is_dark(f)) return {};
-    const Vec3f contribution = f * light->radiance * (std::abs(wi.z) / light->pdf);
+    const Scattered s = scattered(light->direction);
+    if (is_dark(s.share)) return {};
+    const Vec3f contribution = s.share * light->radiance * (1 / light->pdf);
     if (is_dark(contribution)) return {};
-    const Vec3f from = leave(v.point, light->direction);
     // Up to the light's own surface, which is an item or is not.
-    const Vec3f passes = world.passes({from, light->direction, light->distance * (1 - 1e-4f)});
+    const Ray ray{from(light->direction), light->direction, light->distance * (1 - 1e-4f)};
+    Vec3f passes = world.passes(ray);
     if (is_dark(passes)) return {};
-    const float weight = light->delta || mirrors_only_ ? 1 : power_weight(light->pdf, v.bsdf.pdf(wo, wi));
+    if (media) {
+      RandomStream random(stream);
+      passes = passes * media->passes(ray, random);
+    }
+    const float weight = light->delta ? 1 : power_weight(light->pdf, s.pdf);
     return contribution * passes * weight;
   }
 

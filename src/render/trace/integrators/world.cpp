@@ -29,19 +29,25 @@ std::vector<AnyLight> with_emitters(const PreparedScene& scene, const std::vecto
   return lights;
 }
 
-float reach_of(const Geometry& geometry) {
-  const Box3f& b = geometry.bounds();
-  return b.empty() ? 1 : length(b.hi - b.lo) / 2;
+// Of all that light may meet.
+float reach_of(const Geometry& geometry, const Media* media) {
+  Box3 box;
+  if (const Box3f& b = geometry.bounds(); !b.empty()) box.add(Vec3(b.lo)), box.add(Vec3(b.hi));
+  if (media && media->any())
+    for (const Vec3 corner : {media->bounds().lo, media->bounds().hi}) box.add(Vec3(geometry.placement().traced(corner)));
+  return box.empty() ? 1 : float(box.diagonal() / 2);
 }
 
 }  // namespace
 
 World::World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_ptr<const Material>> materials,
-             std::vector<AnyLight> lights, Environment environment)
+             std::vector<AnyLight> lights, Environment environment, std::shared_ptr<const Media> media)
     : scene_(std::move(scene)),
       geometry_(std::move(geometry)),
       materials_(std::move(materials)),
-      lights_(with_emitters(*scene_, materials_, geometry_.placement(), std::move(lights)), std::move(environment), reach_of(geometry_)) {
+      lights_(with_emitters(*scene_, materials_, geometry_.placement(), std::move(lights)), std::move(environment),
+              reach_of(geometry_, media.get())),
+      media_(std::move(media)) {
   for (const raster::PreparedItem& item : scene_->items)
     translucent_ = translucent_ || item.translucent || item.opacity < 1 || item.color.translucent;
 }

@@ -9,6 +9,7 @@
 #include "render/trace/geometry/geometry.h"
 #include "render/trace/light/lights.h"
 #include "render/trace/material/bsdf.h"
+#include "render/trace/media/media.h"
 #include "render/trace/sampling/local_frame.h"
 
 namespace sg::trace {
@@ -26,15 +27,18 @@ class World {
  public:
   /// `lights` in traced coordinates of `geometry`; triangles of emissive items are added to them. One material an item.
   World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_ptr<const Material>> materials, std::vector<AnyLight> lights,
-        Environment environment);
+        Environment environment, std::shared_ptr<const Media> media = nullptr);
 
   const Geometry& geometry() const { return geometry_; }
   const Lights& lights() const { return lights_; }
   const PreparedScene& scene() const { return *scene_; }
+  /// Null where there are none.
+  Media::Borrowed borrow_media() const { return media_ ? media_->borrow() : Media::Borrowed(); }
+  bool empty() const { return geometry_.bounds().empty() && !(media_ && media_->any()); }
   Vertex at(const Ray& ray, const Hit& hit) const;
   /// Whether an item lets some light pass straight on, so that shadows have shades.
   bool translucent() const { return translucent_; }
-  /// Share of light that passes along the ray up to t_max: 0 behind anything opaque.
+  /// Share of light that surfaces let pass along the ray up to t_max: 0 behind anything opaque.
   Vec3f passes(Ray ray) const;
 
  private:
@@ -42,6 +46,7 @@ class World {
   Geometry geometry_;
   std::vector<std::shared_ptr<const Material>> materials_;
   Lights lights_;
+  std::shared_ptr<const Media> media_;
   bool translucent_ = false;
 };
 

@@ -43,6 +43,8 @@ class Sampler {
   float next();
   /// The values of the next two dimensions, which are spread over the square together.
   Vec2f next2();
+  /// Of one dimension, for a RandomStream: any number of values that have nothing to do with others.
+  uint64_t stream();
   /// The dimension that is asked for next.
   uint32_t dimension() const { return dimension_; }
 

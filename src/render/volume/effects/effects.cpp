@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 #include "data/memory/memo.h"
@@ -19,17 +20,27 @@ void check_share(double value, const char* name) {
 
 }  // namespace
 
+bool scatters_by_map(const VolumeItem& item) { return item.scattering.light == VolumeLighting::map; }
+
 bool has_effects(const VolumeItem& item) {
   const VolumeLight& l = item.light;
-  return l.shadows > 0 || l.occlusion > 0 || l.depth_cue > 0 || l.style != LightStyle::none;
+  return l.shadows > 0 || l.occlusion > 0 || l.depth_cue > 0 || l.style != LightStyle::none || scatters_by_map(item);
 }
 
 void check_light(const VolumeItem& item) {
   const VolumeLight& l = item.light;
   check_share(l.shadows, "shadows"), check_share(l.occlusion, "occlusion"), check_share(l.depth_cue, "depth_cue");
-  if ((l.shadows > 0 || l.occlusion > 0) && !info_of(item.mode).absorbs)
+  if (scatters_by_map(item) && (item.shaded || l.occlusion > 0 || l.style != LightStyle::none))
+    fail_usage("light=map is light of matter: gradients, occlusion and styles have no part in it", "volume",
+               "leave out shaded=, occlusion= and style=, or light=map");
+  if ((l.shadows > 0 || l.occlusion > 0 || scatters_by_map(item)) && !info_of(item.mode).absorbs)
     fail_usage("shadows and occlusion need emission and absorption, which this ray function does not have", "volume",
                "use mode=composite, or leave out shadows= and occlusion=");
+  const VolumeScattering& s = item.scattering;
+  check_share(s.albedo, "albedo"), check_share(s.back_share, "back_share");
+  for (const double g : {s.anisotropy, s.back_anisotropy})
+    if (!(std::abs(g) < 1)) fail_usage(fmt::format("{} is not a valid mean cosine", g), "anisotropy", "give a number between -1 and 1");
+  if (!(s.glow >= 0 && std::isfinite(s.glow))) fail_usage(fmt::format("glow {} is not a valid radiance", s.glow), "volume", "give 0 or more");
   if (!(l.ink >= 0 && l.ink < 1))
     fail_usage(fmt::format("ink {} is not a valid opacity", l.ink), "volume", "give a number from 0 to below 1");
   if (l.ink > 0 && l.style != LightStyle::silhouette && l.style != LightStyle::hatch)
@@ -60,7 +71,11 @@ std::shared_ptr<const LightEffects> light_effects(const VolumeItem& item, const 
   const VolumeLight& l = item.light;
   e.shadows = float(l.shadows), e.occlusion = float(l.occlusion), e.depth_cue = float(l.depth_cue);
   e.style = l.style;
-  if (l.shadows > 0) e.lamps = lamps;
+  if (scatters_by_map(item)) {
+    e.scatters = PhaseFunction(item.scattering), e.shadows = 1;
+    e.albedo = float(item.scattering.albedo), e.glow = float(item.scattering.glow);
+  }
+  if (e.shadows > 0) e.lamps = lamps;
   if (l.occlusion > 0)
     e.around = item.data->memo().keep("volume occlusion", Recent<Occlusion>(), 0)->get(extinction_key(item, extinction), 2, [&] {
       return Occlusion(source, extinction, item.clip, {}, context);

@@ -2,6 +2,7 @@
 // LightEffects: lighting of a volume beyond Blinn-Phong: shadows, occlusion, fading with depth, illustrative styles.
 #pragma once
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "render/volume/effects/light_map.h"
 #include "render/volume/effects/occlusion.h"
 #include "render/volume/effects/surface_shadow.h"
+#include "render/shade/phase_function.h"
 #include "scene/camera.h"
 #include "scene/items/volume_item.h"
 
@@ -37,6 +39,8 @@ struct LightEffects {
   double near_end = 0, per_depth = 0;       ///< fading: (depth - near_end) * per_depth, within 0..1
   Vec3 centre;                              ///< of the volume
   double stroke = 1;                        ///< world distance of hatching strokes
+  std::optional<PhaseFunction> scatters;    ///< light=map: the lamps' light, scattered once, takes the place of all other light
+  float albedo = 0, glow = 0;
 
   bool needs_gradient(bool shaded) const { return shaded || style != LightStyle::none || around; }
   /// Share of light that arrives from a lamp: 1 - shadows + shadows T.
@@ -52,6 +56,8 @@ struct LightEffects {
   }
 };
 
+/// Whether the light of the lamps is scattered once, by their maps.
+bool scatters_by_map(const VolumeItem& item);
 /// Whether the item uses any of them.
 bool has_effects(const VolumeItem& item);
 /// Throws Error(usage) for shares outside 0..1, and shadows or occlusion of what is not composited.

@@ -65,11 +65,30 @@ class RayField {
   virtual bool bend(const Stretch&, double, SecondDerivatives&) { return false; }
 };
 
+/// A part of a ray, and bounds of the field on it.
+struct Span {
+  double from, to;
+  float lo, hi;  ///< of the stored values on it
+};
+
+/// One thread's walker through one volume by parts that are longer than stretches, for those that ask for the field at a few places only.
+class RaySpans {
+ public:
+  virtual ~RaySpans() = default;
+  virtual void start(Vec3 origin, Vec3 direction, double from, double to) = 0;
+  /// The next part from near to far; false = no more. Between two parts there may be a gap, which draws nothing.
+  virtual bool next_span(Span& out) = 0;
+  /// Stored value at t of the part that next_span gave last; NaN where nothing is drawn.
+  virtual float value(double t) = 0;
+};
+
 /// A prepared volume of any mesh kind; walkers share it.
 class RaySource {
  public:
   virtual ~RaySource() = default;
   virtual std::unique_ptr<RayField> walker() const = 0;
+  /// Null where the source has no parts longer than its stretches.
+  virtual std::unique_ptr<RaySpans> spans() const { return nullptr; }
   /// value = stored + base
   float base = 0;
   /// World box of what is drawn.

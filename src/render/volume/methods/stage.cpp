@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "render/shade/blinn_phong.h"
+#include "render/volume/effects/effects.h"
 #include "render/volume/sources/lattice/derivatives.h"
 
 namespace sg::volume {
@@ -41,6 +42,7 @@ void check(const LayerInput& input, const Limits& limits) {
   if (item.sampling.classify == VolumeClassify::table) refuse(limits, "with classify=table");
   if (item.sampling.antialias != VolumeAntialias::none) refuse(limits, "means of cells (antialias)");
   if (item.light.shadows > 0) refuse(limits, "shadows");
+  if (scatters_by_map(item)) refuse(limits, "light=map");
   if (item.light.occlusion > 0) refuse(limits, "ambient occlusion");
   if (item.light.style != LightStyle::none) refuse(limits, fmt::format("in style={}", word_of(item.light.style)));
   if (!limits.depth_cue && item.light.depth_cue > 0) refuse(limits, "a depth cue");

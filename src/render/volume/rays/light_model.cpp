@@ -54,12 +54,29 @@ float hatch(const LightEffects& e, Vec3 place, Vec3f normal, float light) {
   return 1 - paper;
 }
 
+/// Single scattering: the sum over the lamps of irradiance, phase function and what arrives.
+Lit scattered(const LitRay& lit, Vec3 place) {
+  const LightEffects& e = *lit.effects;
+  float sum = e.glow;
+  for (size_t i = 0; i < lit.lights.size(); ++i) {
+    const SeenLamp& l = lit.lights[i];
+    sum += e.albedo * lamp_irradiance * l.intensity * e.scatters->density(dot(l.light, lit.direction)) * e.arriving(i, place);
+  }
+  Lit out{sum, 0, {0, 0, 0}, 1};
+  if (e.depth_cue > 0) {
+    const float fade = e.fade(place);
+    out.diffuse *= 1 - fade, out.tint = lit.background * fade;
+  }
+  return out;
+}
+
 }  // namespace
 
 Lit light_at(const LitRay& lit, double t, Vec3f gradient, float edge, float per_scale) {
   const LightEffects& e = *lit.effects;
   const Material& m = lit.material;
   const Vec3 place = lit.origin + lit.along * t;
+  if (e.scatters) return scattered(lit, place);
   const float square = dot(gradient, gradient);
   Vec3f normal{0, 0, 0};
   float surface = 0, facing = 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/trace/material/phase.h"
+#include "render/shade/phase.h"
 
 #include <vector>
 

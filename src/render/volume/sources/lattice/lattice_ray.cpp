@@ -52,7 +52,7 @@ class LatticeWalker : public RayField {
 };
 
 template <class T>
-class LatticeRay final : public LatticeWalker {
+class LatticeRay final : public LatticeWalker, public RaySpans {
  public:
   LatticeRay(std::shared_ptr<const Volume> v, const Invisible& invisible, std::unique_ptr<LatticeWalker> second)
       : second_(std::move(second)),
@@ -98,6 +98,22 @@ class LatticeRay final : public LatticeWalker {
   }
 
   double entry() const override { return c_.enter; }
+
+  /// A brick at a time.
+  bool next_span(Span& out) override {
+    while (t_ < end_) {
+      size_t at[3];
+      for (size_t a = 0; a < 3; ++a) at[a] = size_t(axes_[a].cell(box_[a])) >> MinMaxBricks::shift;
+      const MinMaxBricks::Range r = v_.bricks().ranges[v_.bricks().id(at[0], at[1], at[2])];
+      const double from = t_;
+      leave_brick(at);
+      if (r.empty() || invisible_(r.lo, r.hi) || !(t_ > from)) continue;
+      out = {from, t_, r.lo, r.hi};
+      return true;
+    }
+    return false;
+  }
+  float value(double t) override { return value_at(clamped_place(t)); }
 
   /// Derivatives of parabolas at the corners of the cell, trilinear between them; on even axes those are, but for the outermost cells, the
   /// differences of the trilinear field over a cell to each side.
@@ -156,12 +172,15 @@ class LatticeRay final : public LatticeWalker {
   float second(const Stretch& s, double t) override { return second_ ? second_->at(t) : (void(s), NAN); }
   /// Value at t of the ray that was started, base included.
   float at(double t) override {
-    Vec3 q;
-    for (int a = 0; a < 3; ++a) q[a] = std::clamp(c_.start[a] + t * c_.along[a], axes_[a].sample(0), axes_[a].sample(axes_[a].last()));
-    return value_at(q) + v_.base;
+    return value_at(clamped_place(t)) + v_.base;
   }
 
  private:
+  Vec3 clamped_place(double t) const {
+    Vec3 q;
+    for (int a = 0; a < 3; ++a) q[a] = std::clamp(c_.start[a] + t * c_.along[a], axes_[a].sample(0), axes_[a].sample(axes_[a].last()));
+    return q;
+  }
   Vec3f gradient_at(Vec3 q) {
     long cell[3];
     double f[3];
@@ -409,8 +428,9 @@ class LatticeRay final : public LatticeWalker {
   bool beside_holes_ = false;
 };
 
-std::unique_ptr<LatticeWalker> walker_of(const std::shared_ptr<const Volume>& v, const Invisible& invisible,
-                                         std::unique_ptr<LatticeWalker> second) {
+/// As a RayField or RaySpans.
+template <class Walker>
+std::unique_ptr<Walker> walker_of(const std::shared_ptr<const Volume>& v, const Invisible& invisible, std::unique_ptr<LatticeWalker> second) {
   switch (v->voxels.array.type()) {
     case ElementType::u8: return std::make_unique<LatticeRay<uint8_t>>(v, invisible, std::move(second));
     case ElementType::i8: return std::make_unique<LatticeRay<int8_t>>(v, invisible, std::move(second));
@@ -427,7 +447,12 @@ class LatticeSource final : public RaySource {
     base = volume_->base, bounds = volume_->bounds, edge = volume_->edge;
   }
   std::unique_ptr<RayField> walker() const override {
-    return walker_of(volume_, invisible, second_ ? walker_of(second_, {}, nullptr) : nullptr);
+    return walker_of<RayField>(volume_, invisible, second_ ? walker_of<LatticeWalker>(second_, {}, nullptr) : nullptr);
+  }
+  /// Not where some of the cells or halves of cells draw nothing, nor of labels.
+  std::unique_ptr<RaySpans> spans() const override {
+    if (volume_->nearest || !volume_->hidden().empty() || (volume_->dual && volume_->samples->holes)) return nullptr;
+    return walker_of<RaySpans>(volume_, invisible, nullptr);
   }
 
  private:

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace sg::trace {
+namespace sg {
 
 /// Henyey and Greenstein (1941): mean cosine g, -1 < g < 1.
 inline float henyey_greenstein(float cosine, float g) {
@@ -30,4 +30,4 @@ inline float sample_rayleigh(float u) {
   return std::clamp(root - 1 / root, -1.f, 1.f);
 }
 
-}  // namespace sg::trace
+}  // namespace sg

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/trace/media/media.h"
+
+#include <fmt/core.h>
+
+#include "base/error.h"
+#include "render/volume/natural_units.h"
+#include "render/volume/prepare_cast.h"
+
+namespace sg::trace {
+
+namespace {
+
+void check(const VolumeItem& item) {
+  if (item.mode != RayFunction::composite)
+    fail_usage(fmt::format("mode={} shows no matter that light could meet", info_of(item.mode).name), "integrator",
+               "use mode=composite, or leave integrator out");
+  if (item.method != VolumeMethod::ray)
+    fail_usage(fmt::format("method={} does not follow light", word_of(item.method)), "integrator", "use method=ray, or leave integrator out");
+  if (item.scattering.light == VolumeLighting::map)
+    fail_usage("light=map belongs to pictures without an integrator", "integrator", "use light=single or light=path, or leave integrator out");
+}
+
+}  // namespace
+
+std::shared_ptr<Media> Media::make(const Scene& scene, const Projection& projection, Context& context) {
+  auto out = std::make_shared<Media>();
+  for (const Item& item : scene.items)
+    if (const auto* v = std::get_if<VolumeItem>(&item)) check(*v);
+  auto natural = volume::natural_scene(scene);
+  const double length = natural ? natural->length : 1;
+  const Projection inner = natural ? natural->projection(projection) : projection;
+  out->scene_ = std::make_shared<const Scene>(natural ? std::move(natural->scene) : scene);
+  for (size_t i = 0; i < out->scene_->items.size(); ++i) {
+    const auto* item = std::get_if<VolumeItem>(&out->scene_->items[i]);
+    if (!item) continue;
+    context.check();
+    std::shared_ptr<const volume::Volume> lattice;
+    volume::CastVolume prepared = volume::prepare_volume(*item, uint32_t(i + 1), inner, {}, context, lattice);
+    if (!prepared.source) continue;
+    out->media_.emplace_back(std::move(prepared), uint32_t(i), length);
+    const Box3 b = out->media_.back().bounds();
+    if (!b.empty()) out->bounds_.add(b.lo), out->bounds_.add(b.hi);
+  }
+  return out;
+}
+
+Media::Borrowed Media::borrow() const {
+  if (media_.empty()) return Borrowed(nullptr, Return{this});
+  {
+    const std::lock_guard lock(mutex_);
+    if (!idle_.empty()) {
+      std::unique_ptr<MediaWalk> walk = std::move(idle_.back());
+      idle_.pop_back();
+      return Borrowed(walk.release(), Return{this});
+    }
+  }
+  return Borrowed(new MediaWalk(media_, placement_), Return{this});
+}
+
+void Media::Return::operator()(MediaWalk* walk) const {
+  std::unique_ptr<MediaWalk> owned(walk);
+  const std::lock_guard lock(to->mutex_);
+  to->idle_.push_back(std::move(owned));
+}
+
+}  // namespace sg::trace

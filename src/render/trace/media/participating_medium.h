@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// ParticipatingMedium: a volume of the scene, on any kind of mesh, as light meets it.
+#pragma once
+#include <memory>
+
+#include "render/shade/phase_function.h"
+#include "render/trace/geometry/ray.h"
+#include "render/volume/rays/cast.h"
+
+namespace sg::trace {
+
+/// How free paths and transmittances are found.
+enum class Tracking {
+  mixed,  ///< by majorants of bricks, and exactly in those that are dense or of meshes without bricks: unbiased
+  exact,  ///< through every cell, by the integral of the extinction (regular tracking): the reference
+  delta,  ///< by majorants alone, of bricks or cells (Woodcock et al. 1965; ratio tracking: Novak et al. 2014): unbiased
+  march,  ///< fixed steps with one factor exp(-tau(middle) length) each: what textbooks show, of second order in the step
+};
+
+/// Where a path turns or ends in a medium.
+struct Collision {
+  float t = 0;        ///< along the ray, traced
+  uint32_t item = 0;  ///< number in the scene
+  Vec3f albedo;       ///< share of the light that is scattered
+  Vec3f emission;     ///< radiance that the place adds to the light, by all of the extinction
+  PhaseFunction phase;
+  bool last = false;  ///< light is scattered once only
+  /// A surface rather than matter: what is opaque within a cell and has a gradient reflects light as a diffuse surface.
+  bool on_surface = false;
+  Vec3f normal;     ///< of that surface, unit, towards where the ray came from
+  float clear = 0;  ///< traced length along the normal from which on it no longer hides itself
+};
+
+class ParticipatingMedium {
+ public:
+  /// `length`: of a world length in the units of the volume's item. `item`: number in the scene.
+  ParticipatingMedium(volume::CastVolume volume, uint32_t item, double length);
+
+  const volume::CastVolume& volume() const { return volume_; }
+  const volume::DepthIntegral& depth() const { return depth_; }
+  Tracking tracking() const { return tracking_; }
+  void use(Tracking t) { tracking_ = t; }  ///< not march where the item has no step
+  uint32_t item() const { return item_; }
+  /// World box of what may be met.
+  Box3 bounds() const;
+
+  /// The ray in the volume's units, cut by the planes that clip it, and by `t_max`.
+  volume::DepthRay inward(const Ray& ray, const Placement& placement) const;
+  float outward(double t, const Placement& placement) const { return float(t / length_ * placement.scale); }
+
+  /// What light meets where the extinction is tau; the colour is linear.
+  Collision collision(Vec3f color) const;
+  /// The chance that a place with this extinction and gradient (world) is a surface.
+  float surface(float tau, Vec3f gradient) const;
+
+ private:
+  volume::CastVolume volume_;
+  volume::DepthIntegral depth_;
+  PhaseFunction phase_;
+  Tracking tracking_ = Tracking::mixed;
+  uint32_t item_;
+  double length_;
+};
+
+}  // namespace sg::trace
