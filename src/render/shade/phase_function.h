@@ -15,6 +15,15 @@ struct PhaseFunction {
   explicit PhaseFunction(const VolumeScattering& s)
       : kind(s.phase), g(float(s.anisotropy)), back(float(s.back_anisotropy)), back_share(float(s.back_share)) {}
 
+  float mean_cosine() const {
+    switch (kind) {
+      case PhaseKind::isotropic:
+      case PhaseKind::rayleigh: break;
+      case PhaseKind::henyey_greenstein: return g;
+      case PhaseKind::two_lobe: return (1 - back_share) * g + back_share * back;
+    }
+    return 0;
+  }
   /// Per solid angle; its integral over all directions is 1.
   float density(float cosine) const {
     switch (kind) {

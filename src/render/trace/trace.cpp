@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "render/composite/background.h"
 #include "render/prepare/shared_progress.h"
 #include "render/trace/integrators/integrator.h"
 #include "render/trace/light/luminance.h"
@@ -49,13 +50,14 @@ struct PixelSum {
   Vec3 light;
   double passed = 0, square = 0;  // of the luminance
 
-  void add(const Estimate& e) {
-    const double y = luminance(e.radiance);
+  /// `behind`: luminance of the background.
+  void add(const Estimate& e, double behind) {
+    const double y = luminance(e.radiance) + e.passed * behind;
     light += Vec3(e.radiance), passed += e.passed, square += y * y;
   }
   /// The variance of the mean of n, as displayed: by the slope of sRGB's curve there, at least that of a dark grey.
-  double variance(uint32_t n) const {
-    const double mean = (0.2126 * light.x + 0.7152 * light.y + 0.0722 * light.z) / n, v = std::max(0.0, square / n - mean * mean) / (n - 1);
+  double variance(uint32_t n, double behind) const {
+    const double mean = (0.2126 * light.x + 0.7152 * light.y + 0.0722 * light.z + passed * behind) / n, v = std::max(0.0, square / n - mean * mean) / (n - 1);
     constexpr float step = 0.01f;
     const float y = std::clamp(float(mean), 2 * step, 1.f);
     const double slope = double(srgb_encode(y + step) - srgb_encode(y - step)) / (2 * double(step));
@@ -124,6 +126,8 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
           const int x0 = int(square % across) * side, y0 = int(square / across) * side;
           const int w = std::min(side, projection.width - x0), h = std::min(side, projection.height - y0);
           PixelSum sums[side * side];
+          double behind[side];
+          for (int y = 0; y < h; ++y) behind[y] = double(luminance(background_of_row(scene, projection, y0 + y)));
           Sampler sampler(options.sampler, options.seed, options.paths);
           SquareReport& told = squares[square];
           uint32_t n = 0;
@@ -136,12 +140,12 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
                 const Vec2f in_pixel = sampler.next2();
                 double start = 0, per_depth = 1;
                 const Ray ray = eye.ray({float(x) + in_pixel.x, float(y) + in_pixel.y}, start, per_depth);
-                sums[p].add(integrator->along(world, ray, sampler));
+                sums[p].add(integrator->along(world, ray, sampler), behind[p / w]);
               }
             }
             n = to;
             told.variance = 0;
-            for (int p = 0; p < w * h && n > 1; ++p) told.variance += sums[p].variance(n) / (w * h);
+            for (int p = 0; p < w * h && n > 1; ++p) told.variance += sums[p].variance(n, behind[p / w]) / (w * h);
             told.reached = n > 1 && told.variance <= options.noise * options.noise;
           } while (!told.reached && n < uint32_t(options.paths));
           told.paths = n;

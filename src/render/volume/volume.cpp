@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include <deque>
+
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/random.h"
@@ -10,6 +12,7 @@
 #include "render/prepare/shared_progress.h"
 #include "render/shade/lamp.h"
 #include "render/volume/effects/effects.h"
+#include "render/volume/effects/scatter_colors.h"
 #include "render/volume/engines/engine.h"
 #include "render/volume/methods/layers.h"
 #include "render/volume/natural_units.h"
@@ -203,10 +206,12 @@ namespace {
 
 void cast_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context,
                   const Knobs& knobs) {
+  std::deque<VolumeItem> scattering;
   Picture picture{projection, fragments, frame, knobs, {}, {}, false, {}, {}, nullptr, 0, nullptr};
   for (size_t i = 0; i < scene.items.size(); ++i)
     if (const auto* item = std::get_if<VolumeItem>(&scene.items[i]); item && item->method == VolumeMethod::ray) {
       context.check();
+      if (scatters_by_map(*item)) item = &scattering.emplace_back(with_scatter_colors(*item));
       std::shared_ptr<const Volume> lattice;
       CastVolume volume = prepare_volume(*item, uint32_t(i + 1), projection, knobs, context, lattice);
       if (!volume.source) continue;

@@ -18,6 +18,9 @@ void describe(Schema& s, VolumeScattering& p) {
   s("back_anisotropy", p.back_anisotropy, "Mean cosine of the second of two lobes; below 0 goes back.").range(-0.99, 0.99);
   s("back_share", p.back_share, "Share of the second of two lobes.").range(0, 1);
   s("glow", p.glow, "Unless light=emission: how brightly the colours shine besides; 1 is a white surface in full light.").at_least(0);
+  s("black_body", p.black_body,
+    "The field that colours is a temperature in kelvin: what glows has the colour and brightness of a black body, glow at the upper end of "
+    "the range (with opacity by another field: opacity_by or color_by).");
 }
 
 }  // namespace sg

@@ -34,8 +34,8 @@ constexpr auto enum_words(PhaseKind) {
                     Word{"two_lobe", two_lobe}};
 }
 
-/// Extinction is that of the opacity curve, whatever the colour of light; of light that it takes, the share `albedo` times the colour of the
-/// value (linear) is scattered, the rest absorbed.
+/// Extinction is that of the opacity curve, whatever the colour of light. Of light that it takes, a share is scattered, the rest absorbed:
+/// so much that a thick body of the value has its colour in even light (single_scatter_albedo; all of it for white), times `albedo`.
 struct VolumeScattering {
   std::optional<VolumeLighting> light;  ///< empty = path with an integrator, else emission
   double albedo = 1;
@@ -44,6 +44,7 @@ struct VolumeScattering {
   double back_anisotropy = -0.3;  ///< of the second lobe
   double back_share = 0.3;        ///< what it takes
   double glow = 0;                ///< radiance of white, by which the colours shine themselves
+  bool black_body = false;        ///< the field that colours is a temperature in kelvin: `glow` is the luminance at the scale's upper end
 };
 void describe(Schema& s, VolumeScattering& p);
 

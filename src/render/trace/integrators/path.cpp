@@ -45,12 +45,36 @@ class PathIntegrator : public Integrator {
   Estimate along(const World& world, const Ray& first, Sampler& sampler) const override {
     const Media::Borrowed media = world.borrow_media();
     Estimate out;
-    for (Path path(first);;) {
+    Path path(first);
+    if (media) {
+      // What the viewer sees of matter, and what is seen through it: both, as far as there is of each.
+      Hit hit;
+      path.ray.t_max = world.geometry().nearest(first, hit) ? hit.t : infinite;
+      const float passes = media->passes_exactly(path.ray);
+      if (passes < 1) {
+        const float u = sampler.next();
+        RandomStream random(sampler.stream());
+        Path scattered = path;
+        scattered.throughput = scattered.throughput * (1 - passes);
+        const auto matter = media->collide_surely(u, random);
+        if (matter && scatter(world, media.get(), *matter, scattered, sampler, out)) follow(world, media.get(), scattered, false, sampler, out);
+      }
+      path.throughput = path.throughput * passes;
+      if (!(passes > 0)) return out;
+    }
+    follow(world, media.get(), path, true, sampler, out);
+    return out;
+  }
+
+ private:
+  /// On to the end. `past_media`: what the path meets of media before the first surface is known.
+  void follow(const World& world, MediaWalk* media, Path& path, bool past_media, Sampler& sampler, Estimate& out) const {
+    for (;; past_media = false) {
       Hit hit;
       const bool met = world.geometry().nearest(path.ray, hit);
       path.ray.t_max = met ? hit.t : infinite;
       std::optional<Collision> matter;
-      if (media) {
+      if (media && !past_media) {
         const float u = sampler.next();
         RandomStream random(sampler.stream());
         matter = media->collide(path.ray, u, random);
@@ -65,12 +89,10 @@ class PathIntegrator : public Integrator {
       if (!met && !matter) break;
       if (!is_dark(path.absorption))
         for (int c = 0; c < 3; ++c) path.throughput[c] *= std::exp(-path.absorption[c] * path.ray.t_max);
-      if (!(matter ? scatter(world, media.get(), *matter, path, sampler, out) : meet(world, media.get(), hit, path, sampler, out))) break;
+      if (!(matter ? scatter(world, media, *matter, path, sampler, out) : meet(world, media, hit, path, sampler, out))) break;
     }
-    return out;
   }
 
- private:
   /// On from a surface; false where the path ends.
   bool meet(const World& world, MediaWalk* media, const Hit& hit, Path& path, Sampler& sampler, Estimate& out) const {
     const Vertex v = world.at(path.ray, hit);

@@ -8,17 +8,6 @@
 
 namespace sg::trace {
 
-Vec3f single_scatter_albedo(Vec3f surface, float g) {
-  Vec3f scattered;
-  for (int i = 0; i < 3; ++i) {
-    const double a = std::clamp(double(surface[i]), 0.0, 1.0);
-    // 0.139 s^2 - (1.139 + 1.17 a) s + 1 - a = 0, written so that nothing cancels near a = 1.
-    const double b = 1.139 + 1.17 * a, s = 2 * (1 - a) / (b + std::sqrt(b * b - 4 * 0.139 * (1 - a)));
-    scattered[i] = float((1 - s * s) / (1 - double(g) * s * s));
-  }
-  return scattered;
-}
-
 DiffusionProfile::DiffusionProfile(float mean_free_path, float surface) : surface_(std::clamp(surface, 0.f, 1.f)) {
   const float beyond = surface_ - 0.8f;
   length_ = mean_free_path / (1.9f - surface_ + 3.5f * beyond * beyond);

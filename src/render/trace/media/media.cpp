@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "render/volume/effects/scatter_colors.h"
 #include "render/volume/natural_units.h"
 #include "render/volume/prepare_cast.h"
 
@@ -21,6 +22,12 @@ void check(const VolumeItem& item) {
     fail_usage("light=map belongs to pictures without an integrator", "integrator", "use light=single or light=path, or leave integrator out");
 }
 
+void check_glow(const VolumeItem& item, const ColorScale& shown) {
+  if (item.scattering.black_body && !(shown.hi >= 100 && shown.hi > shown.lo))
+    fail_usage(fmt::format("the range of the colours ends at {}, which is no temperature that glows", shown.hi), "black_body",
+               "state a range in kelvin, e.g. range=300,1800, of a field that is one (calc makes it of others)");
+}
+
 }  // namespace
 
 std::shared_ptr<Media> Media::make(const Scene& scene, const Projection& projection, Context& context) {
@@ -30,15 +37,20 @@ std::shared_ptr<Media> Media::make(const Scene& scene, const Projection& project
   auto natural = volume::natural_scene(scene);
   const double length = natural ? natural->length : 1;
   const Projection inner = natural ? natural->projection(projection) : projection;
-  out->scene_ = std::make_shared<const Scene>(natural ? std::move(natural->scene) : scene);
-  for (size_t i = 0; i < out->scene_->items.size(); ++i) {
-    const auto* item = std::get_if<VolumeItem>(&out->scene_->items[i]);
+  const auto own = std::make_shared<Scene>(natural ? std::move(natural->scene) : scene);
+  out->scene_ = own;
+  for (size_t i = 0; i < own->items.size(); ++i) {
+    auto* item = std::get_if<VolumeItem>(&own->items[i]);
     if (!item) continue;
     context.check();
+    if (item->scattering.light != VolumeLighting::emission) *item = volume::with_scatter_colors(std::move(*item));
     std::shared_ptr<const volume::Volume> lattice;
     volume::CastVolume prepared = volume::prepare_volume(*item, uint32_t(i + 1), inner, {}, context, lattice);
     if (!prepared.source) continue;
-    out->media_.emplace_back(std::move(prepared), uint32_t(i), length);
+    const auto& stated = std::get<VolumeItem>(scene.items[i]);
+    const ColorScale& shown = stated.detail.color_by_second ? stated.detail.second_color : stated.color;
+    check_glow(stated, shown);
+    out->media_.emplace_back(std::move(prepared), uint32_t(i), length, Range{shown.lo, shown.hi});
     const Box3 b = out->media_.back().bounds();
     if (!b.empty()) out->bounds_.add(b.lo), out->bounds_.add(b.hi);
   }

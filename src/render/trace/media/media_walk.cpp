@@ -20,6 +20,8 @@ using volume::Stretch;
 constexpr double dense = 6;
 /// Shares of light below this go on by chance.
 constexpr double faint = 0.05;
+/// Nothing passes behind this optical depth.
+constexpr double deepest = 40;
 
 /// Calls f(stretch) from near to far while it returns true.
 template <class F>
@@ -51,7 +53,8 @@ MediaWalk::MediaWalk(std::span<const ParticipatingMedium> media, const Placement
   for (const ParticipatingMedium& m : media) {
     const volume::RaySource& source = *m.volume().source;
     const bool ask_spans = !m.volume().detail && (m.tracking() == Tracking::mixed || m.tracking() == Tracking::delta);
-    walkers_.push_back({&m, source.walker(), ask_spans ? source.spans() : nullptr});
+    Walker& w = walkers_.emplace_back();
+    w.medium = &m, w.cells = source.walker(), w.spans = ask_spans ? source.spans() : nullptr;
   }
 }
 
@@ -160,16 +163,17 @@ Collision MediaWalk::collision_at(const Walker& w, const DepthRay& ray, const Pl
     });
   }
   Vec3f color;
-  float tau = place.tau;
+  float tau = place.tau, coloring;
   if (v.detail) {
     const volume::DetailPlace p = place_at(*v.detail, s, std::clamp(place.t, s.from, s.to), *w.cells);
     tau = p.tau, color = {p.sample.r, p.sample.g, p.sample.b};
+    coloring = v.item->detail.color_by_second ? p.second : p.value + v.source->base;
   } else {
     const float value = place.in_stretch ? s.value(std::clamp(place.t, s.from, s.to)) : place.value;
     const volume::Optics o = v.medium->at(value);
-    color = o.color, tau = place.in_stretch ? o.tau : tau;
+    color = o.color, tau = place.in_stretch ? o.tau : tau, coloring = value + v.source->base;
   }
-  Collision c = w.medium->collision(color);
+  Collision c = w.medium->collision(color, coloring);
   c.t = w.medium->outward(place.t, placement_);
   if (may_be_surface && !(c.albedo == Vec3f())) {
     const Vec3f gradient = w.cells->gradient(s, std::clamp(place.t, s.from, s.to));
@@ -199,6 +203,56 @@ std::optional<Collision> MediaWalk::collide(const Ray& ray, float u, RandomStrea
   return first;
 }
 
+float MediaWalk::passes_exactly(const Ray& ray) {
+  double all = 0;
+  for (Walker& w : walkers_) {
+    w.ray = w.medium->inward(ray, placement_);
+    w.stretches.clear(), w.depth.clear();
+    if (!(w.ray.from < w.ray.to)) continue;
+    double depth = 0;
+    each_stretch(*w.cells, w.ray, w.ray.from, w.ray.to, [&](const Stretch& s) {
+      const double more = w.medium->depth().over(s, *w.cells);
+      if (more > 0) w.stretches.push_back(s), w.depth.push_back(depth += more);
+      return depth < deepest;
+    });
+    all += depth;
+  }
+  return all < deepest ? float(std::exp(-all)) : 0;
+}
+
+std::optional<Collision> MediaWalk::collide_surely(float u, RandomStream& random) {
+  double all = 0;
+  for (const Walker& w : walkers_) all += w.all();
+  // The first medium in which something is met: it is met there with the chance 1 - exp(-depth), and not in those before it.
+  double rest = double(u) * -std::expm1(-all);
+  std::optional<Collision> first;
+  bool chosen = false;
+  for (const Walker& w : walkers_) {
+    const double meets = -std::expm1(-w.all());
+    double left;
+    if (!chosen && rest < meets) left = -std::log1p(-rest), chosen = true;
+    else if (chosen) left = random.exponential();
+    else {
+      rest = (rest - meets) / (1 - meets);
+      continue;
+    }
+    const auto i = size_t(std::upper_bound(w.depth.begin(), w.depth.end(), left) - w.depth.begin());
+    if (i == w.depth.size()) continue;
+    const double before = i > 0 ? w.depth[i - 1] : 0;
+    Place place{};
+    place.t = place_of_depth(w.medium->depth(), w.stretches[i], *w.cells, left - before, w.depth[i] - before);
+    place.stretch = w.stretches[i], place.in_stretch = true;
+    if (first && !(w.medium->outward(place.t, placement_) < first->t)) continue;
+    // Gradients and second fields are asked of a walker that is there.
+    each_stretch(*w.cells, w.ray, place.stretch.from, place.stretch.to, [&](const Stretch& s) {
+      place.stretch = s;
+      return false;
+    });
+    first = collision_at(w, w.ray, place, random);
+  }
+  return first;
+}
+
 float MediaWalk::passes(const Ray& ray, RandomStream& random) {
   double share = 1;
   const auto goes_on = [&] {  // by chance where little passes
@@ -212,7 +266,6 @@ float MediaWalk::passes(const Ray& ray, RandomStream& random) {
     if (!(inner.from < inner.to)) continue;
     const volume::Medium& medium = *w.medium->volume().medium;
     const auto through_cells = [&](double from, double to) {
-      constexpr double deepest = 30;
       double left = deepest;
       Place place{};
       const bool steps = w.medium->tracking() == Tracking::march;

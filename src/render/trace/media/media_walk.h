@@ -17,6 +17,10 @@ class MediaWalk {
   /// The first place up to ray.t_max at which light that comes along the ray would meet matter, drawn by tau exp(-integral of tau); nothing
   /// where it passes. u in [0, 1) decides in the first medium, `random` on the rest.
   std::optional<Collision> collide(const Ray& ray, float u, RandomStream& random);
+  /// The share of light that passes up to ray.t_max, exactly but for march; remembers the way for collide_surely().
+  float passes_exactly(const Ray& ray);
+  /// The same as collide() on the way of passes_exactly(), which must be below 1, on the condition that something is met. u in [0, 1).
+  std::optional<Collision> collide_surely(float u, RandomStream& random);
   /// An estimate of the share of light that passes up to ray.t_max: its mean is exp(-integral of tau).
   float passes(const Ray& ray, RandomStream& random);
 
@@ -25,6 +29,11 @@ class MediaWalk {
     const ParticipatingMedium* medium;
     std::unique_ptr<volume::RayField> cells;
     std::unique_ptr<volume::RaySpans> spans;  ///< may be null
+    // The way of passes_exactly():
+    volume::DepthRay ray;
+    std::vector<volume::Stretch> stretches;
+    std::vector<double> depth;  ///< at their ends
+    double all() const { return depth.empty() ? 0 : depth.back(); }
   };
   /// A place in a medium.
   struct Place {

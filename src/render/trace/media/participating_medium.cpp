@@ -4,13 +4,29 @@
 #include <algorithm>
 #include <cmath>
 
+#include "color/black_body.h"
 #include "render/shade/exp.h"
 
 namespace sg::trace {
 
-ParticipatingMedium::ParticipatingMedium(volume::CastVolume volume, uint32_t item, double length)
+namespace {
+
+constexpr int glow_steps = 1024;
+
+const ColorScale& coloring_scale(const VolumeItem& item) { return item.detail.color_by_second ? item.detail.second_color : item.color; }
+
+}  // namespace
+
+ParticipatingMedium::ParticipatingMedium(volume::CastVolume volume, uint32_t item, double length, Range shown)
     : volume_(std::move(volume)), depth_(volume_.extinction()), phase_(volume_.item->scattering), item_(item), length_(length) {
   if (volume_.step > 0) tracking_ = Tracking::march;
+  if (!volume_.item->scattering.black_body) return;
+  const ColorScale& scale = coloring_scale(*volume_.item);
+  glow_lo_ = scale.lo, glow_per_ = scale.hi > scale.lo ? glow_steps / (scale.hi - scale.lo) : 0;
+  for (int i = 0; i <= glow_steps; ++i) {
+    const Vec3 c = black_body(shown.lo + (shown.hi - shown.lo) * i / glow_steps, shown.hi);
+    glow_.push_back({float(std::max(0.0, c.x)), float(std::max(0.0, c.y)), float(std::max(0.0, c.z))});
+  }
 }
 
 Box3 ParticipatingMedium::bounds() const {
@@ -26,7 +42,7 @@ volume::DepthRay ParticipatingMedium::inward(const Ray& ray, const Placement& pl
   return inner;
 }
 
-Collision ParticipatingMedium::collision(Vec3f color) const {
+Collision ParticipatingMedium::collision(Vec3f color, float coloring) const {
   const VolumeScattering& s = volume_.item->scattering;
   const VolumeLighting light = s.light.value_or(VolumeLighting::path);
   Collision c;
@@ -34,7 +50,10 @@ Collision ParticipatingMedium::collision(Vec3f color) const {
   if (light == VolumeLighting::emission) {
     c.emission = color, c.last = true;
   } else {
-    c.albedo = color * float(s.albedo), c.emission = color * float(s.glow), c.last = light != VolumeLighting::path;
+    c.albedo = color * float(s.albedo), c.last = light != VolumeLighting::path;
+    const double place = (double(coloring) - glow_lo_) * glow_per_ + 0.5;
+    const Vec3f shines = glow_.empty() ? color : place >= 0 ? glow_[size_t(std::min(place, double(glow_steps)))] : Vec3f();
+    c.emission = shines * float(s.glow);
   }
   return c;
 }

@@ -2,6 +2,7 @@
 // ParticipatingMedium: a volume of the scene, on any kind of mesh, as light meets it.
 #pragma once
 #include <memory>
+#include <vector>
 
 #include "render/shade/phase_function.h"
 #include "render/trace/geometry/ray.h"
@@ -33,8 +34,8 @@ struct Collision {
 
 class ParticipatingMedium {
  public:
-  /// `length`: of a world length in the units of the volume's item. `item`: number in the scene.
-  ParticipatingMedium(volume::CastVolume volume, uint32_t item, double length);
+  /// `length`: of a world length in the units of the volume's item. `item`: number in the scene. `shown`: the range of the colours there.
+  ParticipatingMedium(volume::CastVolume volume, uint32_t item, double length, Range shown);
 
   const volume::CastVolume& volume() const { return volume_; }
   const volume::DepthIntegral& depth() const { return depth_; }
@@ -48,8 +49,8 @@ class ParticipatingMedium {
   volume::DepthRay inward(const Ray& ray, const Placement& placement) const;
   float outward(double t, const Placement& placement) const { return float(t / length_ * placement.scale); }
 
-  /// What light meets where the extinction is tau; the colour is linear.
-  Collision collision(Vec3f color) const;
+  /// What light meets at a place of this linear colour, where the field that colours has the value `coloring` (in the volume's units).
+  Collision collision(Vec3f color, float coloring) const;
   /// The chance that a place with this extinction and gradient (world) is a surface.
   float surface(float tau, Vec3f gradient) const;
 
@@ -60,6 +61,9 @@ class ParticipatingMedium {
   Tracking tracking_ = Tracking::mixed;
   uint32_t item_;
   double length_;
+  // With black_body: what the values between the ends of the scale glow.
+  double glow_lo_ = 0, glow_per_ = 0;
+  std::vector<Vec3f> glow_;
 };
 
 }  // namespace sg::trace
