@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "render/prepare/shared_progress.h"
+#include "render/trace/integrators/bidirectional/whole_picture.h"
 #include "render/trace/integrators/integrator.h"
 #include "render/trace/light/luminance.h"
 #include "render/trace/studio.h"
@@ -80,8 +81,8 @@ std::unique_ptr<Integrator> make_integrator(const LightOptions& o) {
     case IntegratorKind::ambient_occlusion: return occlusion_integrator(0.5f);
     case IntegratorKind::whitted: return whitted_integrator(o.bounces);
     case IntegratorKind::path: return path_integrator(o.bounces);
+    default: return nullptr;  // of the whole picture
   }
-  return nullptr;
 }
 
 World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Projection& projection, Context& context) {
@@ -108,9 +109,16 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
     if (std::holds_alternative<VolumeItem>(item))
       fail_usage("volumes are not lit by paths yet", "integrator", "leave integrator out, or show surfaces: contour, slice");
   const World world = world_of(scene, prepared, projection, context);
+  if (!world.lights().any() && options.integrator != IntegratorKind::ambient_occlusion)
+    context.warn("nothing shines: no light, no environment, no material with emission; the picture is dark");
   const auto integrator = make_integrator(options);
   Frame frame(projection.width, projection.height);
   if (world.geometry().bounds().empty()) return frame;
+  if (lights_whole_picture(options.integrator)) {
+    WholePicture whole = draw_whole_picture(world, projection, options, context);
+    report = {whole.paths, whole.noise, whole.reached};
+    return std::move(whole.frame);
+  }
   const Eye eye(projection, world.geometry());
 
   const auto across = size_t(projection.width + side - 1) / side, down = size_t(projection.height + side - 1) / side;
