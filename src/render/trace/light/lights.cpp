@@ -151,18 +151,17 @@ std::optional<Seen> seen_one(const TriangleLight&, const Ray&, float) { return {
 float pdf_one(const PointLight&, Vec3f, Vec3f, float) { return 1; }
 float pdf_one(const DistantLight& l, Vec3f, Vec3f, float) { return l.rise == 0 ? 1 : uniform_cone_pdf(l.rise); }
 float pdf_one(const SphereLight& l, Vec3f from, Vec3f, float) { return pdf_seen(l, from); }
+float pdf_flat(Vec3f normal, float area, Vec3f direction, float distance) {
+  return solid_angle_pdf(1 / area, distance * distance, dot(direction, normal) / length(normal));
+}
 float pdf_one(const DiscLight& l, Vec3f, Vec3f direction, float distance) {
-  return solid_angle_pdf(1 / (pi * l.radius * l.radius), distance * distance, dot(direction, l.normal));
+  return pdf_flat(l.normal, pi * l.radius * l.radius, direction, distance);
 }
 float pdf_one(const RectangleLight& l, Vec3f, Vec3f direction, float distance) {
-  const Vec3f n = cross(l.u, l.v);
-  const float area = length(n);
-  return solid_angle_pdf(1 / area, distance * distance, dot(direction, n) / area);
+  return pdf_flat(cross(l.u, l.v), length(cross(l.u, l.v)), direction, distance);
 }
 float pdf_one(const TriangleLight& l, Vec3f, Vec3f direction, float distance) {
-  const Vec3f n = cross(l.b - l.a, l.c - l.a);
-  const float twice = length(n);
-  return solid_angle_pdf(2 / twice, distance * distance, dot(direction, n) / twice);
+  return pdf_flat(cross(l.b - l.a, l.c - l.a), length(cross(l.b - l.a, l.c - l.a)) / 2, direction, distance);
 }
 
 uint64_t key_of(uint32_t object, uint32_t primitive) { return uint64_t(object) << 32 | primitive; }
@@ -245,7 +244,7 @@ float Lights::triangle_pdf(uint32_t object, uint32_t primitive, float distance, 
   const auto number = number_of(object, primitive);
   if (!number) return 0;
   const auto& l = std::get<TriangleLight>(lights_[*number]);
-  return choice_->probability(*number) * solid_angle_pdf(2 / length(cross(l.b - l.a, l.c - l.a)), distance * distance, cosine);
+  return chance(*number) * solid_angle_pdf(2 / length(cross(l.b - l.a, l.c - l.a)), distance * distance, cosine);
 }
 
 }  // namespace sg::trace

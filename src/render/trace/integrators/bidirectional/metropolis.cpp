@@ -15,7 +15,8 @@ namespace {
 
 constexpr double large_share = 0.3;   // of the steps
 constexpr size_t chains_a_pass = 64;  // fixed, so that pictures depend on no number of threads
-constexpr size_t draws = 1 << 17;     // of the bootstrap, over all numbers of turns
+// Of the bootstrap, over all numbers of turns: an eighth of all, within bounds.
+constexpr double least_draws = 1 << 12, most_draws = 1 << 17;
 
 /// Sums of independent values.
 struct Sum {
@@ -87,7 +88,8 @@ class Metropolis : public PictureIntegrator {
     const auto kinds = size_t(scene_.bounces);
     known_.assign(kinds, {});
     if (kinds == 0) return;
-    const size_t each = std::clamp<size_t>(draws / kinds, 256, 1 << 14);
+    const double draws = std::clamp(scene_.camera.pixels() * options_.paths / 8, least_draws, most_draws);
+    const size_t each = std::clamp<size_t>(size_t(draws) / kinds, 256, 1 << 14);
     std::vector<float> bright(kinds * each);
     parallel_for(
         bright.size(), 512,

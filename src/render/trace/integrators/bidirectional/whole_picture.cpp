@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/trace/integrators/bidirectional/whole_picture.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -8,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "data/memory/memory_budget.h"
 #include "render/trace/integrators/bidirectional/picture_integrator.h"
 
 namespace sg::trace {
@@ -119,6 +122,9 @@ WholePicture draw_whole_picture(const World& world, const Projection& projection
   const PictureCamera camera(projection, world.geometry().placement());
   const Emission emission(world.lights(), world.geometry().bounds());
   const PathScene scene{world, emission, camera, options.bounces, true};
+  const double pixels = camera.pixels();
+  need_memory(pixels * double(sizeof(Gathered) + 2 * sizeof(Vec3) + sizeof(float)),
+              fmt::format("{}x{} pixels lit as a whole", projection.width, projection.height), "render", "make a smaller picture: --size");
   const auto integrator = make(scene, options);
   Gathering gathering(projection.width, projection.height);
   WholePicture picture;
