@@ -58,26 +58,35 @@ class Gathering {
     });
   }
 
-  /// The mean over the pixels of the variance of a pixel, as displayed: by the slope of sRGB's curve there, at least that of a dark grey.
-  double variance(double factor_error) const {
-    if (passes_ < 2) return 0;
-    const double sum = parallel_reduce(
-        pixels_.size(), width_, 0.0,
+  /// The variance of a pixel, as displayed: by the slope of sRGB's curve there, at least that of a dark grey.
+  struct Variance {
+    double of_all = 0, of_seen = 0;  // means over all pixels, and over those in which something is seen
+  };
+  Variance variance(double factor_error) const {
+    if (passes_ < 2) return {};
+    struct Part {
+      double sum = 0, seen = 0;
+    };
+    const Part all = parallel_reduce(
+        pixels_.size(), width_, Part{},
         [&](size_t begin, size_t end) {
-          double part = 0;
+          Part part;
           for (size_t i = begin; i < end; ++i) {
             const Gathered& g = pixels_[i];
+            if (!(g.sum > 0) && g.passed >= paths_) continue;
             const double mean = g.sum / paths_, off = mean * factor_error;
             const double spread = std::max(0.0, g.square - g.sum * mean) / ((passes_ - 1) * paths_) + off * off;
             constexpr float step = 0.01f;
             const float y = std::clamp(float(mean), 2 * step, 1.f);
             const double slope = double(srgb_encode(y + step) - srgb_encode(y - step)) / (2 * double(step));
-            part += spread * slope * slope;
+            part.sum += spread * slope * slope, part.seen += 1;
           }
           return part;
         },
-        [](double a, double b) { return a + b; });
-    return sum / double(pixels_.size());
+        [](Part a, const Part& b) {
+          return Part{a.sum + b.sum, a.seen + b.seen};
+        });
+    return {all.sum / double(pixels_.size()), all.seen > 0 ? all.sum / all.seen : 0};
   }
 
   void develop(double factor, Frame& frame) const {
@@ -136,9 +145,9 @@ WholePicture draw_whole_picture(const World& world, const Projection& projection
     integrator->pass(n, to, gathering.film(), context);
     gathering.take(double(to - n), integrator->factor());
     n = to;
-    const double variance = gathering.variance(integrator->factor_error());
-    picture.noise = std::sqrt(variance);
-    picture.reached = gathering.passes() >= least_passes && picture.noise <= options.noise;
+    const Gathering::Variance variance = gathering.variance(integrator->factor_error());
+    picture.noise = std::sqrt(variance.of_all);
+    picture.reached = gathering.passes() >= least_passes && std::sqrt(variance.of_seen) <= options.noise;
   }
   picture.paths = gathering.paths();
   gathering.develop(integrator->factor(), picture.frame);

@@ -19,8 +19,9 @@ struct WholePicture {
 /// Whether an integrator is one of those.
 bool lights_whole_picture(IntegratorKind kind);
 
-/// Passes are made until the error is below options.noise, after four at the earliest, or at options.paths. The error of a pixel is that of
-/// the mean of the passes; a factor that all pixels share adds its own. The same bytes for any number of threads.
+/// Passes are made until the error of the pixels in which something is seen is below options.noise, root mean square, after four passes at
+/// the earliest, or at options.paths. The error of a pixel is that of the mean of the passes; a factor that all pixels share adds its own.
+/// The same bytes for any number of threads.
 WholePicture draw_whole_picture(const World& world, const Projection& projection, const LightOptions& options, Context& context);
 
 }  // namespace sg::trace
