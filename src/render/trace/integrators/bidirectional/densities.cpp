@@ -1,28 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/trace/integrators/bidirectional/densities.h"
 
-#include <cmath>
-
 namespace sg::trace {
 
 namespace {
 
 // Densities may be tiny or huge; their ratios are what counts.
-double raised(double ratio, double power) { return power == 2 ? ratio * ratio : std::pow(ratio, power); }
+double counts(double ratio, Heuristic heuristic) { return heuristic == Heuristic::power ? ratio * ratio : ratio; }
 
 }  // namespace
 
-double strategy_weight(const PathDensities& p, size_t s, double power) {
+double strategy_weight(const PathDensities& p, size_t s, Heuristic heuristic) {
   if (!p.possible(s)) return 0;
   double sum = 1;
   // With more vertices from the light: what this strategy drew from the camera is drawn from the light instead.
   double ratio = s == 1 ? p.from_light[0] / p.asked : 1;
   for (size_t i = s; i + 1 < p.count() && (ratio > 0 || i == 0); ++i) {
     if (i == 0) {
-      if (p.possible(1)) sum += raised(p.asked / p.from_camera[0], power);
+      if (p.possible(1)) sum += counts(p.asked / p.from_camera[0], heuristic);
     }
     ratio *= p.from_light[i] / p.from_camera[i];
-    if (i > 0 && p.possible(i + 1)) sum += raised(ratio, power);
+    if (i > 0 && p.possible(i + 1)) sum += counts(ratio, heuristic);
   }
   // With fewer.
   ratio = 1;
@@ -31,7 +29,7 @@ double strategy_weight(const PathDensities& p, size_t s, double power) {
     const double before = ratio;
     ratio *= p.from_camera[i] / own;
     // Strategy i; the one that asks has another density of x_0.
-    if (p.possible(i)) sum += raised(i == 1 ? ratio * p.asked / p.from_light[0] : ratio, power);
+    if (p.possible(i)) sum += counts(i == 1 ? ratio * p.asked / p.from_light[0] : ratio, heuristic);
     if (!(ratio > 0) && before > 0) break;
   }
   const double weight = 1 / sum;

@@ -30,8 +30,12 @@ struct PathDensities {
   bool possible(size_t s) const { return s == 0 ? light_can_be_met && !delta[0] : !(delta[s] || (s > 1 && delta[s - 1])); }
 };
 
-/// The power heuristic's share of strategy s, for which p_s > 0, of the path: p_s^2 / sum of all p^2 (power 2; 1 is the balance heuristic).
-/// The shares of all that are possible add up to 1. O(count).
-double strategy_weight(const PathDensities& path, size_t s, double power = 2);
+enum class Heuristic {
+  balance,  ///< p_s / sum of all p
+  power,    ///< p_s^2 / sum of all p^2
+};
+
+/// The share of strategy s, for which p_s > 0, of the path. The shares of all that are possible add up to 1. O(count).
+double strategy_weight(const PathDensities& path, size_t s, Heuristic heuristic = Heuristic::power);
 
 }  // namespace sg::trace

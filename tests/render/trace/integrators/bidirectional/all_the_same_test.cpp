@@ -11,7 +11,7 @@ using namespace sg::trace::test;
 
 namespace {
 
-constexpr int seeds = 24;
+constexpr int seeds = 20;
 
 /// `light` where nothing is seen by mirrors or glass, `path` where nothing is focused from a point.
 void check_all(const LightScene& s, bool with_light = true, double precise = 0.03, int more = 1) {
@@ -78,7 +78,7 @@ TEST_CASE("all the same: inside of a diffuse ball with a lamp without a size in 
   s.lights = {PointLight{{0, 0, 0}, {i, i, i}}};
   check_all(s);
   // albedo I / (pi R^2) (1 + albedo + ... albedo^(turns - 1))
-  const Means bdpt = pictures_by(LitWorld(s), IntegratorKind::bdpt, seeds, 8);
+  const Means bdpt = pictures_by(LitWorld(s), IntegratorKind::bdpt, 8, 8);
   CHECK(std::abs(bdpt.back().mean - (1 - std::pow(0.5, 6))) <= 4 * bdpt.back().standard_error() + 2e-3);
 }
 

@@ -28,12 +28,13 @@ std::vector<double> products(const PathDensities& d) {
 void check_shares(const PathDensities& d, size_t own) {
   const std::vector<double> p = products(d);
   REQUIRE(p[own] > 0);
-  for (const double power : {1.0, 2.0}) {
+  for (const Heuristic heuristic : {Heuristic::balance, Heuristic::power}) {
+    const double power = heuristic == Heuristic::power ? 2 : 1;
     double of_squares = 0, sum = 0;
     for (const double v : p) of_squares += std::pow(v / p[own], power);
     for (size_t s = 0; s < p.size(); ++s)
       if (p[s] > 0) {
-        const double weight = strategy_weight(d, s, power);
+        const double weight = strategy_weight(d, s, heuristic);
         CHECK(weight == Approx(std::pow(p[s] / p[own], power) / of_squares).epsilon(1e-6));
         sum += weight;
       }
@@ -168,7 +169,7 @@ TEST_CASE("strategies: shares where densities are zero, or a light is no surface
   CHECK(strategy_weight(d, 0) == 0);
   CHECK(strategy_weight(d, 1) == Approx(0.75 * 0.75 / (0.75 * 0.75 + 4)));
   CHECK(strategy_weight(d, 2) == Approx(4 / (0.75 * 0.75 + 4)));
-  CHECK(strategy_weight(d, 2, 1) == Approx(2 / 2.75));
+  CHECK(strategy_weight(d, 2, Heuristic::balance) == Approx(2 / 2.75));
   d.delta[1] = 1;
   CHECK(strategy_weight(d, 1) == 0);
   CHECK(strategy_weight(d, 2) == 0);
