@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The densities with which the ways to draw a path draw its vertices, and the share of each way (Veach 1997, chapters 9 and 10).
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 

@@ -89,7 +89,7 @@ class Metropolis : public PictureIntegrator {
     known_.assign(kinds, {});
     if (kinds == 0) return;
     const double draws = std::clamp(scene_.camera.pixels() * options_.paths / 8, least_draws, most_draws);
-    const size_t each = std::clamp<size_t>(size_t(draws) / kinds, 256, 1 << 14);
+    const size_t each = std::clamp<size_t>(size_t(draws) / kinds, 64, 1 << 14);
     std::vector<float> bright(kinds * each);
     parallel_for(
         bright.size(), 512,

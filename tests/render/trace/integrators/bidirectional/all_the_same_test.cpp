@@ -104,6 +104,17 @@ TEST_CASE("all the same: a glass ball's caustic under a lamp with a size") {
   check_all(s, true, 0.06, 2);
 }
 
+TEST_CASE("all the same: rough glass that absorbs, with something in it") {
+  LightScene s = on_floor();
+  SurfaceMaterial glass = preset_material(MaterialPreset::frosted_glass);
+  glass.transmission_color = {0.9, 0.5, 0.3}, glass.transmission_depth = 0.4;
+  s.scene.items.emplace_back(ball({0, 0.1f, -0.45f}, 0.4f, 24, glass, 1));
+  s.scene.items.emplace_back(ball({0.05f, 0.1f, -0.4f}, 0.15f, 12, diffuse(), 0.7));
+  s.lights = {DiscLight{{0, -0.5f, 0.8f}, normalize(Vec3f{0, 0.4f, -1}), 0.4f, white * 6}};
+  s.bounces = 6;
+  check_all(s, true, 0.06);
+}
+
 TEST_CASE("all the same: rough metal, and a coarse ball with rounded normals") {
   LightScene s = on_floor();
   SurfaceMaterial metal = preset_material(MaterialPreset::copper);

@@ -74,9 +74,9 @@ inline Camera look(Vec3 from, Vec3 at, double angle) {
 
 class LitWorld {
  public:
-  static constexpr int side = 12;  // of pictures
-  static constexpr int cuts = 3;   // of regions along a side
-  static constexpr int regions = cuts * cuts + 1;
+  static constexpr int side = 12;                  // of pictures
+  static constexpr int cuts = 3;                   // of regions along a side
+  static constexpr int regions = cuts * cuts + 1;  // and the whole
 
   explicit LitWorld(const LightScene& s, int width = side, int height = side)
       : projection(make_projection(s.camera, width, height)), bounces(s.bounces), world(make(s)) {
@@ -102,11 +102,15 @@ class LitWorld {
   }
 };
 
-/// Mean luminance of nine regions and of the whole.
-using Means = std::array<sg::test::Moments, LitWorld::regions>;
+/// Mean luminance of nine regions and of the whole; mean alpha.
+using Moments = sg::test::Moments;
+struct Means : std::array<Moments, LitWorld::regions> {
+  Moments alpha;
+};
 
 inline void add_picture(const Frame& f, Means& means) {
   std::array<double, LitWorld::regions> sum{};
+  double alpha = 0;
   for (int y = 0; y < f.height; ++y)
     for (int x = 0; x < f.width; ++x) {
       const float* p = &f.rgba[4 * (size_t(y) * size_t(f.width) + size_t(x))];
@@ -114,8 +118,10 @@ inline void add_picture(const Frame& f, Means& means) {
       const int region = y * LitWorld::cuts / f.height * LitWorld::cuts + x * LitWorld::cuts / f.width;
       sum[size_t(region)] += v * LitWorld::cuts * LitWorld::cuts / double(f.pixels());
       sum[LitWorld::regions - 1] += v / double(f.pixels());
+      alpha += double(p[3]) / double(f.pixels());
     }
   for (size_t r = 0; r < sum.size(); ++r) means[r].add(sum[r]);
+  means.alpha.add(alpha);
 }
 
 inline LightOptions options_of(const LitWorld& w, IntegratorKind kind, int paths, uint64_t seed) {
@@ -147,6 +153,7 @@ inline Means pictures_by(const LitWorld& w, IntegratorKind kind, int seeds, int 
           const Vec2f u = sampler.next2();
           const Estimate e = integrator->along(w.world, camera.ray({float(x) + u.x, float(y) + u.y}), sampler);
           for (int c = 0; c < 3; ++c) frame.rgba[4 * i + size_t(c)] += e.radiance[c] / float(paths);
+          frame.rgba[4 * i + 3] += (1 - e.passed) / float(paths);
         }
     });
     add_picture(frame, means);
@@ -154,8 +161,9 @@ inline Means pictures_by(const LitWorld& w, IntegratorKind kind, int seeds, int 
   return means;
 }
 
-/// Every region of both within four standard errors of their difference.
+/// Every region of both, and alpha, within four standard errors of their difference.
 inline void check_same(const Means& a, const Means& b) {
+  CHECK(std::abs(a.alpha.mean - b.alpha.mean) <= 4 * std::hypot(a.alpha.standard_error(), b.alpha.standard_error()) + 1e-4);
   for (size_t r = 0; r < a.size(); ++r) {
     CAPTURE(r);
     CAPTURE(a[r].mean);
