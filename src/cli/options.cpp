@@ -203,12 +203,13 @@ void add_look(CLI::App& a, Options& o) {
       ->allow_extra_args(false);
   a.add_option("--layout", o.layout, doc_of<PictureParams>("layout"));
   a.add_option("--views", o.views, doc_of<PictureParams>("views"));
+  // Before those that add to it, which would be lost.
+  a.add_option("--picture", o.picture, "Further picture parameters as key=value (see: sightglass ops picture)")->allow_extra_args(false);
   for (const char* name : {"integrator", "noise"})
     a.add_option_function<std::string>(
         fmt::format("--{}", name), [&o, name](const std::string& text) { o.picture.push_back(fmt::format("{}={}", name, text)); },
         doc_of<PictureParams>(name));
   a.add_option("--background", o.background, doc_of<PictureParams>("background"));
-  a.add_option("--picture", o.picture, "Further picture parameters as key=value (see: sightglass ops picture)")->allow_extra_args(false);
 }
 
 void add_picture(CLI::App& a, Options& o, RawText& raw) {

@@ -58,9 +58,13 @@ void describe(Schema& s, PictureParams& p) {
   s("text", p.text, "Scale factor of all text.").range(0.2, 10);
   s("integrator", p.integrator,
     "Light by rays instead of the rasterizer: path follows all light from surface to surface, whitted direct light, mirrors and glass, "
-    "ambient_occlusion light from everywhere that is stopped by what is near. Default: none.");
+    "ambient_occlusion light from everywhere that is stopped by what is near. For light that mirrors and glass focus: light starts from "
+    "the "
+    "lamps and shows nothing in mirrors or glass, bdpt from both ends, metropolis does so in chains that stay where it is bright. Default: "
+    "none.");
   s("noise", p.light.noise,
-    "With an integrator: a part of the picture is finished when its standard error is below this share of full scale.")
+    "With an integrator: a part of the picture is finished when its standard error is below this share of full scale; light, bdpt and "
+    "metropolis finish all of it together.")
       .range(0.0001, 1);
   s("paths", p.light.paths, "With an integrator: most paths per pixel.").range(1, 1 << 20);
   s("bounces", p.light.bounces, "With an integrator: most turns of a path.").range(0, 1000);

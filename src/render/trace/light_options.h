@@ -14,10 +14,18 @@ enum class IntegratorKind {
   ambient_occlusion,  ///< white light from everywhere, of surfaces in reach alone
   whitted,            ///< direct light, mirrors and glass (Whitted 1980): no light from surface to surface
   path,               ///< all light (Kajiya 1986)
+  light,              ///< from the lights to the camera: light that mirrors and glass focus; not what is seen in them
+  bdpt,               ///< from both ends (Veach 1997): the most of all light that independent paths find
+  metropolis,         ///< paths from both ends in chains that stay where it is bright (Kelemen 2002, Hachisuka 2014)
 };
 constexpr auto enum_words(IntegratorKind) {
   using enum IntegratorKind;
-  return std::array{Word{"ambient_occlusion", ambient_occlusion}, Word{"whitted", whitted}, Word{"path", path}};
+  return std::array{Word{"ambient_occlusion", ambient_occlusion},
+                    Word{"whitted", whitted},
+                    Word{"path", path},
+                    Word{"light", light},
+                    Word{"bdpt", bdpt},
+                    Word{"metropolis", metropolis}};
 }
 
 }  // namespace trace

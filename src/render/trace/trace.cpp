@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "render/composite/background.h"
 #include "render/prepare/shared_progress.h"
+#include "render/trace/integrators/bidirectional/whole_picture.h"
 #include "render/trace/integrators/integrator.h"
 #include "render/trace/light/luminance.h"
 #include "render/trace/studio.h"
@@ -82,8 +83,8 @@ std::unique_ptr<Integrator> make_integrator(const LightOptions& o) {
     case IntegratorKind::ambient_occlusion: return occlusion_integrator(0.5f);
     case IntegratorKind::whitted: return whitted_integrator(o.bounces);
     case IntegratorKind::path: return path_integrator(o.bounces);
+    default: return nullptr;  // of the whole picture
   }
-  return nullptr;
 }
 
 World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Projection& projection, Context& context) {
@@ -110,9 +111,18 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
                   TraceReport& report, Context& context) {
   check(options);
   const World world = world_of(scene, prepared, projection, context);
+  if (!world.lights().any() && options.integrator != IntegratorKind::ambient_occlusion)
+    context.warn("nothing shines: no light, no environment, no material with emission; the picture is dark");
   const auto integrator = make_integrator(options);
   Frame frame(projection.width, projection.height);
   if (world.empty()) return frame;
+  if (lights_whole_picture(options.integrator)) {
+    if (world.has_media())
+      fail_usage(fmt::format("integrator={} does not light volumes", word_of(options.integrator)), "integrator", "use integrator=path");
+    WholePicture whole = draw_whole_picture(world, projection, options, context);
+    report = {whole.paths, whole.noise, whole.reached};
+    return std::move(whole.frame);
+  }
   const Eye eye(projection, world.geometry());
 
   const auto across = size_t(projection.width + side - 1) / side, down = size_t(projection.height + side - 1) / side;

@@ -50,6 +50,7 @@ World::World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_
       media_(std::move(media)) {
   for (const raster::PreparedItem& item : scene_->items)
     translucent_ = translucent_ || item.translucent || item.opacity < 1 || item.color.translucent;
+  for (const auto& m : materials_) translucent_ = translucent_ || m->passes_straight();
 }
 
 Vertex World::at(const Ray& ray, const Hit& hit) const {
@@ -67,14 +68,15 @@ Vertex World::at(const Ray& ray, const Hit& hit) const {
 
 Vec3f World::passes(Ray ray) const {
   if (!translucent_) return geometry_.blocked(ray) ? Vec3f() : Vec3f(1, 1, 1);
-  float share = 1;
-  for (Hit hit; share > 0 && geometry_.nearest(ray, hit); hit = Hit()) {
-    share *= 1 - surface_color(scene_->items[hit.object], hit).w;
+  Vec3f share{1, 1, 1};
+  for (Hit hit; !(share == Vec3f()) && geometry_.nearest(ray, hit); hit = Hit()) {
+    const Vertex v = at(ray, hit);
+    share = share * v.bsdf.straight_on(v.frame.to_local(-ray.direction));
     ray.t_max -= hit.t;
-    ray.origin = leave(geometry_.at(ray, hit), ray.direction);
+    ray.origin = leave(v.point, ray.direction);
     if (!(ray.t_max > 0)) break;
   }
-  return {share, share, share};
+  return share;
 }
 
 }  // namespace sg::trace

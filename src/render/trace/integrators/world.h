@@ -34,7 +34,8 @@ class World {
   const PreparedScene& scene() const { return *scene_; }
   /// Null where there are none.
   Media::Borrowed borrow_media() const { return media_ ? media_->borrow() : Media::Borrowed(); }
-  bool empty() const { return geometry_.bounds().empty() && !(media_ && media_->any()); }
+  bool has_media() const { return media_ && media_->any(); }
+  bool empty() const { return geometry_.bounds().empty() && !has_media(); }
   Vertex at(const Ray& ray, const Hit& hit) const;
   /// Whether an item lets some light pass straight on, so that shadows have shades.
   bool translucent() const { return translucent_; }

@@ -112,7 +112,7 @@ std::optional<LightSample> sample_one(const TriangleLight& l, Vec3f from, Vec2f 
 /// What a ray sees of a light, and the density with which sample_one() draws its direction.
 struct Seen {
   Vec3f radiance;
-  float pdf;
+  float pdf, t;
 };
 
 /// Where a ray meets a flat light from its shining side.
@@ -121,12 +121,12 @@ std::optional<Seen> meet(const Ray& r, Vec3f middle, Vec3f normal, float area, V
   if (!(cosine > 0)) return {};
   const float t = dot(r.origin - middle, normal) / cosine;
   if (!(t > t_min && t <= r.t_max) || !inside(r.origin + r.direction * t - middle)) return {};
-  return Seen{radiance, solid_angle_pdf(1 / area, t * t, cosine)};
+  return Seen{radiance, solid_angle_pdf(1 / area, t * t, cosine), t};
 }
 std::optional<Seen> seen_one(const SphereLight& l, const Ray& r, float t_min) {
   const float t = sphere_t(l, r.origin, r.direction);
   if (!(t > t_min && t <= r.t_max) || t == infinite) return {};
-  return Seen{l.radiance, pdf_seen(l, r.origin)};
+  return Seen{l.radiance, pdf_seen(l, r.origin), t};
 }
 std::optional<Seen> seen_one(const DiscLight& l, const Ray& r, float t_min) {
   return meet(r, l.middle, l.normal, pi * l.radius * l.radius, l.radiance, t_min,
@@ -142,10 +142,27 @@ std::optional<Seen> seen_one(const RectangleLight& l, const Ray& r, float t_min)
 }
 std::optional<Seen> seen_one(const DistantLight& l, const Ray& r, float) {
   if (l.rise == 0 || r.t_max != infinite || !(1 - dot(r.direction, l.direction) < l.rise)) return {};
-  return Seen{l.irradiance / (pi * l.rise * (2 - l.rise)), uniform_cone_pdf(l.rise)};
+  return Seen{l.irradiance / (pi * l.rise * (2 - l.rise)), uniform_cone_pdf(l.rise), infinite};
 }
 std::optional<Seen> seen_one(const PointLight&, const Ray&, float) { return {}; }     // without a size
 std::optional<Seen> seen_one(const TriangleLight&, const Ray&, float) { return {}; }  // an item
+
+/// The density of sample_one(); of deltas 1.
+float pdf_one(const PointLight&, Vec3f, Vec3f, float) { return 1; }
+float pdf_one(const DistantLight& l, Vec3f, Vec3f, float) { return l.rise == 0 ? 1 : uniform_cone_pdf(l.rise); }
+float pdf_one(const SphereLight& l, Vec3f from, Vec3f, float) { return pdf_seen(l, from); }
+float pdf_flat(Vec3f normal, float area, Vec3f direction, float distance) {
+  return solid_angle_pdf(1 / area, distance * distance, dot(direction, normal) / length(normal));
+}
+float pdf_one(const DiscLight& l, Vec3f, Vec3f direction, float distance) {
+  return pdf_flat(l.normal, pi * l.radius * l.radius, direction, distance);
+}
+float pdf_one(const RectangleLight& l, Vec3f, Vec3f direction, float distance) {
+  return pdf_flat(cross(l.u, l.v), length(cross(l.u, l.v)), direction, distance);
+}
+float pdf_one(const TriangleLight& l, Vec3f, Vec3f direction, float distance) {
+  return pdf_flat(cross(l.b - l.a, l.c - l.a), length(cross(l.b - l.a, l.c - l.a)) / 2, direction, distance);
+}
 
 uint64_t key_of(uint32_t object, uint32_t primitive) { return uint64_t(object) << 32 | primitive; }
 
@@ -184,8 +201,13 @@ std::optional<LightSample> Lights::sample(Vec3f from, float choice, Vec2f u) con
   } else {
     s = std::visit([&](const auto& l) { return sample_one(l, from, u); }, lights_[chosen.cell]);
   }
-  if (s) s->pdf *= chance;
+  if (s) s->pdf *= chance, s->light = uint32_t(chosen.cell);
   return s;
+}
+
+std::optional<uint32_t> Lights::choose(float choice) const {
+  if (!choice_) return {};
+  return uint32_t(choice_->sample(choice).cell);
 }
 
 Vec3f Lights::seen(const Ray& ray, float t_min, float pdf) const {
@@ -198,11 +220,31 @@ Vec3f Lights::seen(const Ray& ray, float t_min, float pdf) const {
   return sum;
 }
 
-float Lights::triangle_pdf(uint32_t object, uint32_t primitive, float distance, float cosine) const {
+void Lights::met(const Ray& ray, float t_min, std::vector<MetLight>& out) const {
+  for (const uint32_t i : met_)
+    if (const auto s = std::visit([&](const auto& l) { return seen_one(l, ray, t_min); }, lights_[i]))
+      out.push_back({i, s->radiance, s->t, choice_->probability(i) * s->pdf});
+  const auto around = uint32_t(lights_.size());
+  if (ray.t_max == infinite && chance(around) > 0)
+    out.push_back({around, environment_.radiance(ray.direction), infinite, chance(around) * environment_.pdf(ray.direction)});
+}
+
+float Lights::pdf(uint32_t number, Vec3f from, Vec3f direction, float distance) const {
+  if (number == lights_.size()) return chance(number) * environment_.pdf(direction);
+  return chance(number) * std::visit([&](const auto& l) { return pdf_one(l, from, direction, distance); }, lights_[number]);
+}
+
+std::optional<uint32_t> Lights::number_of(uint32_t object, uint32_t primitive) const {
   const auto at = std::lower_bound(triangles_.begin(), triangles_.end(), std::pair(key_of(object, primitive), uint32_t(0)));
-  if (at == triangles_.end() || at->first != key_of(object, primitive)) return 0;
-  const auto& l = std::get<TriangleLight>(lights_[at->second]);
-  return choice_->probability(at->second) * solid_angle_pdf(2 / length(cross(l.b - l.a, l.c - l.a)), distance * distance, cosine);
+  if (at == triangles_.end() || at->first != key_of(object, primitive)) return {};
+  return at->second;
+}
+
+float Lights::triangle_pdf(uint32_t object, uint32_t primitive, float distance, float cosine) const {
+  const auto number = number_of(object, primitive);
+  if (!number) return 0;
+  const auto& l = std::get<TriangleLight>(lights_[*number]);
+  return chance(*number) * solid_angle_pdf(2 / length(cross(l.b - l.a, l.c - l.a)), distance * distance, cosine);
 }
 
 }  // namespace sg::trace

@@ -50,6 +50,15 @@ struct LightSample {
   Vec3f radiance;  ///< of a delta: irradiance, to be divided by pdf alike
   float pdf;       ///< per solid angle, with the chance of this light; of a delta that chance
   bool delta;
+  uint32_t light = 0;  ///< its number
+};
+
+/// A light on a ray's way.
+struct MetLight {
+  uint32_t light;
+  Vec3f radiance;
+  float distance;  ///< along the ray; infinite for distant ones
+  float pdf;       ///< with which sample() from the ray's origin draws its direction, per solid angle, with the chance of this light
 };
 
 class Lights {
@@ -69,6 +78,20 @@ class Lights {
   /// The density with which sample() draws a triangle that is an item, seen from that far at that cosine; 0 for others.
   float triangle_pdf(uint32_t object, uint32_t primitive, float distance, float cosine) const;
   const Environment& environment() const { return environment_; }
+
+  // One by one, for paths that begin at lights; number count() is the environment.
+
+  const AnyLight& light(uint32_t number) const { return lights_[number]; }
+  /// That sample() takes it.
+  float chance(uint32_t number) const { return choice_ && number < choice_->cells() ? choice_->probability(number) : 0; }
+  /// One of them by its chance.
+  std::optional<uint32_t> choose(float choice) const;
+  /// All that seen() sums, added to `out`.
+  void met(const Ray& ray, float t_min, std::vector<MetLight>& out) const;
+  /// As of MetLight, of this one; of a delta its chance.
+  float pdf(uint32_t number, Vec3f from, Vec3f direction, float distance) const;
+  /// Of a triangle that is an item.
+  std::optional<uint32_t> number_of(uint32_t object, uint32_t primitive) const;
 
  private:
   std::vector<AnyLight> lights_;

@@ -128,6 +128,17 @@ Vec3f Bsdf::albedo(Vec3f wo) const {
   return sum;
 }
 
+Vec3f Bsdf::straight_on(Vec3f wo) const {
+  const Material& m = *material_;
+  const Vec3f o(wo.x, wo.y, std::abs(wo.z));
+  const bool inside = inside_of(wo);
+  Vec3f through = white * (1 - opacity_);
+  if (m.passes_straight() && o.z > 0)
+    through += m.clear_filter * through_coat(o, -o, inside) *
+               (opacity_ * (1 - m.retro) * (1 - m.metalness) * m.clear * (1 - reflectance(o.z, inside)));
+  return through;
+}
+
 Vec3f Bsdf::entering(Vec3f wo) const {
   const Material& m = *material_;
   if (!walks_ || inside_of(wo)) return {};

@@ -41,6 +41,9 @@ class Bsdf {
   /// have no coat.
   Vec3f albedo(Vec3f wo) const;
   bool delta_only() const;
+  /// What passes straight on, as through nothing: by opacity, a smooth sheet of glass, clear matter that does not refract. These are those
+  /// deltas of sample() that go on along -wo with eta 1.
+  Vec3f straight_on(Vec3f wo) const;
   /// Of the part in which light wanders below the surface, where the Bsdf was made for that: the weight with which light that arrives along
   /// wo goes in, and the one, relative to a density of cos / pi, with which it comes out along wi. White bodies without a coat keep all
   /// energy.

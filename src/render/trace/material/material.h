@@ -59,6 +59,8 @@ class Material {
 
   /// Without roughness, or without a boundary at all.
   bool boundary_smooth() const { return ggx.smooth() || side[0].eta == 1; }
+  /// Whether something goes through as if nothing was there: a smooth sheet, matter that does not refract.
+  bool passes_straight() const { return clear > 0 && boundary_smooth() && (thin_ || side[0].eta == 1); }
   /// What is diffuse of sheets, and comes out on the other side.
   float body_through() const { return thin_ ? subsurface / 2 : 0; }
   /// What metal reflects at a microscopic mirror, and on average over all directions, if its colour at normal incidence is `base`.

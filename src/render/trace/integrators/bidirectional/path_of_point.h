@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The path that a point of the space of random numbers is.
+#pragma once
+#include <vector>
+
+#include "render/trace/integrators/bidirectional/primary_space.h"
+#include "render/trace/integrators/bidirectional/strategies.h"
+
+namespace sg::trace {
+
+/// The paths of one point: what they add where, and how bright that is.
+struct Lit {
+  struct Splat {
+    Vec2f pixel;
+    Vec3 value;
+  };
+  std::vector<Splat> splats;
+  double brightness = 0;
+};
+
+class PathOfPoint {
+ public:
+  /// Of a scene that stays.
+  explicit PathOfPoint(const PathScene& scene) : scene_(scene), strategies_(scene) {}
+
+  /// All paths with so many turns (1 or more) by one of the turns + 2 ways to make them, each weighed up by that number and by its share:
+  /// over all points their mean is what such paths add to the picture, by the number of its pixels.
+  void trace(PrimarySpace& numbers, int turns, Lit& lit);
+
+ private:
+  const PathScene& scene_;
+  Strategies strategies_;
+  SubPath camera_, light_;
+};
+
+}  // namespace sg::trace

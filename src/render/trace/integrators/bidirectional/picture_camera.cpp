@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/trace/integrators/bidirectional/picture_camera.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sg::trace {
+
+PictureCamera::PictureCamera(const Projection& projection, const Placement& placement) : projection_(projection), placement_(placement) {}
+
+double PictureCamera::start(const Projection::Ray& r) const {
+  return std::max(dot(placement_.middle - r.origin, r.direction) - 2 / placement_.scale, projection_.near_plane * r.per_depth);
+}
+
+Ray PictureCamera::ray(Vec2f pixel) const {
+  const Projection::Ray r = projection_.ray(double(pixel.x), double(pixel.y));
+  return {placement_.traced(r.origin + r.direction * start(r)), normalize(Vec3f(r.direction))};
+}
+
+double PictureCamera::depth(Vec2f pixel, float t) const {
+  const Projection::Ray r = projection_.ray(double(pixel.x), double(pixel.y));
+  return (start(r) + double(t) / placement_.scale) / r.per_depth;
+}
+
+std::optional<Sight> PictureCamera::sees(Vec3f point) const {
+  const Vec3 world = placement_.world(point), at = projection_.to_pixel(world);
+  if (!(at.z >= projection_.near_plane) || !(at.z > 0 || projection_.parallel)) return {};
+  if (!(at.x >= 0 && at.x < projection_.width && at.y >= 0 && at.y < projection_.height)) return {};
+  const Projection::Ray r = projection_.ray(at.x, at.y);
+  const double before = dot(world - r.origin, r.direction) - start(r);
+  if (!(before > 0)) return {};
+  return Sight{Vec2f{float(at.x), float(at.y)}, -normalize(Vec3f(r.direction)), float(before * placement_.scale), float(importance(point))};
+}
+
+double PictureCamera::importance(Vec3f point) const {
+  const double per_traced = projection_.scale / placement_.scale;
+  if (projection_.parallel) return per_traced * per_traced;
+  // Pixels are scale^2 / cos^3 to the solid angle, that 1 / distance^2 to the area across.
+  const Vec3 way = placement_.world(point) - projection_.eye;
+  const double d2 = dot(way, way), cosine = dot(way, projection_.forward) / std::sqrt(d2);
+  return per_traced * per_traced / (cosine * cosine * cosine * d2);
+}
+
+}  // namespace sg::trace

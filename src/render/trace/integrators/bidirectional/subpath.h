@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// SubPath: a path from the camera, or from a light, with what is needed to join it with another.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "render/trace/integrators/bidirectional/numbers.h"
+#include "render/trace/integrators/bidirectional/picture_camera.h"
+#include "render/trace/integrators/world.h"
+#include "render/trace/light/emission.h"
+
+namespace sg::trace {
+
+/// All that both ends of paths need.
+struct PathScene {
+  const World& world;
+  const Emission& emission;
+  const PictureCamera& camera;
+  int bounces;           ///< most turns of a path, at surfaces
+  bool roulette = true;  ///< ends paths that carry little at random
+};
+
+/// A surface that the path met. What lets light pass straight on is an end of this path and yet no vertex of its continuation: that has
+/// the same `parent`.
+struct PathVertex {
+  Vertex at;
+  int parent = -1;     ///< -1: the camera or the light
+  int level = 1;       ///< surfaces of the path up to this one
+  bool delta = false;  ///< the path went on by a delta
+  Vec3f to_parent;     ///< unit
+  float distance = 0;  ///< from the parent, or infinite: a light
+  Vec3f throughput;    ///< of all before this vertex
+  Vec3f around;        ///< absorption of the matter that the path came through
+  double forward = 0;  ///< density with which it was drawn
+  double reverse = 0;  ///< density with which the path the other way would draw it, if this one goes on for two vertices or more
+
+  Vec3f local_parent() const { return at.frame.to_local(to_parent); }
+  /// Absorption on the side of a direction.
+  Vec3f absorption_along(Vec3f direction) const;
+};
+
+/// A stretch after a turn, in which lights that are no items may be met.
+struct Stretch {
+  int after;    ///< vertex
+  Ray ray;      ///< from it, to the end of the stretch
+  float t_min;  ///< where it begins
+  double pdf;   ///< density of the direction, per solid angle
+  Vec3f throughput;
+};
+
+struct SubPath {
+  std::vector<PathVertex> vertices;
+  // Of the camera:
+  Vec2f pixel;
+  Vec3f straight;    ///< what surfaces that are seen straight on give off
+  float passed = 0;  ///< share that went straight on to the background
+  std::vector<Stretch> stretches;
+  // Of a light:
+  std::optional<EmittedRay> emitted;
+  double light_reverse = 0;  ///< PathVertex::reverse of the light
+
+  const PathVertex& vertex(int i) const { return vertices[size_t(i)]; }
+};
+
+/// Up to `levels` surfaces, the last of which may give off light.
+void walk_from_camera(const PathScene& scene, Vec2f pixel, int levels, Numbers& numbers, SubPath& path);
+void walk_from_light(const PathScene& scene, int levels, Numbers& numbers, SubPath& path);
+
+/// A density per solid angle at a distance as one per area of a surface with this normal; zero normal: of a point.
+double per_area(double per_solid_angle, Vec3f normal, Vec3f direction, float distance);
+
+/// Light that arrives along `to_light` and leaves along the other, both local: by what a rounded normal makes of it (Veach 1997, 5.3), so
+/// that paths from lights carry what paths from the camera would.
+float rounded_normal_factor(const Vertex& v, Vec3f local_to_light, Vec3f to_light, Vec3f local_out, Vec3f out);
+
+}  // namespace sg::trace
