@@ -12,6 +12,7 @@
 #include "render/prepare/shared_progress.h"
 #include "render/trace/integrators/integrator.h"
 #include "render/trace/light/luminance.h"
+#include "render/trace/sampling/warp.h"
 #include "render/trace/studio.h"
 
 namespace sg {
@@ -30,8 +31,15 @@ class Eye {
   Eye(const Projection& projection, const Geometry& geometry)
       : projection_(projection), placement_(geometry.placement()), reach_(2 / placement_.scale) {}
 
-  Ray ray(Vec2f pixel, double& start, double& per_depth) const {
-    const Projection::Ray r = projection_.ray(pixel.x, pixel.y);
+  bool has_lens() const { return projection_.lens > 0; }
+  /// `lens`: a place in the unit disc, from which the ray leaves towards what is sharp.
+  Ray ray(Vec2f pixel, Vec2f lens, double& start, double& per_depth) const {
+    Projection::Ray r = projection_.ray(pixel.x, pixel.y);
+    if (has_lens()) {
+      const Vec3 sharp = r.origin + r.direction * (projection_.focus * r.per_depth);
+      r.origin += (projection_.right * double(lens.x) + projection_.up * double(lens.y)) * (projection_.lens / 2);
+      r.direction = normalize(sharp - r.origin);
+    }
     start = std::max(dot(placement_.middle - r.origin, r.direction) - reach_, projection_.near_plane * r.per_depth);
     per_depth = r.per_depth;
     return {placement_.traced(r.origin + r.direction * start), normalize(Vec3f(r.direction))};
@@ -46,7 +54,7 @@ class Eye {
 
 /// Sums over the paths of a pixel.
 struct PixelSum {
-  Vec3 light;
+  Vec3 light, behind;             // behind: of the backdrop, which has no error
   double passed = 0, square = 0;  // of the luminance
 
   void add(const Estimate& e) {
@@ -84,7 +92,7 @@ std::unique_ptr<Integrator> make_integrator(const LightOptions& o) {
   return nullptr;
 }
 
-World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Projection& projection, Context& context) {
+World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Projection& projection, Backdrop& backdrop, Context& context) {
   GeometryOptions size;
   const double depth = projection.to_eye(scene_bounds(scene).center()).z;
   size.pixel = projection.parallel ? 1 / projection.scale : std::max(depth, projection.near_plane) / projection.scale;
@@ -95,7 +103,8 @@ World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Proje
   std::vector<std::shared_ptr<const trace::Material>> materials;
   for (const raster::PreparedItem& item : prepared->items)
     materials.push_back(item.made_of ? std::make_shared<const trace::Material>(*item.made_of) : of_data);
-  Studio studio = studio_of(scene, projection);
+  Studio studio = studio_of(scene, projection, geometry.placement());
+  backdrop = studio.backdrop;
   return {prepared, std::move(geometry), std::move(materials), std::move(studio.lights), std::move(studio.environment)};
 }
 
@@ -107,7 +116,8 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
   for (const Item& item : scene.items)
     if (std::holds_alternative<VolumeItem>(item))
       fail_usage("volumes are not lit by paths yet", "integrator", "leave integrator out, or show surfaces: contour, slice");
-  const World world = world_of(scene, prepared, projection, context);
+  Backdrop backdrop;
+  const World world = world_of(scene, prepared, projection, backdrop, context);
   const auto integrator = make_integrator(options);
   Frame frame(projection.width, projection.height);
   if (world.geometry().bounds().empty()) return frame;
@@ -132,10 +142,12 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
               const int x = x0 + p % w, y = y0 + p / w;
               for (uint32_t k = n; k < to; ++k) {
                 sampler.start(uint32_t(x), uint32_t(y), k);
-                const Vec2f in_pixel = sampler.next2();
+                const Vec2f in_pixel = sampler.next2(), on_lens = eye.has_lens() ? concentric_disc(sampler.next2()) : Vec2f();
                 double start = 0, per_depth = 1;
-                const Ray ray = eye.ray({float(x) + in_pixel.x, float(y) + in_pixel.y}, start, per_depth);
-                sums[p].add(integrator->along(world, ray, sampler));
+                const Ray ray = eye.ray({float(x) + in_pixel.x, float(y) + in_pixel.y}, on_lens, start, per_depth);
+                const Estimate e = integrator->along(world, ray, sampler);
+                sums[p].add(e);
+                if (backdrop.seen && e.passed > 0) sums[p].behind += Vec3(backdrop.radiance(ray.direction)) * double(e.passed);
               }
             }
             n = to;
@@ -147,11 +159,11 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
           for (int p = 0; p < w * h; ++p) {
             const int x = x0 + p % w, y = y0 + p / w;
             const size_t at = size_t(y) * size_t(frame.width) + size_t(x);
-            for (int c = 0; c < 3; ++c) frame.rgba[4 * at + size_t(c)] = float(sums[p].light[c] / n);
-            frame.rgba[4 * at + 3] = float(1 - sums[p].passed / n);
+            for (int c = 0; c < 3; ++c) frame.rgba[4 * at + size_t(c)] = float((sums[p].light[c] + sums[p].behind[c]) / n);
+            frame.rgba[4 * at + 3] = backdrop.seen ? 1 : float(1 - sums[p].passed / n);
             // What the middle of the pixel sees.
             double start = 0, per_depth = 1;
-            const Ray ray = eye.ray({float(x) + 0.5f, float(y) + 0.5f}, start, per_depth);
+            const Ray ray = eye.ray({float(x) + 0.5f, float(y) + 0.5f}, {}, start, per_depth);
             if (Hit hit; world.geometry().nearest(ray, hit)) {
               frame.depth[at] = float((start + eye.world_length(hit.t)) / per_depth);
               frame.ids[at] = prepared->items[hit.object].id;
