@@ -40,7 +40,7 @@ std::vector<Light> lights_of(const Scene& scene) {
   std::vector<PlacedLight> placed;
   if (!stated.lights.empty()) placed = place_lights(stated, scene_bounds(scene));
   else if (const auto* sky = stated.environment ? std::get_if<SkyEnvironmentParams>(&*stated.environment) : nullptr)
-    placed.push_back(place_sun(stated, *sky));
+    if (const PlacedLight sun = place_sun(stated, *sky); sun.elevation > 0) placed.push_back(sun);
   std::vector<Light> lamps;
   constexpr double white = 0.9;  // as bright as the first of the default ones
   for (const PlacedLight& p : placed) {

@@ -60,7 +60,7 @@ struct LightWay {
 struct LightPlace {
   std::optional<Vec3> position;
   LightWay way;
-  double distance = 1.2;       ///< from the target, in diagonals of the data
+  double distance = 2.5;       ///< from the target, in diagonals of the data
   std::optional<Vec3> target;  ///< empty = the middle of the data
 };
 struct LightStrength {
@@ -83,19 +83,19 @@ struct DirectionalLightParams {
 struct SphereLightParams {
   LightPlace place;
   LightStrength strength;
-  double size = 0.4;  ///< diameter in diagonals of the data
+  double size = 0.8;  ///< diameter in diagonals of the data
   std::optional<double> radius;
 };
 struct DiscLightParams {
   LightPlace place;
   LightStrength strength;
-  double size = 0.6;
+  double size = 1;
   std::optional<double> radius;
 };
 struct RectangleLightParams {
   LightPlace place;
   LightStrength strength;
-  std::vector<double> size{0.6};
+  std::vector<double> size{1};
   std::optional<double> width, height;
 };
 struct SunLightParams {

@@ -16,14 +16,14 @@ using doctest::Approx;
 
 namespace {
 
-constexpr double pi_d = std::numbers::pi;
+constexpr double sky_pi = std::numbers::pi;
 
 const SkyModel& model() {
   static const SkyModel m(Atmosphere{});
   return m;
 }
 Vec3 at(double elevation, double azimuth) {
-  const double e = elevation * pi_d / 180, a = azimuth * pi_d / 180;
+  const double e = elevation * sky_pi / 180, a = azimuth * sky_pi / 180;
   return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
 }
 double eye() { return model().air().ground + 200; }
@@ -34,7 +34,7 @@ TEST_CASE("sky: the table of sunlight is the integral, at all heights of sun and
   const Atmosphere& a = model().air();
   for (const double h : {0.0, 500.0, 5e3, 30e3, 59e3})
     for (const double degrees : {0.0, 40.0, 70.0, 85.0, 89.0, 90.0}) {
-      const double r = a.ground + h, mu = std::cos(degrees * pi_d / 180);
+      const double r = a.ground + h, mu = std::cos(degrees * sky_pi / 180);
       const Vec3 exact = transmittance(a, r, mu, 2000), found = model().sunlight(r, mu);
       CAPTURE(h);
       CAPTURE(degrees);
@@ -48,7 +48,7 @@ TEST_CASE("sky: of thin air overhead it is the closed form of single scattering"
   Atmosphere thin;
   thin.mie_scattering = thin.mie_extinction = 0, thin.ozone = {}, thin.albedo = 0, thin.rayleigh = thin.rayleigh * 1e-4;
   const SkyModel m(thin, 400);
-  const double cosine = std::sin(50 * pi_d / 180), phase = 3 / (16 * pi_d) * (1 + cosine * cosine);
+  const double cosine = std::sin(50 * sky_pi / 180), phase = 3 / (16 * sky_pi) * (1 + cosine * cosine);
   const Vec3 seen = m.radiance(thin.ground, {0, 0, 1}, at(50, 0), {}, false);
   for (int c = 0; c < 3; ++c)
     CHECK(seen[c] == Approx(thin.rayleigh[c] * thin.rayleigh_height * (1 - std::exp(-60e3 / thin.rayleigh_height)) * phase).epsilon(1e-3));
@@ -94,16 +94,16 @@ TEST_CASE("sky: no more light leaves the air than enters it") {
   white.mie_extinction = white.mie_scattering, white.ozone = {}, white.albedo = 0;
   const SkyModel m(white, 100);
   for (const double elevation : {60.0, 30.0}) {
-    const double mu = std::sin(elevation * pi_d / 180);
+    const double mu = std::sin(elevation * sky_pi / 180);
     const Sky sky = make_sky(m, elevation, 64);
     Vec3 leaves;
     constexpr int rings = 64, spokes = 32;
     for (int i = 0; i < rings; ++i)
       for (int k = 0; k < spokes; ++k) {
         // Even in the square of the sine: each direction carries the same flux.
-        const double s2 = (i + 0.5) / rings, s = std::sqrt(s2), a = 2 * pi_d * (k + 0.5) / spokes;
+        const double s2 = (i + 0.5) / rings, s = std::sqrt(s2), a = 2 * sky_pi * (k + 0.5) / spokes;
         leaves += m.radiance(white.top - 1, {s * std::cos(a), s * std::sin(a), -std::sqrt(1 - s2)}, at(elevation, 0), {}) *
-                  (pi_d / (rings * spokes));
+                  (sky_pi / (rings * spokes));
       }
     for (int c = 0; c < 3; ++c) {
       const double total = (sky.level[c] + sky.sun[c] * mu + leaves[c]) / mu;
@@ -116,7 +116,7 @@ TEST_CASE("sky: no more light leaves the air than enters it") {
   // With ozone and dust that absorbs, less.
   for (const double elevation : {60.0, 20.0, 5.0}) {
     const Sky sky = make_sky(model(), elevation, 32);
-    const double mu = std::sin(elevation * pi_d / 180);
+    const double mu = std::sin(elevation * sky_pi / 180);
     for (int c = 0; c < 3; ++c) CHECK(sky.level[c] + sky.sun[c] * mu < mu);
   }
 }
