@@ -67,6 +67,8 @@ void add_picture_words(const Options& o, PipelineFile& file) {
   };
   add("size", o.size), add("title", o.title), add("background", o.background), add("layout", o.layout), add("views", o.views);
   add("note", fmt::format("{}", fmt::join(o.notes, ";")));
+  add("lights", fmt::format("{}", fmt::join(o.lights, "; ")));
+  file.picture.insert(file.picture.end(), o.light.begin(), o.light.end());
   for (const std::string& group : o.picture)
     for (const std::string& w : quoted_words(group)) file.picture.push_back(w);
   for (const std::string& w : quoted_words(o.camera)) {

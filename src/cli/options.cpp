@@ -205,10 +205,16 @@ void add_look(CLI::App& a, Options& o) {
   a.add_option("--views", o.views, doc_of<PictureParams>("views"));
   // Before those that add to it, which would be lost.
   a.add_option("--picture", o.picture, "Further picture parameters as key=value (see: sightglass ops picture)")->allow_extra_args(false);
-  for (const char* name : {"integrator", "noise"})
+  a.add_option("--light", o.lights,
+               "A light, as a kind and key=value words: 'rectangle from=left-above size=0.5', 'sun elevation=20'; may be repeated (see: "
+               "sightglass ops picture)")
+      ->allow_extra_args(false);
+  const auto add_light = [&](const char* name) {
     a.add_option_function<std::string>(
-        fmt::format("--{}", name), [&o, name](const std::string& text) { o.picture.push_back(fmt::format("{}={}", name, text)); },
+        fmt::format("--{}", name), [&o, name](const std::string& text) { o.light.push_back(fmt::format("{}={}", name, text)); },
         doc_of<PictureParams>(name));
+  };
+  add_light("environment"), add_light("integrator"), add_light("noise");
   a.add_option("--background", o.background, doc_of<PictureParams>("background"));
 }
 

@@ -46,7 +46,9 @@ struct Options {
   double within = 0;         ///< render: seconds, 0 = no limit
   std::string camera, size, title, background, field, map, scale, range, below, above, legend, layout, views;
   std::vector<std::string> notes;    ///< each one --note
-  std::vector<std::string> picture;  ///< key=value for the picture, from the flags above and --picture
+  std::vector<std::string> lights;   ///< each one --light
+  std::vector<std::string> light;    ///< key=value for the picture, from the flags about light; a value may hold blanks
+  std::vector<std::string> picture;  ///< key=value for the picture, from --picture
   ReadOptions read;
   std::vector<std::string> written;  ///< convert: key=value for the writer
   std::string times;                 ///< convert: those of a series

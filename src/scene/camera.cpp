@@ -66,7 +66,11 @@ Projection make_projection(const Camera& c, int width, int height) {
   if (!(c.far_plane > c.near_plane) || !(c.far_plane > 0))
     fail_usage(fmt::format("near plane {} and far plane {} leave nothing between them", c.near_plane, c.far_plane), "camera",
                "far must be above near and above 0");
+  if (!(c.lens >= 0 && std::isfinite(c.lens)) || (c.lens > 0 && !(c.focus > 0 && std::isfinite(c.focus))))
+    fail_usage(fmt::format("a lens of {} with its focus at {} makes no picture", c.lens, c.focus), "camera",
+               "the diameter must not be negative, and the focus above 0");
   Projection p;
+  p.lens = c.lens, p.focus = c.focus;
   p.width = width, p.height = height, p.parallel = c.parallel;
   const Axes a = view_axes(c.target - c.position, c.up);
   p.eye = c.position, p.right = a.right, p.up = a.up, p.forward = a.forward;

@@ -14,6 +14,8 @@ struct Camera {
   bool parallel = false;
   double parallel_height = 1;                  ///< world height of the picture; parallel only
   double near_plane = 0.01, far_plane = 1000;  ///< eye distances; depth beyond is clipped
+  double lens = 0;                             ///< diameter of a thin lens, world; 0 = a pinhole: all is sharp
+  double focus = 0;                            ///< with a lens: depth that is sharp
 
   Vec3 forward() const { return normalize(target - position); }
 };
@@ -27,7 +29,8 @@ struct Projection {
   double shift_x = 0, shift_y = 0;  ///< pixels added: a part of a picture is drawn with the projection of the whole, shifted
   double scale = 1;                 ///< pixels per unit of (x/z) in perspective, pixels per world unit in parallel
   double near_plane = 0.01, far_plane = 1000;
-  int rows = 0;  ///< of the whole picture of which this is a part; 0 = height
+  int rows = 0;                ///< of the whole picture of which this is a part; 0 = height
+  double lens = 0, focus = 0;  ///< as of Camera
 
   /// Where the view's axis meets the picture.
   double middle_x() const { return 0.5 * width + shift_x; }

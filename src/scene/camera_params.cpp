@@ -48,6 +48,14 @@ void describe(Schema& s, CameraParams& p) {
   s("view_angle", p.view_angle, "Vertical angle of view.").unit("deg").range(1, 170);
   s("projection", p.projection, "Perspective or parallel projection; default: parallel for flat data.");
   s("height", p.height, "Of a parallel projection: what is seen from the lower to the upper edge; default: all of the data.").positive();
+  s("aperture", p.aperture,
+    "Of pictures by paths of light: diameter of the lens as a share of the distance that is sharp. A point at another distance d is seen "
+    "as "
+    "a disc of aperture |d - focus| / d radians; 0: all is sharp.")
+      .range(0, 1);
+  s("focus", p.focus,
+    "With an aperture: distance from the camera, along the line of sight, of what is sharp; default: the middle of the data.")
+      .positive();
 }
 
 std::vector<std::string> camera_words(const std::vector<std::string>& words) {
@@ -99,6 +107,9 @@ Camera make_camera(const CameraParams& p, const Box3& box, double aspect, const 
     else c.position = c.target + (c.position - c.target) / p.zoom;
   }
   fit_planes(c, box);
+  const double middle = box.empty() ? 0 : dot(box.center() - c.position, c.forward());
+  c.focus = p.focus.value_or(middle > 0 ? middle : length(c.target - c.position));
+  c.lens = p.aperture * c.focus;
   return c;
 }
 

@@ -40,6 +40,8 @@ struct CameraParams {
   double azimuth = 0, elevation = 0, roll = 0, zoom = 1, view_angle = 30;
   std::optional<ProjectionKind> projection;
   std::optional<double> height;
+  double aperture = 0;          ///< diameter of the lens as a share of the depth in focus
+  std::optional<double> focus;  ///< depth
 };
 void describe(Schema& s, CameraParams& p);
 

@@ -45,6 +45,20 @@ bool scatters_light(const Scene& scene) {
 
 std::vector<Light> lights_of(const Scene& scene) {
   if (!scene.lights.empty()) return scene.lights;
+  const Lighting& stated = scene.lighting;
+  std::vector<PlacedLight> placed;
+  if (!stated.lights.empty()) placed = place_lights(stated, scene_bounds(scene));
+  else if (const auto* sky = stated.environment ? std::get_if<SkyEnvironmentParams>(&*stated.environment) : nullptr)
+    if (const PlacedLight sun = place_sun(stated, *sky); sun.elevation > 0) placed.push_back(sun);
+  std::vector<Light> lamps;
+  constexpr double white = 0.9;  // as bright as the first of the default ones
+  for (const PlacedLight& p : placed) {
+    const double share = 0.2126 * double(p.color.x) + 0.7152 * double(p.color.y) + 0.0722 * double(p.color.z);
+    // What stands in the middle itself shines from the front.
+    const bool nowhere = !(length(p.way) > 0);
+    lamps.push_back({nowhere ? Vec3{0, 0, 1} : p.way, nowhere || p.follows_camera, float(white * p.brightness * share)});
+  }
+  if (!lamps.empty()) return lamps;
   return {{{-0.4, 0.75, 1.0}, true, 0.9f}, {{0.9, 0.1, 0.5}, true, 0.22f}};
 }
 

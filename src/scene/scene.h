@@ -14,6 +14,7 @@
 #include "scene/items/surface_material.h"
 #include "scene/items/surface_texture.h"
 #include "scene/items/volume_item.h"
+#include "scene/light/lighting.h"
 
 namespace sg {
 
@@ -108,8 +109,9 @@ struct Scene {
   std::vector<Item> items;
   std::vector<uint32_t> shows;  ///< of the first items: the number, from 1, of the entry under `show` that they are of
   std::vector<TextItem> texts;
-  std::vector<Light> lights;            ///< empty = one light over the viewer's left shoulder and a weak one from the right
-  Vec3f background{1, 1, 1};            ///< sRGB, bottom
+  std::vector<Light> lights;  ///< empty = those of `lighting`, else one over the viewer's left shoulder and a weak one from the right
+  Lighting lighting;          ///< lights of all kinds, and what is around; renderers without paths take directions from it
+  Vec3f background{1, 1, 1};  ///< sRGB, bottom
   std::optional<Vec3f> background_top;  ///< sRGB; a vertical gradient when set
   bool transparent = false;             ///< no background at all
 };
@@ -119,7 +121,7 @@ Box3 scene_bounds(const Scene& scene);
 /// Whether a volume asks for light that only paths find (VolumeScattering::light).
 bool scatters_light(const Scene& scene);
 
-/// The lights that renderers use: the scene's own, or the default two.
+/// The lights that renderers without paths use: the scene's own, or directions towards what is stated, or the default two.
 std::vector<Light> lights_of(const Scene& scene);
 
 }  // namespace sg

@@ -13,6 +13,8 @@
 #include "pipeline/picture/picture.h"
 #include "scene/camera_params.h"
 #include "scene/choose/coloring.h"
+#include "scene/light/environment_params.h"
+#include "scene/light/light_params.h"
 #include "scene/show/show.h"
 
 namespace sg {
@@ -100,6 +102,17 @@ Candidates group_candidates(const std::string& text, const std::vector<std::stri
   return all;
 }
 
+// A kind of light or environment, then its words.
+Candidates kind_candidates(auto kinds, const std::string& text) {
+  Candidates names;
+  for (const auto& k : kinds) names.emplace_back(k.name);
+  return named_candidates(text, names, {}, [&](const std::string& name) -> std::optional<ParamSet> {
+    for (const auto& k : kinds)
+      if (k.name == name) return k.make_params();
+    return {};
+  });
+}
+
 // The words of ColoringParams that begin with "legend_", without that.
 Candidates legend_candidates(const std::string& text) {
   constexpr std::string_view prefix = "legend_";
@@ -128,6 +141,8 @@ Candidates flag_candidates(const FlagDoc& flag, const std::string& text) {
   if (is("--source")) return operation_candidates(text, OperationKind::source);
   if (is("--show")) return show_candidates(text);
   if (is("--picture")) return group_candidates<PictureParams>(text, {});
+  if (is("--light")) return kind_candidates(light_kinds(), text);
+  if (is("--environment")) return kind_candidates(environment_kinds(), text);
   if (is("--map")) return colormap_candidates();
   if (is("--scale")) return words_of_enum<ScaleKind>();
   if (is("--legend")) return legend_candidates(text);

@@ -23,7 +23,8 @@ std::string formats_line(const std::vector<CatalogEntry>& all, EntryKind kind) {
 }
 
 std::string overview(const std::vector<CatalogEntry>& all) {
-  std::string shows = "\nways to show (--show)\n", others = "\nother parameters\n";
+  std::string shows = "\nways to show (--show)\n", others = "\nother parameters\n", lights = "\nlights (--light)\n",
+              environments = "\nenvironments (--environment)\n";
   for (const CatalogEntry& e : all) {
     const std::string line = fmt::format("  {:<16} {}\n", e.name, e.sentence);
     switch (e.kind) {
@@ -32,6 +33,8 @@ std::string overview(const std::vector<CatalogEntry>& all) {
       case EntryKind::reader:
       case EntryKind::writer: break;
       case EntryKind::show: shows += line; break;
+      case EntryKind::light: lights += line; break;
+      case EntryKind::environment: environments += line; break;
       case EntryKind::read:
       case EntryKind::camera:
       case EntryKind::picture:
@@ -39,8 +42,8 @@ std::string overview(const std::vector<CatalogEntry>& all) {
       case EntryKind::page: others += line; break;
     }
   }
-  return ops_help() + shows + others + "\nreadable formats\n" + formats_line(all, EntryKind::reader) + "\nwritable formats\n" +
-         formats_line(all, EntryKind::writer) +
+  return ops_help() + shows + lights + environments + others + "\nreadable formats\n" + formats_line(all, EntryKind::reader) +
+         "\nwritable formats\n" + formats_line(all, EntryKind::writer) +
          "\nsightglass ops NAME lists its parameters, and knows many names of other programs (ops --other-names: all of them).\n";
 }
 

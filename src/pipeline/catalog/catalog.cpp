@@ -9,6 +9,8 @@
 #include "pipeline/offline/page_params.h"
 #include "pipeline/picture/picture.h"
 #include "scene/camera_params.h"
+#include "scene/light/environment_params.h"
+#include "scene/light/light_params.h"
 #include "scene/show/show.h"
 
 namespace sg {
@@ -88,6 +90,8 @@ std::string_view list_of(EntryKind kind) {
     case EntryKind::show: return "show";
     case EntryKind::reader: return "readers";
     case EntryKind::writer: return "writers";
+    case EntryKind::light: return "lights";
+    case EntryKind::environment: return "environments";
     case EntryKind::read:
     case EntryKind::camera:
     case EntryKind::picture:
@@ -111,6 +115,8 @@ std::vector<CatalogEntry> catalog() {
   all.push_back(entry<PictureParams>(EntryKind::picture, "Size, background and annotations (--picture)."));
   all.push_back(entry<FilmParams>(EntryKind::film, "Pictures of a time series, numbered or as a film."));
   all.push_back(entry<PageParams>(EntryKind::page, "A picture that turns, as one HTML file (-o scene.html)."));
+  for (const LightKind& k : light_kinds()) all.push_back(entry_of(EntryKind::light, k.name, k.sentence, k.make_params()));
+  for (const EnvironmentKind& k : environment_kinds()) all.push_back(entry_of(EntryKind::environment, k.name, k.sentence, k.make_params()));
   return all;
 }
 

@@ -23,12 +23,14 @@ enum class EntryKind {
   picture,
   film,
   page,
+  light,        ///< a kind of light of a picture
+  environment,  ///< a kind of what is around it
 };
 constexpr auto enum_words(EntryKind) {
   using enum EntryKind;
-  return std::array{
-      Word{"source", source}, Word{"operation", operation}, Word{"show", show},       Word{"reader", reader}, Word{"writer", writer},
-      Word{"read", read},     Word{"camera", camera},       Word{"picture", picture}, Word{"film", film},     Word{"page", page}};
+  return std::array{Word{"source", source}, Word{"operation", operation}, Word{"show", show},     Word{"reader", reader},
+                    Word{"writer", writer}, Word{"read", read},           Word{"camera", camera}, Word{"picture", picture},
+                    Word{"film", film},     Word{"page", page},           Word{"light", light},   Word{"environment", environment}};
 }
 
 struct CatalogEntry {
@@ -50,7 +52,7 @@ std::vector<CatalogEntry> catalog();
 /// of readers "times" (its files may hold several).
 std::string entry_json(const CatalogEntry& entry);
 /// {"sightglass":VERSION,"sources":[...],"operations":[...],"show":[...],"readers":[...],"writers":[...],"read":{...},"camera":{...},
-/// "picture":{...},"film":{...},"page":{...}}.
+/// "picture":{...},"film":{...},"page":{...},"lights":[...],"environments":[...]}.
 std::string catalog_json(const std::vector<CatalogEntry>& entries);
 
 }  // namespace sg

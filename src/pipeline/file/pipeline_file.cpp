@@ -190,6 +190,29 @@ class FileParser {
       mistake(line, fmt::format("{} '{}'; {}", what, name, unknown_name_hint(name, known)));
   }
 
+  // Keys of the picture whose values are kinds with words of their own, in a text apart by semicolons: [{sphere: {size: 0.3}}, "sun"] is
+  // "sphere size=0.3; sun".
+  static bool names_things(std::string_view key) { return key == "lights" || key == "environment"; }
+  std::string things_in(const YamlNode& value, const std::string& of) {
+    std::string text;
+    const auto add = [&](const std::string& thing) { text += (text.empty() ? "" : "; ") + thing; };
+    const auto add_pairs = [&](const YamlNode& map) {
+      unique_keys(map, of + ": ");
+      for (const auto& [kind, body] : map.pairs) {
+        std::string thing = kind.text;
+        for (const std::string& w : parse_words(body, kind.text)) thing += w.find(' ') == w.npos ? " " + w : " '" + w + "'";
+        add(thing);
+      }
+    };
+    if (value.kind == Kind::map) add_pairs(value);
+    for (const YamlNode& item : value.items) {
+      if (item.kind == Kind::map) add_pairs(item);
+      else if (item.kind == Kind::scalar) add(item.text);
+      else mistake(item.line, of + ": each item must be a kind, e.g. {sphere: {size: 0.3}}");
+    }
+    return text;
+  }
+
   void parse_picture(const YamlNode& picture, PipelineFile& file) {
     if (picture.kind == Kind::null) return;
     if (picture.kind != Kind::map) return mistake(picture.line, "picture: must be a map, e.g. {size: 1280x720, output: out.png}");
@@ -198,6 +221,10 @@ class FileParser {
     for (const auto& [key, value] : picture.pairs) lines[key.text] = key.line;
     for (const auto& [key, value] : picture.pairs) {
       check_known(key.text.substr(0, key.text.find('.')), key.line, "picture: unknown key", vocabulary_.picture);
+      if (names_things(key.text) && (value.kind == Kind::map || value.kind == Kind::list)) {
+        file.picture.push_back(key.text + "=" + things_in(value, "picture " + key.text));
+        continue;
+      }
       if (value.kind != Kind::map) {
         add_word(key.text, value, key.line, "picture", file.picture);
         continue;

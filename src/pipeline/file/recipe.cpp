@@ -16,6 +16,7 @@
 #include "pipeline/film/film_params.h"
 #include "pipeline/graph/key.h"
 #include "pipeline/picture/picture.h"
+#include "scene/light/environment_params.h"
 
 namespace sg {
 
@@ -109,6 +110,11 @@ void attach_recipe(Image& image, const PipelineFile& file, const std::string& pi
     replace_path(step.words, relative);
     inputs += line_text(content_hash(path), relative);
   }
+  if (const auto words = word_value(recipe.picture, "environment"); words && !environment_file(*words).empty()) {
+    const std::string path = path_beside(file.origin, environment_file(*words)), relative = relative_to_folder(path, folder);
+    recipe.picture.push_back("environment=" + with_environment_file(*words, relative));  // the last one counts
+    inputs += line_text(content_hash(path), relative);
+  }
   std::erase_if(recipe.picture, [](const std::string& w) { return w.starts_with("output="); });
   for (auto& show : recipe.show) std::erase_if(show.words, [](const std::string& w) { return w.starts_with("save="); });
   image.text.emplace_back("Software", "Sightglass " SG_VERSION);
@@ -142,6 +148,8 @@ PipelineFile recipe_in(const Image& image, const std::string& picture_path, std:
   std::set<std::string> read;
   for (const auto& step : file.steps)
     if (step.reads()) read.insert(word_value(step.words, "path").value_or(""));
+  if (const auto words = word_value(file.picture, "environment"); words && !environment_file(*words).empty())
+    read.insert(environment_file(*words));
   if (const std::string* inputs = text_in(image, "sightglass-inputs"))
     for (std::string_view line : split(*inputs, '\n')) {
       const size_t a = line.find(' '), b = a == line.npos ? line.npos : line.find(' ', a + 1);

@@ -13,6 +13,7 @@
 #include "io/options.h"
 #include "pipeline/graph/graph.h"
 #include "pipeline/picture/picture.h"
+#include "scene/light/environment_params.h"
 #include "scene/show/show.h"
 
 namespace sg {
@@ -94,6 +95,8 @@ void check_recipe(const PipelineFile& recipe, const std::string& picture_path) {
     rules.look(fmt::format("show {}", show.kind), show.line,
                files_of(show.kind == auto_show ? schema_of(coloring) : find_show(show.kind).make_params().schema), show.words);
   }
+  const std::string environment = environment_file(word_value(recipe.picture, "environment").value_or(""));
+  rules.look("environment", recipe.picture_line, {{"file", FileUse::read}}, {"file=" + environment});
   rules.finish();
 }
 

@@ -60,6 +60,7 @@ Panel panel_of(const Shown& shown, const CameraDefaults& defaults, const StatedP
   Panel p;
   p.scene = shown.scene;
   p.scene.background = stated.bottom, p.scene.background_top = stated.top, p.scene.transparent = stated.transparent;
+  p.scene.lighting = stated.lighting, p.scene.lighting.up = defaults.axes.up, p.scene.lighting.front = defaults.axes.front;
   p.annotation = annotation_of(stated, shown, defaults);
   if (in_panels(stated.picture)) p.annotation.legends.clear();  // they stand beside the panels
   const Rect area = picture_beside_legends(p.annotation, stated);

@@ -69,6 +69,13 @@ void describe(Schema& s, PictureParams& p) {
   s("paths", p.light.paths, "With an integrator: most paths per pixel.").range(1, 1 << 20);
   s("bounces", p.light.bounces, "With an integrator: most turns of a path.").range(0, 1000);
   s("sampler", p.light.sampler, "With an integrator: how the random numbers of a pixel lie to each other (see: sightglass samples).");
+  s("lights", p.lights,
+    "Lights apart by semicolons, each a kind and words: 'rectangle from=left-above size=0.5; sphere from=right brightness=0.3', 'sun "
+    "elevation=20'. Kinds: point, directional, sphere, disc, rectangle, sun (sightglass ops KIND). Without an integrator each becomes a "
+    "direction. Default: two from the viewer's sides.");
+  s("environment", p.environment,
+    "With an integrator: what shines from all around. 'sky elevation=20', 'even brightness=0.5', the name of a picture of all directions "
+    "with 'rotate=90', or none. Default: an even sky, dim where lights are stated; none beside the lights where it is stated.");
 }
 
 void parse_size(const std::string& words, int& width, int& height) {
@@ -111,6 +118,8 @@ StatedPicture stated_in(const PipelineFile& file) {
   set_params(camera, camera_words(camera_list), "camera");
   parse_size(s.picture.size, s.width, s.height);
   s.notes = parse_notes(s.picture.note);
+  s.lighting.lights = parse_lights(s.picture.lights);
+  s.lighting.environment = parse_environment(s.picture.environment);
   if (const std::vector<double>& f = s.picture.frame; !f.empty() && !(f.size() == 6 && f[0] <= f[1] && f[2] <= f[3] && f[4] <= f[5]))
     fail_usage("frame needs the lower and the upper end along x, y and z", "frame", "like frame=0,1,0,1,0,0.5");
   if (s.picture.background == "transparent") {

@@ -37,6 +37,7 @@ struct PictureParams {
   double text = 1;
   std::optional<trace::IntegratorKind> integrator;
   LightOptions light;
+  std::string lights, environment;
 };
 void describe(Schema& s, PictureParams& p);
 

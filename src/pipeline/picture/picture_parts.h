@@ -23,6 +23,7 @@ struct StatedPicture {
   std::optional<Vec3f> top;
   bool transparent = false;
   std::vector<PictureNote> notes;
+  Lighting lighting;  ///< its picture is read by read_environment()
 };
 
 /// Throws Error(usage).

@@ -13,6 +13,7 @@
 #include "pipeline/file/read_part.h"
 #include "pipeline/file/transfer_file.h"
 #include "pipeline/picture/picture_cost.h"
+#include "pipeline/picture/picture_lights.h"
 #include "pipeline/picture/settle_choices.h"
 #include "scene/choose/coloring.h"
 #include "scene/show/volume.h"
@@ -115,6 +116,8 @@ PreparedPicture prepare_picture(PipelineFile& file, const PictureOptions& option
   show_planes_as_measured(file);
   stated = stated_in(file);  // with what was chosen of it
   const std::vector<StatedShow> shows = stated_shows(file);
+  if (const auto* of_file = stated.lighting.environment ? std::get_if<PictureEnvironmentParams>(&*stated.lighting.environment) : nullptr)
+    stated.lighting.picture = read_environment(path_beside(file.origin, of_file->file), context);
 
   const PipelineGraph built = build_graph(file, graph_options, options.results);
   std::vector<Target> targets;
@@ -146,6 +149,7 @@ PreparedPicture prepare_picture(PipelineFile& file, const PictureOptions& option
   for (const Shown& s : shown)
     if (const std::string note = note_of_long_drawing(s.scene, double(stated.width) * double(stated.height)); !note.empty())
       once.info(note);
+  if (const std::string note = note_of_lost_light(stated); !note.empty()) once.info(note);
   if (std::none_of(shown.begin(), shown.end(), [](const Shown& s) { return s.any_points; }))
     context.warn("the picture is empty: there are no points to show");
   if (!file.show.empty()) {

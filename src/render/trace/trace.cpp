@@ -14,6 +14,7 @@
 #include "render/trace/integrators/bidirectional/whole_picture.h"
 #include "render/trace/integrators/integrator.h"
 #include "render/trace/light/luminance.h"
+#include "render/trace/sampling/warp.h"
 #include "render/trace/studio.h"
 
 namespace sg {
@@ -32,8 +33,15 @@ class Eye {
   Eye(const Projection& projection, const Geometry& geometry)
       : projection_(projection), placement_(geometry.placement()), reach_(2 / placement_.scale) {}
 
-  Ray ray(Vec2f pixel, double& start, double& per_depth) const {
-    const Projection::Ray r = projection_.ray(pixel.x, pixel.y);
+  bool has_lens() const { return projection_.lens > 0; }
+  /// `lens`: a place in the unit disc, from which the ray leaves towards what is sharp.
+  Ray ray(Vec2f pixel, Vec2f lens, double& start, double& per_depth) const {
+    Projection::Ray r = projection_.ray(pixel.x, pixel.y);
+    if (has_lens()) {
+      const Vec3 sharp = r.origin + r.direction * (projection_.focus * r.per_depth);
+      r.origin += (projection_.right * double(lens.x) + projection_.up * double(lens.y)) * (projection_.lens / 2);
+      r.direction = normalize(sharp - r.origin);
+    }
     start = std::max(dot(placement_.middle - r.origin, r.direction) - reach_, projection_.near_plane * r.per_depth);
     per_depth = r.per_depth;
     return {placement_.traced(r.origin + r.direction * start), normalize(Vec3f(r.direction))};
@@ -48,17 +56,18 @@ class Eye {
 
 /// Sums over the paths of a pixel.
 struct PixelSum {
-  Vec3 light;
-  double passed = 0, square = 0;  // of the luminance
+  Vec3 light, behind;                      // of what is met, and of what lies around the scene
+  double passed = 0, sum = 0, square = 0;  // of the luminance of both
 
-  /// `behind`: luminance of the background.
-  void add(const Estimate& e, double behind) {
-    const double y = luminance(e.radiance) + e.passed * behind;
-    light += Vec3(e.radiance), passed += e.passed, square += y * y;
+  /// `around`: what is seen where nothing is met.
+  void add(const Estimate& e, Vec3f around) {
+    const Vec3f seen = around * e.passed;
+    const auto y = double(luminance(e.radiance + seen));
+    light += Vec3(e.radiance), behind += Vec3(seen), passed += e.passed, sum += y, square += y * y;
   }
   /// The variance of the mean of n, as displayed: by the slope of sRGB's curve there, at least that of a dark grey.
-  double variance(uint32_t n, double behind) const {
-    const double mean = (0.2126 * light.x + 0.7152 * light.y + 0.0722 * light.z + passed * behind) / n, v = std::max(0.0, square / n - mean * mean) / (n - 1);
+  double variance(uint32_t n) const {
+    const double mean = sum / n, v = std::max(0.0, square / n - mean * mean) / (n - 1);
     constexpr float step = 0.01f;
     const float y = std::clamp(float(mean), 2 * step, 1.f);
     const double slope = double(srgb_encode(y + step) - srgb_encode(y - step)) / (2 * double(step));
@@ -87,7 +96,7 @@ std::unique_ptr<Integrator> make_integrator(const LightOptions& o) {
   }
 }
 
-World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Projection& projection, Context& context) {
+World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Projection& projection, Backdrop& backdrop, Context& context) {
   const std::shared_ptr<Media> media = Media::make(scene, projection, context);
   GeometryOptions size;
   size.around = media->bounds();
@@ -101,8 +110,21 @@ World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Proje
   std::vector<std::shared_ptr<const trace::Material>> materials;
   for (const raster::PreparedItem& item : prepared->items)
     materials.push_back(item.made_of ? std::make_shared<const trace::Material>(*item.made_of) : of_data);
-  Studio studio = studio_of(scene, projection);
+  Studio studio = studio_of(scene, projection, geometry.placement());
+  backdrop = studio.backdrop;
   return {prepared, std::move(geometry), std::move(materials), std::move(studio.lights), std::move(studio.environment), media};
+}
+
+/// What is around the scene, as the middle of each pixel sees it.
+void put_behind(Frame& frame, const Eye& eye, const Backdrop& backdrop) {
+  for (int y = 0; y < frame.height; ++y)
+    for (int x = 0; x < frame.width; ++x) {
+      float* rgba = &frame.rgba[4 * (size_t(y) * size_t(frame.width) + size_t(x))];
+      double start = 0, per_depth = 1;
+      const Vec3f seen = backdrop.radiance(eye.ray({float(x) + 0.5f, float(y) + 0.5f}, {}, start, per_depth).direction);
+      for (int c = 0; c < 3; ++c) rgba[c] += (1 - rgba[3]) * seen[c];
+      rgba[3] = 1;
+    }
 }
 
 }  // namespace
@@ -110,7 +132,8 @@ World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Proje
 Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Projection& projection, const LightOptions& options,
                   TraceReport& report, Context& context) {
   check(options);
-  const World world = world_of(scene, prepared, projection, context);
+  Backdrop backdrop;
+  const World world = world_of(scene, prepared, projection, backdrop, context);
   if (!world.lights().any() && options.integrator != IntegratorKind::ambient_occlusion)
     context.warn("nothing shines: no light, no environment, no material with emission; the picture is dark");
   const auto integrator = make_integrator(options);
@@ -119,8 +142,12 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
   if (lights_whole_picture(options.integrator)) {
     if (world.has_media())
       fail_usage(fmt::format("integrator={} does not light volumes", word_of(options.integrator)), "integrator", "use integrator=path");
+    if (projection.lens > 0)
+      fail_usage(fmt::format("integrator={} sees through a pinhole", word_of(options.integrator)), "aperture",
+                 "leave out aperture=, or use integrator=path");
     WholePicture whole = draw_whole_picture(world, projection, options, context);
     report = {whole.paths, whole.noise, whole.reached};
+    if (backdrop.seen) put_behind(whole.frame, Eye(projection, world.geometry()), backdrop);
     return std::move(whole.frame);
   }
   const Eye eye(projection, world.geometry());
@@ -136,8 +163,8 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
           const int x0 = int(square % across) * side, y0 = int(square / across) * side;
           const int w = std::min(side, projection.width - x0), h = std::min(side, projection.height - y0);
           PixelSum sums[side * side];
-          double behind[side];
-          for (int y = 0; y < h; ++y) behind[y] = double(luminance(background_of_row(scene, projection, y0 + y)));
+          Vec3f around[side];
+          for (int y = 0; y < h; ++y) around[y] = background_of_row(scene, projection, y0 + y);
           Sampler sampler(options.sampler, options.seed, options.paths);
           SquareReport& told = squares[square];
           uint32_t n = 0;
@@ -147,26 +174,27 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
               const int x = x0 + p % w, y = y0 + p / w;
               for (uint32_t k = n; k < to; ++k) {
                 sampler.start(uint32_t(x), uint32_t(y), k);
-                const Vec2f in_pixel = sampler.next2();
+                const Vec2f in_pixel = sampler.next2(), on_lens = eye.has_lens() ? concentric_disc(sampler.next2()) : Vec2f();
                 double start = 0, per_depth = 1;
-                const Ray ray = eye.ray({float(x) + in_pixel.x, float(y) + in_pixel.y}, start, per_depth);
-                sums[p].add(integrator->along(world, ray, sampler), behind[p / w]);
+                const Ray ray = eye.ray({float(x) + in_pixel.x, float(y) + in_pixel.y}, on_lens, start, per_depth);
+                sums[p].add(integrator->along(world, ray, sampler), backdrop.seen ? backdrop.radiance(ray.direction) : around[p / w]);
               }
             }
             n = to;
             told.variance = 0;
-            for (int p = 0; p < w * h && n > 1; ++p) told.variance += sums[p].variance(n, behind[p / w]) / (w * h);
+            for (int p = 0; p < w * h && n > 1; ++p) told.variance += sums[p].variance(n) / (w * h);
             told.reached = n > 1 && told.variance <= options.noise * options.noise;
           } while (!told.reached && n < uint32_t(options.paths));
           told.paths = n;
           for (int p = 0; p < w * h; ++p) {
             const int x = x0 + p % w, y = y0 + p / w;
             const size_t at = size_t(y) * size_t(frame.width) + size_t(x);
-            for (int c = 0; c < 3; ++c) frame.rgba[4 * at + size_t(c)] = float(sums[p].light[c] / n);
-            frame.rgba[4 * at + 3] = float(1 - sums[p].passed / n);
+            const Vec3 seen = backdrop.seen ? sums[p].light + sums[p].behind : sums[p].light;
+            for (int c = 0; c < 3; ++c) frame.rgba[4 * at + size_t(c)] = float(seen[c] / n);
+            frame.rgba[4 * at + 3] = backdrop.seen ? 1 : float(1 - sums[p].passed / n);
             // What the middle of the pixel sees.
             double start = 0, per_depth = 1;
-            const Ray ray = eye.ray({float(x) + 0.5f, float(y) + 0.5f}, start, per_depth);
+            const Ray ray = eye.ray({float(x) + 0.5f, float(y) + 0.5f}, {}, start, per_depth);
             Hit hit;
             if (world.geometry().nearest(ray, hit)) frame.ids[at] = prepared->items[hit.object].id;
             if (media) {

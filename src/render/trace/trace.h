@@ -16,11 +16,11 @@ struct TraceReport {
   bool reached = true;
 };
 
-/// Surfaces, lines, points, glyphs and volumes in the light of the scene: linear and premultiplied, without the background. Pixels are drawn
-/// by squares, each until its error is below `noise`; a path belongs to a pixel by where it starts (box filter). Integrators whose paths may
-/// end in any pixel finish the picture as a whole (integrators/bidirectional/whole_picture.h). The same bytes for any number of threads.
-/// Throws Error(usage) for volumes that are no matter (another mode than composite) or in front of such integrators, and for options out of
-/// range.
+/// Surfaces, lines, points, glyphs and volumes in the light of the scene: linear and premultiplied, without the background. Pixels are
+/// drawn by squares, each until its error is below `noise`; a path belongs to a pixel by where it starts (box filter). Integrators whose
+/// paths may end in any pixel finish the picture as a whole (integrators/bidirectional/whole_picture.h). The same bytes for any number of
+/// threads. Throws Error(usage) for volumes that are no matter (another mode than composite) or in front of such integrators, and for
+/// options out of range.
 Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Projection& projection, const LightOptions& options,
                   TraceReport& report, Context& context);
 

@@ -7,7 +7,8 @@ namespace sg {
 
 void describe(Schema& s, VolumeScattering& p) {
   s("light", p.light,
-    "Which light of the volume is seen: emission, its colours shine by themselves; map, that of the lamps, scattered once, by maps of their "
+    "Which light of the volume is seen: emission, its colours shine by themselves; map, that of the lamps, scattered once, by maps of "
+    "their "
     "shadows; single, scattered once, ray by ray; path, any number of times (with these two the picture is drawn by paths). Default: "
     "emission, or path if the picture has an integrator.");
   s("albedo", p.albedo, "Unless light=emission: the share of the light taken that is scattered, times the colour; the rest is absorbed.")

@@ -23,10 +23,10 @@ constexpr auto enum_words(VolumeLighting) {
 
 /// Where scattered light goes.
 enum class PhaseKind {
-  isotropic,         ///< everywhere
-  rayleigh,          ///< of particles much smaller than the wavelength
-  henyey_greenstein, ///< by a mean cosine (Henyey, Greenstein 1941)
-  two_lobe,          ///< two of these, one of them usually backward
+  isotropic,          ///< everywhere
+  rayleigh,           ///< of particles much smaller than the wavelength
+  henyey_greenstein,  ///< by a mean cosine (Henyey, Greenstein 1941)
+  two_lobe,           ///< two of these, one of them usually backward
 };
 constexpr auto enum_words(PhaseKind) {
   using enum PhaseKind;

@@ -15,6 +15,7 @@
 #include "pipeline/catalog/catalog.h"
 #include "pipeline/file/transfer_file.h"
 #include "pipeline/picture/picture.h"
+#include "scene/light/environment_params.h"
 #include "scene/show/show.h"
 
 namespace sg::serve {
@@ -185,6 +186,8 @@ NamedFiles files_of(const PipelineFile& file) {
   for (const PipelineFile::Step& s : file.steps)
     if (s.reads() || known_operation(s.operation)) collect_files(params_of_step(s), s.words, files);
   for (const PipelineFile::Show& s : file.show) collect_files(params_of_show(s.kind), s.words, files);
+  if (const std::string hall = environment_file(word_value(file.picture, "environment").value_or("")); !hall.empty())
+    files.read.push_back(hall);
   files.written = files.written || word_value(file.picture, "output");
   return files;
 }

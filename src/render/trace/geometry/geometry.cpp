@@ -49,7 +49,8 @@ Geometry Geometry::make(const PreparedScene& scene, const GeometryOptions& optio
     box.add(world_box(*o));
     g.objects_.push_back(std::move(o));
   }
-  g.placement_ = g.objects_.size() == 1 && options.around.empty() ? g.objects_[0]->local : Placement::of(box);  // alone it need not be moved
+  g.placement_ =
+      g.objects_.size() == 1 && options.around.empty() ? g.objects_[0]->local : Placement::of(box);  // alone it need not be moved
   for (const auto& o : g.objects_) {
     o->place(g.placement_);
     for (int a = 0; a < 3; ++a) {

@@ -57,7 +57,8 @@ class PathIntegrator : public Integrator {
         Path scattered = path;
         scattered.throughput = scattered.throughput * (1 - passes);
         const auto matter = media->collide_surely(u, random);
-        if (matter && scatter(world, media.get(), *matter, scattered, sampler, out)) follow(world, media.get(), scattered, false, sampler, out);
+        if (matter && scatter(world, media.get(), *matter, scattered, sampler, out))
+          follow(world, media.get(), scattered, false, sampler, out);
       }
       path.throughput = path.throughput * passes;
       if (!(passes > 0)) return out;
@@ -97,7 +98,8 @@ class PathIntegrator : public Integrator {
   bool meet(const World& world, MediaWalk* media, const Hit& hit, Path& path, Sampler& sampler, Estimate& out) const {
     const Vertex v = world.at(path.ray, hit);
     if (!is_dark(v.emission)) {
-      const float p = world.lights().triangle_pdf(hit.object, hit.primitive, path.since + hit.t, dot(path.ray.direction, v.point.face_normal));
+      const float p =
+          world.lights().triangle_pdf(hit.object, hit.primitive, path.since + hit.t, dot(path.ray.direction, v.point.face_normal));
       out.radiance += path.throughput * v.emission * power_weight(path.pdf, p);
     }
     const Vec3f wo = v.frame.to_local(-path.ray.direction);
@@ -141,13 +143,14 @@ class PathIntegrator : public Integrator {
     const bool last = c.last || mirrors_only_;
     const Vec3f along = path.ray.direction, at = path.ray.origin + along * c.t, from = c.on_surface ? at + c.normal * c.clear : at;
     const auto scattered = [&](Vec3f direction) -> Scattered {
-      const float density = c.on_surface ? std::max(0.f, dot(direction, c.normal)) / std::numbers::pi_v<float>
-                                         : c.phase.density(dot(along, direction));
+      const float density =
+          c.on_surface ? std::max(0.f, dot(direction, c.normal)) / std::numbers::pi_v<float> : c.phase.density(dot(along, direction));
       return {{density, density, density}, last ? 0 : density};
     };
     const float choice = sampler.next();
     const Vec2f u = sampler.next2();
-    out.radiance += path.throughput * direct(world, media, from, [&](Vec3f) { return from; }, scattered, choice, u, sampler);
+    out.radiance += path.throughput * direct(
+                                          world, media, from, [&](Vec3f) { return from; }, scattered, choice, u, sampler);
 
     const Vec2f v = sampler.next2();
     const float roulette = sampler.next();

@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -20,6 +21,16 @@ struct Environment::Picture {
   Distribution2D brightness;
   Vec3f mean;
 
+  /// Between the middles of pixels; at the poles and around it goes on.
+  Vec3f at(Vec2f place) const {
+    const float x = place.x * float(width) - 0.5f, y = std::clamp(place.y * float(height) - 0.5f, 0.f, float(height - 1));
+    const float left = std::floor(x), wx = x - left;
+    const size_t x0 = left < 0 ? width - 1 : std::min(size_t(left), width - 1), x1 = x0 + 1 < width ? x0 + 1 : 0;
+    const size_t y0 = std::min(size_t(y), height - 1), y1 = std::min(y0 + 1, height - 1);
+    const float wy = y - float(y0);
+    const auto row = [&](size_t r) { return pixels[r * width + x0] * (1 - wx) + pixels[r * width + x1] * wx; };
+    return row(y0) * (1 - wy) + row(y1) * wy;
+  }
   /// Of the angle from `up` at a row's upper edge, and by how much it falls to the lower one.
   float cosine(size_t row) const { return float(std::cos(double(pi) * double(row) / double(height))); }
   float drop(size_t row) const {
@@ -36,6 +47,22 @@ namespace {
 double sine_of_row(size_t row, size_t height) {
   const double step = double(pi) / double(height);
   return (std::cos(step * double(row)) - std::cos(step * double(row + 1))) / step;
+}
+
+/// The mean of the interpolated picture over each pixel: 1/8, 6/8, 1/8 of three along each axis, going around in x.
+std::vector<Vec3f> means(const std::vector<Vec3f>& pixels, size_t width) {
+  const size_t height = pixels.size() / width;
+  std::vector<Vec3f> across(pixels.size()), out(pixels.size());
+  for (size_t y = 0; y < height; ++y)
+    for (size_t x = 0; x < width; ++x) {
+      const Vec3f* row = &pixels[y * width];
+      across[y * width + x] = (row[(x + width - 1) % width] + row[(x + 1) % width]) * 0.125f + row[x] * 0.75f;
+    }
+  for (size_t y = 0; y < height; ++y)
+    for (size_t x = 0; x < width; ++x)
+      out[y * width + x] = (across[(y > 0 ? y - 1 : y) * width + x] + across[std::min(y + 1, height - 1) * width + x]) * 0.125f +
+                           across[y * width + x] * 0.75f;
+  return out;
 }
 
 std::vector<float> weights(std::span<const Vec3f> pixels, size_t width) {
@@ -58,9 +85,11 @@ Environment::Environment(std::span<const Vec3f> pixels, size_t width, Vec3 up, V
       if (!(p[c] >= 0 && std::isfinite(p[c])))
         fail_usage(fmt::format("pixel {},{} is {}", i % width, i / width, p[c]), "environment", "light is finite and not negative");
     scaled.push_back(p);
-    mean += Vec3(p) * (sine_of_row(i / width, height) * double(pi) / (2 * double(pixels.size())));
   }
-  Distribution2D brightness(weights(scaled, width), width);
+  const std::vector<Vec3f> smooth = means(scaled, width);
+  for (size_t i = 0; i < smooth.size(); ++i)
+    mean += Vec3(smooth[i]) * (sine_of_row(i / width, height) * double(pi) / (2 * double(pixels.size())));
+  Distribution2D brightness(weights(smooth, width), width);
   const Vec3f z(normalize(up));
   const LocalFrame about = LocalFrame::about(z, Vec3f(normalize(front)));
   picture_ = std::make_shared<Picture>(Picture{std::move(scaled), width, height, about, std::move(brightness), Vec3f(mean)});
@@ -76,9 +105,7 @@ Vec2f Environment::place(Vec3f direction) const {
 
 Vec3f Environment::radiance(Vec3f direction) const {
   if (!picture_) return even_;
-  const Vec2f at = place(direction);
-  const size_t x = size_t(at.x * float(picture_->width)), y = size_t(at.y * float(picture_->height));
-  return picture_->pixels[std::min(y, picture_->height - 1) * picture_->width + std::min(x, picture_->width - 1)];
+  return picture_->at(place(direction));
 }
 
 Vec3f Environment::mean() const { return picture_ ? picture_->mean : even_; }
@@ -92,8 +119,7 @@ Environment::Sample Environment::sample(Vec2f u) const {
   const float around = (0.5f - s.point.x) * 2 * pi, z = picture_->cosine(row) - (in_rows - float(row)) * picture_->drop(row);
   const float sine = std::sqrt(std::max(0.f, 1 - z * z));
   const Vec3f d = normalize(picture_->frame.to_world({std::cos(around) * sine, std::sin(around) * sine, z}));
-  const size_t x = std::min(size_t(s.point.x * float(picture_->width)), picture_->width - 1);
-  return {d, picture_->pixels[row * picture_->width + x], s.pdf * picture_->per_solid_angle(row)};
+  return {d, radiance(d), s.pdf * picture_->per_solid_angle(row)};
 }
 
 float Environment::pdf(Vec3f direction) const {

@@ -10,7 +10,8 @@
 namespace sg::trace {
 
 /// Radiance by direction. A picture is in equirectangular form: rows from `up` down, columns once around from -`front` by the left, so that
-/// its middle is what lies in front. Directions are drawn by how bright its pixels are and how much of the sphere they cover.
+/// its middle is what lies in front; between the middles of pixels it is interpolated. Directions are drawn by how bright pixels are on
+/// average and how much of the sphere they cover.
 class Environment {
  public:
   Environment() = default;  ///< dark

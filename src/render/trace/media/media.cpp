@@ -17,9 +17,11 @@ void check(const VolumeItem& item) {
     fail_usage(fmt::format("mode={} shows no matter that light could meet", info_of(item.mode).name), "integrator",
                "use mode=composite, or leave integrator out");
   if (item.method != VolumeMethod::ray)
-    fail_usage(fmt::format("method={} does not follow light", word_of(item.method)), "integrator", "use method=ray, or leave integrator out");
+    fail_usage(fmt::format("method={} does not follow light", word_of(item.method)), "integrator",
+               "use method=ray, or leave integrator out");
   if (item.scattering.light == VolumeLighting::map)
-    fail_usage("light=map belongs to pictures without an integrator", "integrator", "use light=single or light=path, or leave integrator out");
+    fail_usage("light=map belongs to pictures without an integrator", "integrator",
+               "use light=single or light=path, or leave integrator out");
 }
 
 void check_glow(const VolumeItem& item, const ColorScale& shown) {

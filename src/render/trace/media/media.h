@@ -15,8 +15,8 @@ namespace sg::trace {
 class Media {
  public:
   Media() = default;
-  /// The composited volumes of the scene. Throws Error(usage) for volumes with another ray function or algorithm, and as for pictures without
-  /// paths.
+  /// The composited volumes of the scene. Throws Error(usage) for volumes with another ray function or algorithm, and as for pictures
+  /// without paths.
   static std::shared_ptr<Media> make(const Scene& scene, const Projection& projection, Context& context);
 
   bool any() const { return !media_.empty(); }

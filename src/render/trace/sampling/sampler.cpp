@@ -105,9 +105,7 @@ uint64_t Sampler::curve_index(uint64_t key) const {
   return shuffled;
 }
 
-uint64_t Sampler::stream() {
-  return random_bits(random_bits(key_ ^ seed_, along_curve_), uint64_t(index_) << 32 | dimension_++);
-}
+uint64_t Sampler::stream() { return random_bits(random_bits(key_ ^ seed_, along_curve_), uint64_t(index_) << 32 | dimension_++); }
 
 float Sampler::next() {
   const uint32_t dimension = dimension_++;

@@ -40,7 +40,8 @@ void check_light(const VolumeItem& item) {
   check_share(s.albedo, "albedo"), check_share(s.back_share, "back_share");
   for (const double g : {s.anisotropy, s.back_anisotropy})
     if (!(std::abs(g) < 1)) fail_usage(fmt::format("{} is not a valid mean cosine", g), "anisotropy", "give a number between -1 and 1");
-  if (!(s.glow >= 0 && std::isfinite(s.glow))) fail_usage(fmt::format("glow {} is not a valid radiance", s.glow), "volume", "give 0 or more");
+  if (!(s.glow >= 0 && std::isfinite(s.glow)))
+    fail_usage(fmt::format("glow {} is not a valid radiance", s.glow), "volume", "give 0 or more");
   if (!(l.ink >= 0 && l.ink < 1))
     fail_usage(fmt::format("ink {} is not a valid opacity", l.ink), "volume", "give a number from 0 to below 1");
   if (l.ink > 0 && l.style != LightStyle::silhouette && l.style != LightStyle::hatch)

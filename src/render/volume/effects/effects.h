@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "base/context.h"
+#include "render/shade/phase_function.h"
 #include "render/volume/effects/light_map.h"
 #include "render/volume/effects/occlusion.h"
 #include "render/volume/effects/surface_shadow.h"
-#include "render/shade/phase_function.h"
 #include "scene/camera.h"
 #include "scene/items/volume_item.h"
 

@@ -5,8 +5,8 @@
 
 namespace sg::volume {
 
-/// The same item with the share of light that each collision scatters in place of its colours: those of which a thick body has these colours
-/// in even light. In single scattering they are brighter and paler than the colours.
+/// The same item with the share of light that each collision scatters in place of its colours: those of which a thick body has these
+/// colours in even light. In single scattering they are brighter and paler than the colours.
 VolumeItem with_scatter_colors(VolumeItem item);
 
 }  // namespace sg::volume

@@ -3,9 +3,9 @@
 #include "media_support.h"
 
 #include "base/error.h"
-#include "render/volume/sources/cells/volume_cells_support.h"
 #include "render/render.h"
 #include "render/trace/trace.h"
+#include "render/volume/sources/cells/volume_cells_support.h"
 
 using namespace sg;
 using namespace sg::trace;
@@ -152,7 +152,8 @@ TEST_CASE("media: smoke shadows surfaces, and surfaces stand in smoke") {
   const float e = 3.14159265f;
   const World world = world_of(scene_of({floor, v}), {DistantLight{{0, 0, 1}, {e, e, e}, 0}}, {});
   // Under the cube, seen from the side: the way to the light is 2 long in it.
-  const Mean under = seen(world, {0.2, -4, -1.5}, Vec3{0, 4, -0.5}, 4000, 1), beside = seen(world, {0.2, -8, -1.5}, Vec3{0, 4, -0.5}, 4000, 1);
+  const Mean under = seen(world, {0.2, -4, -1.5}, Vec3{0, 4, -0.5}, 4000, 1),
+             beside = seen(world, {0.2, -8, -1.5}, Vec3{0, 4, -0.5}, 4000, 1);
   CHECK(std::abs(beside.value - 1) <= 4 * beside.error + 1e-3);
   CHECK(std::abs(under.value - std::exp(-1.2)) <= 4 * under.error + 1e-3);
 }
@@ -178,9 +179,7 @@ TEST_CASE("media: pictures of smoke and floors are the same bytes for any number
 
 TEST_CASE("media: volumes that are no matter, and coefficients out of range, are refused") {
   Context context;
-  const auto refused = [&](const VolumeItem& v) {
-    return error_of([&] { Media::make(scene_of({v}), parallel_view(8, 8, 1), context); });
-  };
+  const auto refused = [&](const VolumeItem& v) { return error_of([&] { Media::make(scene_of({v}), parallel_view(8, 8, 1), context); }); };
   VolumeItem v = even(grid(cube(5, -1, 1), one), 1);
   v.mode = RayFunction::maximum;
   CHECK(refused(v).find("mode=composite") != std::string::npos);

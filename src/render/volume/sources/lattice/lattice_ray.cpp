@@ -171,9 +171,7 @@ class LatticeRay final : public LatticeWalker, public RaySpans {
 
   float second(const Stretch& s, double t) override { return second_ ? second_->at(t) : (void(s), NAN); }
   /// Value at t of the ray that was started, base included.
-  float at(double t) override {
-    return value_at(clamped_place(t)) + v_.base;
-  }
+  float at(double t) override { return value_at(clamped_place(t)) + v_.base; }
 
  private:
   Vec3 clamped_place(double t) const {
@@ -430,7 +428,8 @@ class LatticeRay final : public LatticeWalker, public RaySpans {
 
 /// As a RayField or RaySpans.
 template <class Walker>
-std::unique_ptr<Walker> walker_of(const std::shared_ptr<const Volume>& v, const Invisible& invisible, std::unique_ptr<LatticeWalker> second) {
+std::unique_ptr<Walker> walker_of(const std::shared_ptr<const Volume>& v, const Invisible& invisible,
+                                  std::unique_ptr<LatticeWalker> second) {
   switch (v->voxels.array.type()) {
     case ElementType::u8: return std::make_unique<LatticeRay<uint8_t>>(v, invisible, std::move(second));
     case ElementType::i8: return std::make_unique<LatticeRay<int8_t>>(v, invisible, std::move(second));

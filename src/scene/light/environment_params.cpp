@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/light/environment_params.h"
+
+#include <fmt/core.h>
+
+#include <vector>
+
+#include "base/error.h"
+#include "base/text/text.h"
+#include "scene/light/light_params.h"
+
+namespace sg {
+
+namespace {
+
+template <class P>
+constexpr EnvironmentKind environment_kind(std::string_view name, std::string_view sentence) {
+  EnvironmentKind k;
+  k.name = name, k.sentence = sentence;
+  k.make_params = make_param_set<P>;
+  k.take = [](const ParamSet& params) { return EnvironmentParams(params.as<P>()); };
+  return k;
+}
+
+constexpr std::string_view picture_kind = "picture";
+constexpr std::string_view background_doc = "Show it behind the data, in the place of the picture's background.";
+
+const EnvironmentKind* kind_named(std::string_view name) {
+  for (const EnvironmentKind& k : environment_kinds())
+    if (equal_ignoring_case(k.name, name)) return &k;
+  return nullptr;
+}
+
+// A word that is no kind but has a dot or a slash is a file's name.
+bool is_file(const std::string& word) {
+  return !kind_named(word) && word.find('=') == std::string::npos && word.find_first_of("./") != std::string::npos;
+}
+
+// The kind, then its words.
+std::vector<std::string> words_of(const std::string& text) {
+  std::vector<std::string> all = quoted_words(text);
+  if (!all.empty() && is_file(all[0])) all[0] = "file=" + all[0], all.insert(all.begin(), std::string(picture_kind));
+  return all;
+}
+
+}  // namespace
+
+void describe(Schema&, NoEnvironmentParams&) {}
+void describe(Schema& s, EvenEnvironmentParams& p) {
+  s("color", p.color, "Colour of the light.");
+  s("brightness", p.brightness, "How bright a white surface is in it: 1 is white.").range(0, 1e9).positive();
+  s("background", p.background, std::string(background_doc));
+}
+void describe(Schema& s, SkyEnvironmentParams& p) {
+  s("elevation", p.elevation, "Height of the sun above the horizon, below 0 in twilight; default: that of a light 'sun', else 40.")
+      .unit("deg")
+      .range(-8, 90);
+  s("azimuth", p.azimuth,
+    "Direction of the sun clockwise from north; default: that of a light 'sun', else over the viewer's left shoulder.")
+      .unit("deg")
+      .range(-360, 360);
+  s("brightness", p.brightness,
+    "How bright a white surface is that faces the sun: 1 is white; when that has set what lies level is a fifth of it. With a light 'sun' "
+    "a "
+    "factor to its sky.")
+      .range(0, 1e9)
+      .positive();
+  s("haze", p.haze, "Dust and droplets in the air, as a factor to a clear day.").range(0, 20);
+  s("sun", p.sun, "With the sun itself, a light of half a degree; default: unless a light 'sun' is stated.");
+  s("background", p.background, std::string(background_doc));
+}
+void describe(Schema& s, PictureEnvironmentParams& p) {
+  s("file", p.file,
+    "Picture of all directions in equirectangular form (twice as wide as high, up at the top): .hdr, or .png, .jpg and others.")
+      .unit("file")
+      .required();
+  s("strength", p.strength, "Factor to its light; at 1 a white surface is as bright as the picture is on average.")
+      .range(0, 1e9)
+      .positive();
+  s("rotate", p.rotate, "Angle by which it is turned about the vertical, clockwise seen from above; at 0 its middle lies behind the data.")
+      .unit("deg")
+      .range(-360, 360);
+  s("background", p.background, std::string(background_doc));
+}
+
+std::span<const EnvironmentKind> environment_kinds() {
+  static constexpr EnvironmentKind kinds[] = {
+      environment_kind<NoEnvironmentParams>("none", "Darkness around the lights."),
+      environment_kind<EvenEnvironmentParams>("even", "The same light from everywhere."),
+      environment_kind<SkyEnvironmentParams>("sky", "The sky of a sun at some height, computed from the air, with that sun."),
+      environment_kind<PictureEnvironmentParams>(picture_kind, "Light by a picture of all directions; the name of the file alone will do."),
+  };
+  return kinds;
+}
+
+std::optional<EnvironmentParams> parse_environment(const std::string& text) {
+  const std::vector<std::string> all = words_of(text);
+  if (all.empty()) return {};
+  const EnvironmentKind* found = kind_named(all[0]);
+  if (!found) {
+    std::vector<std::string> names;
+    for (const EnvironmentKind& k : environment_kinds()) names.emplace_back(k.name);
+    fail_usage(fmt::format("unknown environment '{}'", all[0]), "environment",
+               unknown_name_hint(all[0], names) + ", or the name of a file");
+  }
+  const std::string owner = fmt::format("environment {}", found->name);
+  ParamSet params = found->make_params();
+  set_params(params.schema, {all.begin() + 1, all.end()}, owner);
+  EnvironmentParams e = found->take(params);
+  if (const auto* even = std::get_if<EvenEnvironmentParams>(&e)) light_color(even->color);
+  if (const auto* picture = std::get_if<PictureEnvironmentParams>(&e); picture && picture->file.empty())
+    fail_usage("no file is named", owner, "write e.g. environment='hall.hdr rotate=90'");
+  return e;
+}
+
+std::string environment_file(const std::string& text) {
+  try {
+    const std::vector<std::string> all = words_of(text);
+    if (all.empty() || !equal_ignoring_case(all[0], picture_kind)) return {};
+    std::string file;
+    for (const std::string& w : all)
+      if (w.starts_with("file=")) file = w.substr(5);
+    return file;
+  } catch (const Error&) {  // a quote that is not closed: parse_environment() tells of it
+    return {};
+  }
+}
+
+std::string with_environment_file(const std::string& text, const std::string& file) {
+  const auto quoted = [](const std::string& w) {
+    if (w.find(' ') == std::string::npos) return w;
+    return w.find('\'') == std::string::npos ? "'" + w + "'" : '"' + w + '"';
+  };
+  std::string r;
+  for (const std::string& w : words_of(text)) r += (r.empty() ? "" : " ") + quoted(w.starts_with("file=") ? "file=" + file : w);
+  return r;
+}
+
+}  // namespace sg
