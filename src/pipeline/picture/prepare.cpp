@@ -8,6 +8,7 @@
 
 #include "base/all_ranks.h"
 #include "base/error.h"
+#include "base/file/file.h"
 #include "base/text/time_text.h"
 #include "data/ranks/over_all.h"
 #include "pipeline/file/read_part.h"
