@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A step of smoke by Sightglass and by Blender's Mantaflow, by turns: medians of milliseconds a step, with one thread and with two.
+"""A step of smoke by Sightglass and by Blender's Mantaflow, by turns: medians of milliseconds a step, with one thread and with two, and of
+the processor's time, which other work beside it changes less.
 
     bench/simulate/smoke_blender.py --program build/sightglass [--blender 'COMMAND in front of blender'] [--size 128] [--steps 20] [--rounds 3]
 
@@ -13,6 +14,7 @@ grids) is taken away. Ours are whole runs of the program less one that shows the
 import argparse
 import os
 import re
+import resource
 import shlex
 import shutil
 import statistics
@@ -51,14 +53,14 @@ def bake(frames):
     shutil.rmtree(folder, ignore_errors=True)
     os.makedirs(folder)
     kind = scene(frames)
-    begin = time.perf_counter()
+    begin, work = time.perf_counter(), time.process_time()
     bpy.ops.fluid.bake_all()
-    taken = time.perf_counter() - begin
+    taken = time.perf_counter() - begin, time.process_time() - work
     made = sum(len(f) for _, _, f in os.walk(folder))
     return taken, made, kind
 first, _, _ = bake(1)
 all, made, kind = bake(steps + 1)
-print("SECONDS", (all - first) / steps, bpy.app.version_string.replace(" ", ""), made, kind, flush=True)
+print("SECONDS", (all[0] - first[0]) / steps, (all[1] - first[1]) / steps, bpy.app.version_string.replace(" ", ""), made, kind, flush=True)
 '''
 
 
@@ -68,10 +70,10 @@ def blender(prefix, folder, size, steps, threads):
         f.write(INSIDE)
     ran = subprocess.run(prefix + ["blender", "-b", "--factory-startup", "-t", str(threads), "-P", script, "--", str(size), str(steps),
                                    str(threads), f"{folder}/cache"], capture_output=True, text=True)
-    found = re.search(r"SECONDS (\S+) (\S+) (\d+) (\S+)", ran.stdout)
-    if not found or int(found[3]) < steps:
+    found = re.search(r"SECONDS (\S+) (\S+) (\S+) (\d+) (\S+)", ran.stdout)
+    if not found or int(found[4]) < steps:
         sys.exit("Blender made no frames:\n" + ran.stdout[-2000:] + ran.stderr[-2000:])
-    return float(found[1]), f"Blender {found[2]} ({found[4]})"
+    return float(found[1]), float(found[2]), f"Blender {found[3]} ({found[5]})"
 
 
 def ours(program, folder, size, steps, threads):
@@ -79,12 +81,14 @@ def ours(program, folder, size, steps, threads):
 
     def seconds(frames):
         source = f"smoke size={size} bounds=0,1,0,1,0,1 source=0.5,0.5,0.15,0.1 frame={frame!r} time={frame * frames * (1 + 1e-9)!r}"
-        begin = time.perf_counter()
+        begin, work = time.perf_counter(), resource.getrusage(resource.RUSAGE_CHILDREN)
         subprocess.run([program, "convert", "-q", "--threads", str(threads), "--source", source, "-o", f"{folder}/out.vti"], check=True,
                        stderr=subprocess.DEVNULL)
-        return time.perf_counter() - begin
+        done = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return time.perf_counter() - begin, done.ru_utime + done.ru_stime - work.ru_utime - work.ru_stime
 
-    return (seconds(steps + 1) - seconds(1)) / steps, "Sightglass"
+    all_steps, first = seconds(steps + 1), seconds(1)
+    return (all_steps[0] - first[0]) / steps, (all_steps[1] - first[1]) / steps, "Sightglass"
 
 
 def main():
@@ -103,13 +107,15 @@ def main():
         for _ in range(o.rounds):
             for run in (lambda: blender(prefix, folder, o.size, o.steps, threads),
                         lambda: ours(o.program, folder, o.size, o.steps, threads)):
-                seconds, name = run()
-                results.setdefault(name, []).append(seconds)
-        medians = {name: statistics.median(r) for name, r in results.items()}
-        for name, seconds in medians.items():
-            print(f"{o.size}^3 {threads} thread{'s' if threads > 1 else ' '} {name:28} {seconds * 1000:9.1f} ms/step", flush=True)
-        peer, own = medians.values()
-        print(f"{o.size}^3 {threads} threads: Sightglass takes {own / peer:.2f} of the peer's time", flush=True)
+                seconds, work, name = run()
+                results.setdefault(name, []).append((seconds, work))
+        medians = [[statistics.median(part) for part in zip(*r)] for r in results.values()]
+        for name, (seconds, work) in zip(results, medians):
+            print(f"{o.size}^3 {threads} thread{'s' if threads > 1 else ' '} {name:28} {seconds * 1000:9.1f} ms/step, "
+                  f"of the processor {work * 1000:9.1f}", flush=True)
+        (peer, peer_work), (own, own_work) = medians
+        print(f"{o.size}^3 {threads} thread{'s' if threads > 1 else ' '} Sightglass takes {own / peer:.3f} of the peer's time, "
+              f"{own_work / peer_work:.3f} of its processor time", flush=True)
     shutil.rmtree(folder, ignore_errors=True)
 
 

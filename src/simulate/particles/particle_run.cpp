@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -15,6 +14,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "base/text/text.h"
+#include "simulate/particles/ways.h"
 
 namespace sg::swarm {
 
@@ -46,27 +46,6 @@ std::vector<std::array<double, 4>> emitters_of(const ParticlesInParams& p, const
     balls.push_back(b);
   }
   return balls;
-}
-
-// Of places before and after a step.
-Box3 box_of_ways(std::span<const Vec3> from, std::span<const Vec3> to) {
-  Box3 b;
-  const auto less = [](double p, double q) { return p < q ? p : q; };
-  const auto more = [](double p, double q) { return p > q ? p : q; };
-  for (size_t i = 0; i < from.size(); ++i) {
-    const Vec3 p = from[i], q = to[i];
-    b.lo = {less(less(p.x, q.x), b.lo.x), less(less(p.y, q.y), b.lo.y), less(less(p.z, q.z), b.lo.z)};
-    b.hi = {more(more(p.x, q.x), b.hi.x), more(more(p.y, q.y), b.hi.y), more(more(p.z, q.z), b.hi.z)};
-  }
-  return b;
-}
-
-// Whether a number is NaN, infinite or beyond 2^1008, by its exponent: without branches, several at a time.
-bool any_vast(std::span<const Vec3> values) {
-  uint64_t high = 0;
-  for (const Vec3& v : values)
-    for (const double c : {v.x, v.y, v.z}) high |= (std::bit_cast<uint64_t>(c) & uint64_t(0x7ff) << 52) + (uint64_t(0x010) << 52);
-  return high >> 63;
 }
 
 // Two zeros between six bits: the order of a curve through cubes of cells (Morton).

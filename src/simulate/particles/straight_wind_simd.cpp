@@ -30,25 +30,25 @@ template <class D>
 HWY_INLINE void find_cells(D d, const StraightGrid& g, const Vec3* x, size_t at, Cells& cells) {
   Float<D> p[3];
   hn::LoadInterleaved3(d, &x[at].x, p[0], p[1], p[2]);
-  Mask<D> inside = hn::Eq(p[0], p[0]);
-  Float<D> first = hn::Zero(d);
+  Mask<D> inside = p[0] == p[0];
+  Float<D> first = set(d, 0.0);
   double stride = 3;
   for (int a = 0; a < 3; ++a) {
-    const size_t n = g.dims[size_t(a)];
-    const Float<D> q = hn::Mul(hn::Sub(p[a], hn::Set(d, g.origin[a])), hn::Set(d, g.scale[a]));
-    const Mask<D> here = hn::And(hn::Ge(q, hn::Zero(d)), hn::Le(q, hn::Set(d, double(n - 1))));
-    inside = hn::And(inside, here);
+    const double last = double(g.dims[size_t(a)] - 1);
+    const Float<D> q = (p[a] - g.origin[a]) * g.scale[a];
+    const Mask<D> here = (q >= set(d, 0.0)) & (q <= set(d, last));
+    inside = inside & here;
     // The last point belongs to the last cell. Beyond, any cell serves.
-    const Float<D> held = hn::IfThenElseZero(here, q), cell = hn::Min(hn::Floor(held), hn::Set(d, double(n - 2)));
-    hn::Store(hn::Sub(held, cell), d, cells.share[a] + at);
-    first = hn::Add(first, hn::Mul(cell, hn::Set(d, stride))), stride *= double(n);
+    const Float<D> held = select(here, q, set(d, 0.0)), cell = min(floor(held), last - 1);
+    hn::Store(held - cell, d, cells.share[a] + at);
+    first = first + cell * stride, stride *= last + 1;
   }
-  hn::Store(hn::IfThenElse(inside, first, hn::Set(d, -1)), d, cells.first + at);
+  hn::Store(select(inside, first, set(d, -1.0)), d, cells.first + at);
 }
 
-template <class D>
-HWY_INLINE Float<D> mixed(Float<D> a, Float<D> b, Float<D> share) {
-  return hn::Add(a, hn::Mul(share, hn::Sub(b, a)));
+template <class V>
+HWY_INLINE V mixed(V a, V b, float share) {
+  return a + (b - a) * share;
 }
 
 // In a cell whose first values are at p; the fourth lane of a load reads one number beyond a pair of points.
@@ -64,18 +64,18 @@ HWY_INLINE void interpolate(const float* p, size_t row, size_t slice, float r, f
   const hn::FixedTag<float, 4> d4;
 #if HWY_MAX_BYTES >= 32
   const hn::FixedTag<float, 8> d8;  // of the cell's lower and upper side
-  const auto both = [&](const float* a) { return hn::Combine(d8, hn::LoadU(d4, a + slice), hn::LoadU(d4, a)); };
-  const auto along = [&](const float* a) { return mixed<decltype(d8)>(both(a), both(a + 3), hn::Set(d8, r)); };
-  const auto sides = mixed<decltype(d8)>(along(p), along(p + row), hn::Set(d8, s));
-  const auto sum = mixed<decltype(d4)>(hn::LowerHalf(d4, sides), hn::UpperHalf(d4, sides), hn::Set(d4, t));
+  const auto both = [&](const float* a) HWY_ATTR { return hn::Combine(d8, hn::LoadU(d4, a + slice), hn::LoadU(d4, a)); };
+  const auto along = [&](const float* a) HWY_ATTR { return mixed(both(a), both(a + 3), r); };
+  const auto sides = mixed(along(p), along(p + row), s);
+  const auto sum = mixed(hn::LowerHalf(d4, sides), hn::UpperHalf(d4, sides), t);
   const auto wide = hn::PromoteTo(hn::FixedTag<double, 4>(), sum);
   if (room) return hn::StoreU(wide, hn::FixedTag<double, 4>(), to);
   HWY_ALIGN double out[4];
   hn::Store(wide, hn::FixedTag<double, 4>(), out);
 #else
-  const auto along = [&](const float* a) { return mixed<decltype(d4)>(hn::LoadU(d4, a), hn::LoadU(d4, a + 3), hn::Set(d4, r)); };
-  const auto side = [&](const float* a) { return mixed<decltype(d4)>(along(a), along(a + row), hn::Set(d4, s)); };
-  const auto sum = mixed<decltype(d4)>(side(p), side(p + slice), hn::Set(d4, t));
+  const auto along = [&](const float* a) HWY_ATTR { return mixed(hn::LoadU(d4, a), hn::LoadU(d4, a + 3), r); };
+  const auto side = [&](const float* a) HWY_ATTR { return mixed(along(a), along(a + row), s); };
+  const auto sum = mixed(side(p), side(p + slice), t);
   HWY_ALIGN float out[4];
   hn::Store(sum, d4, out);
   (void)room;
