@@ -28,7 +28,8 @@ struct ProcessTask {
   bool first = false;  ///< the time until that file is there, not until the process ends
 };
 
-std::vector<Task> tasks(const std::string& data_folder);
+/// `large`: with those that take 10 GB.
+std::vector<Task> tasks(const std::string& data_folder, bool large);
 /// That of the peers' scripts, turned by so many degrees about the vertical axis.
 Camera peers_camera(double turn);
 /// Families of tasks, a file each.
@@ -48,7 +49,8 @@ void add_glyph_tasks(std::vector<Task>& tasks);
 void add_ftle_tasks(std::vector<Task>& tasks);
 void add_lic_tasks(std::vector<Task>& tasks);
 void add_lic2d_tasks(std::vector<Task>& tasks);
-void add_smoke_tasks(std::vector<Task>& tasks);
+/// `large`: with those that take 10 GB.
+void add_smoke_tasks(std::vector<Task>& tasks, bool large);
 /// The path tracer beside Embree, by the peers' mesh_1M.raw in the data folder.
 void add_trace_tasks(std::vector<Task>& tasks, const std::string& data_folder);
 /// Pictures of a volume of size^3 f32 that stays on disk: with --only volume_large alone, for it takes 11 GB there at 1625^3.

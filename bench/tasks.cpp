@@ -168,7 +168,7 @@ Task isosurface_picture(size_t n, bool discs) {
 
 }  // namespace
 
-std::vector<Task> tasks(const std::string& folder) {
+std::vector<Task> tasks(const std::string& folder, bool large) {
   std::vector<Task> t;
   for (const char* name : {"f256_raw.vti", "f256_zlib.vti", "f256_legacy.vtk", "tet1M_raw.vtu", "tet1M_zlib.vtu", "tet1M_legacy.vtk",
                            "mesh1M_binary.stl", "mesh1M_binary.ply", "mesh1M.obj", "mesh1M_raw.vtp"})
@@ -180,7 +180,7 @@ std::vector<Task> tasks(const std::string& folder) {
   add_volume_cells_tasks(t);
   add_lic_tasks(t);
   add_lic2d_tasks(t);
-  add_smoke_tasks(t);
+  add_smoke_tasks(t, large);
   add_trace_tasks(t, folder);
   t.push_back(gradients("grid", "uniform256"));
   t.push_back(gradients("tets", "tet1M"));

@@ -101,10 +101,16 @@ def main():
     a.add_argument("--foam", default="", help="in front of blockMesh and icoFoam, e.g. 'chroot ROOT env -C DIR'")
     a.add_argument("--folder", default="cavity-bench", help="seen by both at the same path")
     a.add_argument("--rounds", type=int, default=3)
+    a.add_argument("--re", type=int, action="append", help="this Reynolds number alone; may be repeated")
+    a.add_argument("--cells", type=int, help="along each side (even), with steps of 0.64 / cells; default: 64, and 128 from Re 400 on")
     o = a.parse_args()
     folder, prefix = os.path.abspath(o.folder), shlex.split(o.foam)
     print(f"{'Re':>5} {'cells':>7} {'steps':>6} {'':22} {'seconds':>8} {'ms/step':>8} {'difference to Ghia':>19}")
     for re_number, n, dt, end in ((100, 64, 0.01, 10), (400, 128, 0.005, 20), (1000, 128, 0.005, 40)):
+        if o.re and re_number not in o.re:
+            continue
+        if o.cells:
+            n, dt = o.cells, 0.64 / o.cells
         tries = {"icoFoam": lambda: foam(prefix, f"{folder}/foam", n, re_number, dt, end),
                  "sightglass, 1 thread": lambda: ours(o.program, folder, n, re_number, dt, end, 1, ""),
                  "sightglass": lambda: ours(o.program, folder, n, re_number, dt, end, 0, ""),

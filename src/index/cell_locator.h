@@ -2,6 +2,7 @@
 // Which cell holds a point, which point of the mesh is nearest, which face a ray meets, for every mesh kind. Grids are answered by
 // arithmetic, other meshes by a CellTree; points that come in order walk to the neighbour first.
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -58,6 +59,8 @@ class LocatorCursor {
   NearestPlace nearest(Vec3 x, double radius = HUGE_VAL);
   /// First hit of the ray x + t d, t in [t0, t1], with a 2D cell or a face of a solid cell (curved faces by their tessellation).
   std::optional<RayHit> first_hit(Vec3 x, Vec3 d, double t0 = 0, double t1 = HUGE_VAL);
+  /// The same of these cells alone, in any order; they are not hidden ones.
+  std::optional<RayHit> first_hit_among(std::span<const uint32_t> cells, Vec3 x, Vec3 d, double t0, double t1);
 
  private:
   struct State;

@@ -37,10 +37,25 @@ NearestPlace LocatorCursor::nearest(Vec3 x, double radius) {
   return best.cell < 0 ? NearestPlace{} : best;
 }
 
-std::optional<RayHit> LocatorCursor::first_hit(Vec3 x, Vec3 d, double t0, double t1) {
-  State& s = *state_;
+namespace {
+
+bool proper(Vec3 x, Vec3 d) {
   const double size2 = dot(d, d);
-  if (!(size2 > 0) || !std::isfinite(size2) || !std::isfinite(x.x + x.y + x.z)) return {};
+  return size2 > 0 && std::isfinite(size2) && std::isfinite(x.x + x.y + x.z);
+}
+
+// Takes the cell's hit where it is the first so far.
+void take_hit(CellProbe& probe, uint32_t cell, Vec3 x, Vec3 d, double t0, RayHit& best) {
+  Vec3 normal;
+  const double t = probe.hit(cell, x, d, t0, best.t, normal);
+  if (t < best.t || (t == best.t && (best.cell < 0 || int64_t(cell) < best.cell))) best = {int64_t(cell), t, normal};
+}
+
+}  // namespace
+
+std::optional<RayHit> LocatorCursor::first_hit(Vec3 x, Vec3 d, double t0, double t1) {
+  if (!proper(x, d)) return {};
+  State& s = *state_;
   RayHit best;
   best.t = t1;
   const auto& index = *s.index;
@@ -49,12 +64,19 @@ std::optional<RayHit> LocatorCursor::first_hit(Vec3 x, Vec3 d, double t0, double
     best = {h.cell, h.t, h.normal};
   } else {
     index.tree().along_ray(x, d, t0, t1, [&](uint32_t c) {
-      Vec3 normal;
-      const double t = s.probe.hit(c, x, d, t0, best.t, normal);
-      if (t < best.t || (t == best.t && (best.cell < 0 || int64_t(c) < best.cell))) best = {int64_t(c), t, normal};
+      take_hit(s.probe, c, x, d, t0, best);
       return best.t;
     });
   }
+  if (best.cell < 0) return {};
+  return best;
+}
+
+std::optional<RayHit> LocatorCursor::first_hit_among(std::span<const uint32_t> cells, Vec3 x, Vec3 d, double t0, double t1) {
+  if (!proper(x, d)) return {};
+  RayHit best;
+  best.t = t1;
+  for (const uint32_t c : cells) take_hit(state_->probe, c, x, d, t0, best);
   if (best.cell < 0) return {};
   return best;
 }

@@ -186,6 +186,11 @@ TEST_CASE("run: a pipeline file makes numbered pictures and films, of a file's s
   write_file(f + "one.yaml", "sightglass: 1\nsteps:\n  in: {read: ../flow_3.vti}\n");
   const Ran one = sightglass({"run", "one.yaml", "-o", "o_{n}.png"}, f);
   CHECK(one.err.find("flow_3.vti: has no time steps") != std::string::npos);
+  CHECK(one.err.find("leave {n} out of the picture's name") != std::string::npos);
+  const Ran still = sightglass({"convert", "../flow_3.vti", "--all-times", "-o", "o.vtkhdf"}, f);
+  CHECK(still.err.find("has no time steps") != std::string::npos);
+  CHECK(still.err.find("leave --all-times (and --times) out") != std::string::npos);
+  CHECK(still.err.find("picture") == std::string::npos);
 }
 
 TEST_CASE("series: real currents over degrees, day by day" * doctest::skip(no_data())) {

@@ -21,6 +21,7 @@
 #include "scene/choose/shared_scale.h"
 #include "scene/show/parts.h"
 #include "scene/show/volume.h"
+#include "simulate/run/kept_frames.h"
 
 namespace sg {
 
@@ -195,6 +196,8 @@ std::vector<double> make_film(PipelineFile plain, const FilmParams& params, cons
   if (!film.steps.empty() && is_movie(params.output) && !word_value(plain.picture, "title"))
     plain.picture.push_back("title=step {n} of {count}, t = {t}");
   if (callbacks.begin) callbacks.begin(film.times);
+  // Before anything is drawn steps from all over the series are looked at: simulations run once for that and for the pictures.
+  const KeptFrames kept(film.turns || !film.steps.empty() ? std::vector<double>() : film.times, allowed_memory() / 4 * 3);
 
   // The first picture chooses the looks of all.
   const auto cache = std::make_shared<Cache>(0);

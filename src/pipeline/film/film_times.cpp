@@ -101,7 +101,8 @@ Reads reads_of(const PipelineFile& file, Context& context) {
 }
 
 // "0:114" = those of the file in between; for sources 0, 1, ... 114.
-std::vector<double> times_to_draw(const std::string& asked, const PipelineFile& file, const Reads& reads, std::vector<size_t>& steps) {
+std::vector<double> times_to_draw(const std::string& asked, const PipelineFile& file, const Reads& reads, std::vector<size_t>& steps,
+                                  std::string_view without) {
   const auto ends = split(asked, ':');
   const bool range = ends.size() == 2;
   if (!asked.empty() && !range) return parse_times(asked, "--times");
@@ -113,7 +114,7 @@ std::vector<double> times_to_draw(const std::string& asked, const PipelineFile& 
                           const Operation* op = known_operation(s.operation);
                           return op && op->kind == OperationKind::source;
                         });
-  if (reads.path.empty() && !computed) fail_usage("has no time steps", reads.first, "leave {n} out of the picture's name");
+  if (reads.path.empty() && !computed) fail_usage("has no time steps", reads.first, std::string(without));
   if (const std::vector<double>& all = reads.times; !reads.path.empty()) {
     for (size_t k = 0; k < all.size(); ++k)
       if (all[k] >= *first && all[k] <= *last) times.push_back(all[k]), steps.push_back(k);
@@ -131,10 +132,10 @@ std::vector<double> times_to_draw(const std::string& asked, const PipelineFile& 
 
 }  // namespace
 
-FilmTimes film_times(const PipelineFile& file, const std::string& asked, Context& context) {
+FilmTimes film_times(const PipelineFile& file, const std::string& asked, Context& context, std::string_view without) {
   Reads reads = reads_of(file, context);
   FilmTimes film;
-  film.times = times_to_draw(asked, file, reads, film.steps);
+  film.times = times_to_draw(asked, file, reads, film.steps, without);
   film.still = std::move(reads.still);
   return film;
 }

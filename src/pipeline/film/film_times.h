@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/context.h"
@@ -19,8 +20,9 @@ struct FilmTimes {
   bool turns = false;           ///< the times are the camera's angles in degrees; nothing else moves
 };
 
-/// `asked` as FilmParams::times. Throws Error(usage) where nothing has times.
-FilmTimes film_times(const PipelineFile& file, const std::string& asked, Context& context);
+/// `asked` as FilmParams::times. Throws Error(usage) where nothing has times, with the hint `without`: what to ask for instead.
+FilmTimes film_times(const PipelineFile& file, const std::string& asked, Context& context,
+                     std::string_view without = "leave {n} out of the picture's name");
 
 /// One turn of the camera in `count` pictures, from the azimuth that the pipeline states on, which it then states as {t}.
 FilmTimes turn_camera(PipelineFile& file, int count);

@@ -27,7 +27,7 @@ std::string recipe_of(PipelineFile file) {
 
 SeriesWritten write_series(const PipelineFile& file, const SeriesParams& params, const WriteOptions& options, Context& context,
                            const std::function<void(size_t, double, const Data&)>& wrote) {
-  const FilmTimes times = film_times(file, params.times, context);
+  const FilmTimes times = film_times(file, params.times, context, "leave --all-times (and --times) out: it is converted whole");
   if (times.times.size() > 1 && at_time(file, times, 0).steps == at_time(file, times, 1).steps)
     fail_usage("nothing in it changes with time", "--times", "leave it out, or read a series, or compute one: --source");
   const auto writer = write_steps(params.output, {times.times, recipe_of(file), params.resume}, options, context);

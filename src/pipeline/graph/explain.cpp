@@ -78,7 +78,9 @@ bool reads_parts(const Node& node) {
 std::string does_text(const PlannedStep& s) {
   if (!s.frames) return s.does;
   std::string text = fmt::format("{}, {} frame{}", s.does, *s.frames, *s.frames == 1 ? "" : "s");
+  if (s.stored > 0) text += fmt::format(" after the {} stored", s.stored);
   if (s.steps > 0) text += fmt::format(" in ~{} steps", s.steps);
+  if (s.steps > 0 && !s.guess.empty()) text += fmt::format(" ({})", s.guess);
   return text;
 }
 
@@ -108,7 +110,7 @@ std::vector<PlannedStep> Graph::plan(std::span<const Target> targets) const {
     if (cached) p.bytes = *cached;
     else {
       const Estimate e = estimate_of(s, node, out);
-      p.bytes = e.bytes, p.seconds = e.seconds, p.frames = e.frames, p.steps = e.steps;
+      p.bytes = e.bytes, p.seconds = e.seconds, p.frames = e.frames, p.steps = e.steps, p.stored = e.stored, p.guess = e.guess;
     }
     if (cached || (!s.cut && std::holds_alternative<DataNode>(node.what))) p.state = PlannedStep::State::cached;
     out.push_back(std::move(p));

@@ -60,7 +60,8 @@ struct PlannedStep {
   double seconds = 0;                   ///< expected; 0 unless the step runs
   bool reads_parts = false;             ///< reads a file in a format of which parts can be read
   std::optional<uint64_t> frames = {};  ///< of a simulator that runs: see Estimate
-  uint64_t steps = 0;
+  uint64_t steps = 0, stored = 0;
+  std::string guess = {};
 };
 
 /// Adding is for one thread; evaluate and explain are for any number of threads, but not from inside a parallel loop.

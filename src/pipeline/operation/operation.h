@@ -29,6 +29,8 @@ struct Estimate {
   double seconds = 0;
   std::optional<uint64_t> frames = {};  ///< of a simulator: that it computes one from another
   uint64_t steps = 0;                   ///< of all of them together, about; 0: that is not known
+  uint64_t stored = 0;                  ///< the frame that a stored state goes on from: `frames` are those left
+  std::string guess = {};               ///< what `steps` was guessed from; "": it is known
 };
 
 /// Which fields an operation reads of its inputs, beside those that its parameters of type field name. Names are of parameters but for

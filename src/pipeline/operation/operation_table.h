@@ -175,7 +175,7 @@ template <class P, auto F>
 constexpr auto costs = [](Operation& o) {
   o.estimate = [](const ParamSet& params, std::span<const uint64_t>) {
     const auto cost = F(params.as<P>());
-    return Estimate{cost.bytes, cost.seconds, cost.frames, cost.steps};
+    return Estimate{cost.bytes, cost.seconds, cost.frames, cost.steps, cost.stored, cost.guess};
   };
 };
 /// Hook: the same of one in data: RunCost F(const P&, uint64_t bytes of the first input).
@@ -183,7 +183,7 @@ template <class P, auto F>
 constexpr auto costs_in_data = [](Operation& o) {
   o.estimate = [](const ParamSet& params, std::span<const uint64_t> inputs) {
     const auto cost = F(params.as<P>(), inputs.empty() ? 0 : inputs[0]);
-    return Estimate{cost.bytes, cost.seconds, cost.frames, cost.steps};
+    return Estimate{cost.bytes, cost.seconds, cost.frames, cost.steps, cost.stored, cost.guess};
   };
 };
 /// Hook: how many inputs a filter over a list takes; MAX -1 = any number.

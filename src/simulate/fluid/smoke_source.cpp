@@ -87,20 +87,37 @@ DatasetPtr smoke(const SmokeParams& p, Context& context) {
       "smoke", p, nullptr, {}, [] { return fluid::SmokeInput(); }, context);
 }
 
-RunCost cost_of_smoke(const SmokeParams& p) {
+namespace {
+
+// What `push` makes of air or dust that is moved by it through half of the room, or what comes in at the sides.
+double likely_speed(const SmokeParams& p, const fluid::MacGrid& g, double push) {
+  const Vec3 up = p.up.value_or(g.flat() ? Vec3(0, 1, 0) : Vec3(0, 0, 1));
+  double speed = std::max({length(p.jet), length(p.obstacle_velocity), std::sqrt(push * 0.5 * g.h * double(g.cells[g.flat() ? 1 : 2]))});
+  for (const fluid::Side& s : fluid::sides_of(p, g, up)) speed = std::max(speed, length(s.velocity));
+  return speed;
+}
+
+RunCost cost_of_air(const SmokeParams& p, const std::string& who, double more_push, double more_seconds) {
   constexpr double seconds_a_cell = 2e-7;
-  const double cells = fluid::smoke_grid(p, Context()).count();
+  const fluid::MacGrid g = fluid::smoke_grid(p, Context());
+  const double cells = double(g.count());
   const size_t number = p.type == FieldType::f64 ? 8 : 4, fields = p.obstacle.empty() ? 6 : 7;
   const double work = (number == 8 ? 2 : 1) * (p.reflect ? 2 : 1);
-  return cost_of_run(p, "smoke", uint64_t(cells) * fields * number, cells * work * seconds_a_cell, 0);
+  const double push = std::abs(p.lift * p.temperature) + std::abs(p.weight * p.density) + more_push;
+  return cost_of_flow(p, who, uint64_t(cells) * fields * number, cells * work * seconds_a_cell + more_seconds, p.cfl, g.h,
+                      likely_speed(p, g, push));
 }
+
+}  // namespace
+
+RunCost cost_of_smoke(const SmokeParams& p) { return cost_of_air(p, "smoke", 0, 0); }
 
 RunCost cost_of_dusty_smoke(const DustySmokeParams& p) {
   constexpr double seconds_a_particle = 4e-6;  // with some ten iterations
-  const RunCost air = cost_of_smoke(p);
   const double particles = p.dust + p.dust_rate * p.time;
-  const uint64_t bytes = p.show == DustShow::particles ? uint64_t(particles) * 56 : air.bytes * 7 / 6;
-  return {bytes, air.seconds + particles * double(*air.frames) * seconds_a_particle, air.frames};
+  RunCost cost = cost_of_air(p, "dusty_smoke", 0, particles * seconds_a_particle);
+  cost.bytes = p.show == DustShow::particles ? uint64_t(particles) * 56 : cost.bytes * 7 / 6;
+  return cost;
 }
 
 namespace {

@@ -2,84 +2,24 @@
 #include "simulate/particles/obstacles.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <utility>
 
 #include "base/error.h"
-#include "data/cells/cell_reader.h"
 
 namespace sg::swarm {
 
 namespace {
 
 constexpr int most_bounces = 12;  // of a particle in a step
-constexpr double cells_along = 96;
 
 }  // namespace
 
 void Obstacles::add(const DatasetPtr& data, const std::string& who, Context& context) {
   if (data->cell_count() == 0 || data->as<PointCloud>()) fail_usage("there is no surface to bounce off", who, "give a mesh with cells");
-  Surface s;
-  s.locator = std::make_unique<CellLocator>(data, context);
-  s.box = data->bounds();
-  const double size = std::max(s.box.diagonal(), 1e-300);
-  const Vec3 margin = Vec3(1, 1, 1) * (1e-6 * size);
-  s.box.lo -= margin, s.box.hi += margin;
-  const Vec3 extent = s.box.size();
-  const double most = std::max({extent.x, extent.y, extent.z});
-  for (int a = 0; a < 3; ++a) {
-    s.n[size_t(a)] = std::max(1, int(std::ceil(cells_along * extent[a] / most)));
-    s.scale[a] = s.n[size_t(a)] / extent[a];
-  }
-  s.filled.assign(size_t(s.n[0]) * size_t(s.n[1]) * size_t(s.n[2]), 0);
-  CellReader reader(data);
-  for (size_t c = 0; c < data->cell_count(); ++c) {
-    reader.open(c);
-    Box3 nodes;
-    for (const Vec3& p : reader.at()) nodes.add(p);
-    const Box3 box = reader.box();
-    if (box.empty()) continue;
-    // Flat cells fill only what their plane comes near.
-    Vec3 normal{};
-    double off = HUGE_VAL;
-    if (reader.at().size() >= 3 && box == nodes) {
-      const auto& at = reader.at();
-      normal = normalize(cross(at[1] - at[0], at[2] - at[0]));
-      off = length(normal) > 0 ? 0 : HUGE_VAL;
-      for (const Vec3& p : at) off = std::max(off, std::abs(dot(p - at[0], normal)));
-    }
-    int lo[3], hi[3];
-    for (int a = 0; a < 3; ++a) {
-      lo[a] = std::clamp(int((box.lo[a] - margin[a] - s.box.lo[a]) * s.scale[a]), 0, s.n[size_t(a)] - 1);
-      hi[a] = std::clamp(int((box.hi[a] + margin[a] - s.box.lo[a]) * s.scale[a]), 0, s.n[size_t(a)] - 1);
-    }
-    const Vec3 half{0.5 / s.scale.x, 0.5 / s.scale.y, 0.5 / s.scale.z};
-    const double reach = off + std::abs(normal.x) * half.x + std::abs(normal.y) * half.y + std::abs(normal.z) * half.z + length(margin);
-    for (int k = lo[2]; k <= hi[2]; ++k)
-      for (int j = lo[1]; j <= hi[1]; ++j)
-        for (int i = lo[0]; i <= hi[0]; ++i) {
-          const Vec3 middle = s.box.lo + Vec3(2 * i + 1, 2 * j + 1, 2 * k + 1) * half;
-          if (off == HUGE_VAL || std::abs(dot(middle - reader.at()[0], normal)) <= reach)
-            s.filled[size_t(i) + size_t(s.n[0]) * (size_t(j) + size_t(s.n[1]) * size_t(k))] = 1;
-        }
-  }
+  const double size = std::max(data->bounds().diagonal(), 1e-300);
   gap_ = std::max(gap_, 1e-9 * size);
-  surfaces_.push_back(std::move(s));
-}
-
-bool Obstacles::Surface::may_meet(Vec3 a, Vec3 b, int most_cells) const {
-  int lo[3], hi[3];
-  for (int c = 0; c < 3; ++c) {
-    const double p = (std::min(a[c], b[c]) - box.lo[c]) * scale[c], q = (std::max(a[c], b[c]) - box.lo[c]) * scale[c];
-    if (!(q >= 0 && p <= n[size_t(c)])) return false;
-    lo[c] = std::max(0, int(p)), hi[c] = std::min(n[size_t(c)] - 1, int(std::min(q, double(n[size_t(c)]))));
-  }
-  if ((hi[0] - lo[0] + 1) * (hi[1] - lo[1] + 1) * (hi[2] - lo[2] + 1) > most_cells) return true;
-  for (int k = lo[2]; k <= hi[2]; ++k)
-    for (int j = lo[1]; j <= hi[1]; ++j)
-      for (int i = lo[0]; i <= hi[0]; ++i)
-        if (filled[size_t(i) + size_t(n[0]) * (size_t(j) + size_t(n[1]) * size_t(k))]) return true;
-  return false;
+  surfaces_.push_back({std::make_unique<CellLocator>(data, context), NearCells(data, 1e-6 * size)});
 }
 
 Obstacles::Walker::Walker(const Obstacles& obstacles) : all_(obstacles) {
@@ -91,7 +31,7 @@ bool Obstacles::free(const Box3& box) const {
     for (int a = 0; a < 3; ++a)
       if (!(box.lo[a] >= box_->lo[a] && box.hi[a] <= box_->hi[a])) return false;
   for (const Surface& s : surfaces_)
-    if (s.may_meet(box.lo, box.hi, 4096)) return false;
+    if (s.near.may_meet(box.lo, box.hi, 4096)) return false;
   return true;
 }
 
@@ -105,8 +45,13 @@ Obstacles::Walker::Hit Obstacles::Walker::first(Vec3 x, Vec3 d) {
       if (t < best.t) best.t = t, best.normal = {}, best.normal[a] = to < lo ? 1 : -1;
     }
   for (size_t k = 0; k < cursors_.size(); ++k) {
-    if (!all_.surfaces_[k].may_meet(x, x + d)) continue;
-    if (const auto hit = cursors_[k].first_hit(x, d, 0, std::min(1.0, best.t)); hit && hit->t < best.t) best = {hit->t, hit->normal};
+    std::array<uint32_t, 24> cells;
+    size_t count = 0;
+    const bool all = all_.surfaces_[k].near.collect(x, x + d, cells, count);
+    if (all && count == 0) continue;
+    const double end = std::min(1.0, best.t);
+    const auto hit = all ? cursors_[k].first_hit_among({cells.data(), count}, x, d, 0, end) : cursors_[k].first_hit(x, d, 0, end);
+    if (hit && hit->t < best.t) best = {hit->t, hit->normal};
   }
   return best;
 }

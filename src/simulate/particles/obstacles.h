@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Surfaces and a box that particles bounce off, however fast they are.
 #pragma once
-#include <array>
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,6 +11,7 @@
 #include "base/vec.h"
 #include "data/dataset.h"
 #include "index/cell_locator.h"
+#include "simulate/particles/near_cells.h"
 
 namespace sg::swarm {
 
@@ -52,14 +51,9 @@ class Obstacles {
   };
 
  private:
-  // Which cells of a coarse grid over a surface may hold a part of it: most ways meet none.
   struct Surface {
     std::unique_ptr<CellLocator> locator;
-    Box3 box;
-    std::array<int, 3> n{};
-    Vec3 scale;
-    std::vector<uint8_t> filled;
-    bool may_meet(Vec3 a, Vec3 b, int most_cells = 64) const;
+    NearCells near;
   };
   Bounce bounce_;
   std::optional<Box3> box_;

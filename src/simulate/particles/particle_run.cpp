@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "base/text/text.h"
+#include "simulate/particles/ways.h"
 
 namespace sg::swarm {
 
@@ -20,7 +22,8 @@ namespace {
 
 constexpr size_t few = 1 << 15;        // particles whose order does not matter for speed
 constexpr size_t steps_together = 16;  // after which they have drifted apart
-constexpr size_t block = 1024;         // particles that are moved together, within a core's cache
+constexpr size_t block = 256;          // particles that are moved together, within a core's nearest cache
+constexpr size_t near = 32;            // of them, whose ways may all be far from obstacles
 
 std::vector<std::array<double, 4>> emitters_of(const ParticlesInParams& p, const std::string& who, const Box3& room, bool flat) {
   if (p.emitter.empty()) {
@@ -176,18 +179,19 @@ void ParticleRun::step(double t, double h, const Context& context) {
         if (!home_.empty()) forces.home = std::span<const Vec3>(home_).subspan(begin, n);
         thread_local Scratch scratch;
         thread_local std::vector<Vec3> x0, v0;
-        if (obstacles_.empty()) {
-          swarm::advance(params_.integrator, forces, t, h, x, v, scratch);
-        } else {
-          x0.assign(x.begin(), x.end()), v0.assign(v.begin(), v.end());
-          swarm::advance(params_.integrator, forces, t, h, x, v, scratch);
-          Box3 ways;
-          for (size_t i = 0; i < n; ++i) ways.add(x0[i]), ways.add(x[i]);
-          if (!obstacles_.free(ways)) {
-            Obstacles::Walker walker(obstacles_);
-            for (size_t i = 0; i < n; ++i) walker.walk(x0[i], v0[i], x[i], v[i], h);
+        if (!obstacles_.empty()) x0.assign(x.begin(), x.end()), v0.assign(v.begin(), v.end());
+        swarm::advance(params_.integrator, forces, t, h, x, v, scratch);
+        if (!obstacles_.empty()) {
+          std::optional<Obstacles::Walker> walker;
+          for (size_t first = 0; first < n; first += near) {
+            const size_t last = std::min(n, first + near);
+            if (obstacles_.free(box_of_ways(std::span<const Vec3>(x0).subspan(first, last - first), x.subspan(first, last - first))))
+              continue;
+            if (!walker) walker.emplace(obstacles_);
+            for (size_t i = first; i < last; ++i) walker->walk(x0[i], v0[i], x[i], v[i], h);
           }
         }
+        if (!any_vast(x) && !any_vast(v)) return;
         for (size_t i = 0; i < n; ++i)
           if (!std::isfinite(x[i].x + x[i].y + x[i].z + v[i].x + v[i].y + v[i].z))
             fail_data(fmt::format("particle {} grew beyond all numbers in frame {} (time {:.6g})", id_[begin + i], frame_ + 1, t + h), who_,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A dataset's vector field at many places, on any mesh: wind that takes particles along, or a force.
 #pragma once
-#include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -10,6 +10,7 @@
 #include "base/vec.h"
 #include "data/dataset.h"
 #include "filter/flow/flow_field.h"
+#include "simulate/particles/straight_wind.h"
 
 namespace sg::swarm {
 
@@ -23,13 +24,9 @@ class Wind {
   const DatasetPtr& dataset() const { return flow_->dataset(); }
 
  private:
-  template <class T>
-  void sample_grid(const T* values, std::span<const Vec3> x, std::span<Vec3> u) const;
   std::unique_ptr<FlowField> flow_;
   // A uniform grid along x, y and z is read without a cursor.
-  bool straight_ = false;
-  std::array<size_t, 3> dims_{};
-  Vec3 origin_, scale_;
+  std::optional<StraightGrid> straight_;
 };
 
 }  // namespace sg::swarm

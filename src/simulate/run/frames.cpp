@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulate/run/frames.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <string_view>
 
 #include "base/error.h"
+#include "base/file/file.h"
+#include "base/text/text.h"
 
 namespace sg {
 
@@ -17,9 +22,11 @@ void describe(Schema& s, FrameParams& p) {
   s("store_every", p.store_every, "Frames after which the state is stored; the last one is in any case.").range(1, 1000000);
 }
 
+double last_frame(const FrameParams& p, double time) { return std::floor(time / p.frame * (1 + 1e-12) + 1e-9); }
+
 size_t frame_at(const FrameParams& p, const std::string& who) {
   if (!std::isfinite(p.frame)) fail_usage("frames of infinite length", who + " frame", "give a finite time");
-  const double frames = std::floor(p.time / p.frame * (1 + 1e-12) + 1e-9);
+  const double frames = last_frame(p, p.time);
   if (!(frames <= 1e6)) fail_usage("that is more than a million frames away", who + " time", "ask for an earlier time or longer frames");
   return size_t(frames);
 }
@@ -27,9 +34,33 @@ size_t frame_at(const FrameParams& p, const std::string& who) {
 double equal_steps(double frame, double longest) { return std::max(1.0, std::ceil(frame / longest * (1 - 1e-12))); }
 
 RunCost cost_of_run(const FrameParams& p, const std::string& who, uint64_t bytes, double seconds_a_step, double steps_a_frame) {
-  const double frames = double(frame_at(p, who)), steps = frames * std::max(1.0, steps_a_frame);
-  return {bytes, steps * seconds_a_step, uint64_t(frames), steps_a_frame > 0 ? uint64_t(std::min(steps, 1e18)) : 0};
+  const uint64_t last = frame_at(p, who);
+  uint64_t stored = 0;
+  try {
+    if (!p.store.empty() && file_exists(p.store)) stored = StateFile(p.store).frame();
+  } catch (const Error&) {
+    // For the run to report.
+  }
+  if (stored > last) stored = 0;  // it begins anew for what lies before
+  const double frames = double(last - stored), steps = frames * std::max(1.0, steps_a_frame);
+  return {bytes, steps * seconds_a_step, last - stored, steps_a_frame > 0 ? uint64_t(std::min(steps, 1e18)) : 0, stored};
 }
+
+RunCost cost_of_flow(const FrameParams& p, const std::string& who, uint64_t bytes, double seconds_a_step, double cfl, double h,
+                     double speed) {
+  RunCost cost = cost_of_run(p, who, bytes, seconds_a_step, std::max(1.0, std::ceil(p.frame * speed / (cfl * h))));
+  cost.guess = fmt::format("cfl={} at speeds of about {:.2g}", exact_number(cfl), speed);
+  return cost;
+}
+
+namespace {
+
+std::atomic<uint64_t> frames_so_far = 0;
+
+}  // namespace
+
+uint64_t computed_frames() { return frames_so_far; }
+void detail::count_frame() { ++frames_so_far; }
 
 namespace {
 

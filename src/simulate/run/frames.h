@@ -13,20 +13,13 @@
 #include "base/context.h"
 #include "base/error.h"
 #include "base/file/file.h"
-#include "base/schema/schema.h"
 #include "data/dataset.h"
+#include "simulate/run/frame_params.h"
 #include "simulate/run/given_data.h"
+#include "simulate/run/kept_frames.h"
 #include "simulate/run/state_file.h"
 
 namespace sg {
-
-/// When, of every simulator, and where its state is kept.
-struct FrameParams {
-  double time = 0, frame = 0.04;
-  std::string store;
-  int store_every = 10;
-};
-void describe(Schema& s, FrameParams& p);
 
 /// The last whole frame before p.time. Throws Error(usage) beyond a million frames.
 size_t frame_at(const FrameParams& p, const std::string& who);
@@ -37,14 +30,25 @@ struct RunCost {
   double seconds = 0;
   std::optional<uint64_t> frames = {};  ///< none where there are no frames
   uint64_t steps = 0;                   ///< of all frames together, about; 0: that is not known
+  uint64_t stored = 0;                  ///< the frame that a stored state goes on from; `frames` and `steps` are those left
+  std::string guess = {};               ///< what the number of steps was guessed from; "": it follows from the parameters
 };
-/// Of a run whose frames take about so many steps each (0: not known).
+/// Of a run whose frames take about so many steps each (0: not known). A stored state is taken for one of this run.
 RunCost cost_of_run(const FrameParams& p, const std::string& who, uint64_t bytes, double seconds_a_step, double steps_a_frame);
+/// The same where steps take the fastest flow through at most `cfl` cells of size h: `speed` is guessed.
+RunCost cost_of_flow(const FrameParams& p, const std::string& who, uint64_t bytes, double seconds_a_step, double cfl, double h,
+                     double speed);
 /// How many equal steps of this length at most a frame takes.
 double equal_steps(double frame, double longest);
 
 /// Whether a run that takes so much is kept for the next call: at most a quarter of the memory allowed.
 bool may_keep(size_t bytes, const Context& context);
+
+/// Frames that the runs of this process have computed until now.
+uint64_t computed_frames();
+namespace detail {
+void count_frame();
+}
 
 /// A Run lists what its next frame depends on, so that it can be stored: each_part(f) calls f(list) for lists of numbers, whose lengths
 /// follow from the parameters, or for a Growing list, whose lengths consistent() checks. resume(context), where there is one, then finds
@@ -96,6 +100,7 @@ DatasetPtr frame_of_run(const std::string& who, Params params, Make&& make, Cont
   const FrameParams frames = params;
   params.time = 0, params.store.clear(), params.store_every = FrameParams().store_every;
   const std::string parameters = who + " " + params_text(schema_of(params)), key = parameters + " " + given.objects();
+  if (DatasetPtr kept_data = KeptFrames::find(key, frame)) return kept_data;
   bool stores = !frames.store.empty();
   const std::string state = stores ? key_of_state(parameters, given) : std::string();
   std::unique_ptr<Run> run;
@@ -114,9 +119,13 @@ DatasetPtr frame_of_run(const std::string& who, Params params, Make&& make, Cont
     context.check();
     context.progress(double(run->frame() - first) / double(frame - first), who);
     run->advance(context);
+    detail::count_frame();
+    if (run->frame() < frame && KeptFrames::wants(key, frames, run->frame()))
+      KeptFrames::keep(key, frames, run->frame(), run->dataset(context));
     if (stores && (run->frame() % size_t(frames.store_every) == 0 || run->frame() == frame)) store(*run, frames.store, state);
   }
   DatasetPtr result = run->dataset(context);
+  KeptFrames::keep(key, frames, frame, result);
   const std::lock_guard lock(mutex);
   kept.reset();
   size_t bytes = 0;

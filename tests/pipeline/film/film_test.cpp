@@ -5,6 +5,7 @@
 #include "base/file/file.h"
 #include "base/text/text.h"
 #include "image/codec.h"
+#include "simulate/run/frames.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -211,4 +212,38 @@ TEST_CASE("film: what has no time says so before anything is drawn") {
   params.times = "0,1";
   CHECK(error_of([&] { make_film(file, params, {}, callbacks, context); }).find("has no parameter 'time'") != std::string::npos);
   CHECK_FALSE(drawn);
+}
+
+TEST_CASE("film: a simulation runs once for the ranges of all pictures and for the pictures, which are those of single ones") {
+  const auto pipeline = [](const std::string& show) {
+    return parse_pipeline(
+        "sightglass: 1\nsteps:\n  air: {smoke: {size: 8, frame: 0.1, bounds: [0, 1, 0, 1, 0, 0]}}\nshow:\n  - {surface: {" + show +
+            "}}\npicture: {size: 60x40, legend: false, output: film.webm}\n",
+        "", picture_vocabulary());
+  };
+  // An automatic range, a stated one, and pictures that lie some frames apart.
+  for (const char* show : {"field: density", "field: density, range: [0, 1]"})
+    for (const char* times : {"0:1.2:7", "0:1.2:13"}) {
+      CAPTURE(show);
+      CAPTURE(times);
+      Context context;
+      FilmParams params;
+      params.times = times;
+      const uint64_t before = computed_frames();
+      const std::vector<Shot> shots = shots_of(pipeline(show), params, context);
+      CHECK(computed_frames() - before == 12);
+      PipelineFile last = shots.back().pipeline;
+      CHECK(make_picture(last, {}, context).image.pixels == shots.back().image.pixels);
+    }
+}
+
+TEST_CASE("film: where the frames of a simulation do not fit into the memory allowed, they are computed again") {
+  const std::vector<double> times{0, 1, 2};
+  const KeptFrames nothing(times, 0);
+  FrameParams p;
+  p.frame = 0.5;
+  CHECK_FALSE(KeptFrames::wants("run", p, 2));
+  const KeptFrames some(times, 1000);
+  CHECK(KeptFrames::wants("run", p, 2));
+  CHECK_FALSE(KeptFrames::wants("run", p, 3));
 }

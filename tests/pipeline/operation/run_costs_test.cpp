@@ -47,9 +47,28 @@ TEST_CASE("run costs: every operation with frames tells how many it takes, and l
 
 TEST_CASE("run costs: explain tells frames and steps of what runs") {
   CHECK(test::contains(explained("heat", {"time=1", "frame=0.1", "step=0.05"}), ", 10 frames in ~20 steps"));
-  CHECK(test::contains(explained("smoke", {"time=0.04", "size=8"}), ", 1 frame "));
+  CHECK(test::contains(explained("smoke", {"time=0.04", "size=8"}), ", 1 frame in ~1 steps (cfl=2 at speeds of about "));
+  // What comes in at 3 passes 0.05 * 3 * 64 = 9.6 cells a frame, at most 2 of them a step.
+  CHECK(test::contains(
+      explained("smoke", {"time=1", "frame=0.05", "size=64", "bounds=0,1,0,1,0,0", "sides=x0 inflow 3,0,0; x1 open", "lift=0", "weight=0"}),
+      ", 20 frames in ~100 steps (cfl=2 at speeds of about 3)"));
   CHECK(test::contains(explained("nbody", {"time=100", "frame=0.1", "step=0.02"}), ", 1000 frames in ~5000 steps"));
   CHECK_FALSE(test::contains(explained("poisson", {}), "frame"));
+}
+
+TEST_CASE("run costs: frames that are stored are not computed again") {
+  const std::string store = test::fresh_folder("costs") + "run";
+  const std::vector<std::string> words{"size=8", "frame=0.1", "store=" + store};
+  const auto with = [&](const std::string& time) {
+    std::vector<std::string> all = words;
+    all.push_back(time);
+    return all;
+  };
+  Graph g;
+  Context context;
+  g.evaluate(std::vector<Target>{{g.add_operation("smoke", with("time=0.4")), {}}}, context);
+  CHECK(test::contains(explained("smoke", with("time=1")), ", 6 frames after the 4 stored in ~"));
+  CHECK(test::contains(explained("smoke", with("time=0.2")), ", 2 frames in ~"));
 }
 
 TEST_CASE("run costs: a run that grows more costly with what there is tells so") {

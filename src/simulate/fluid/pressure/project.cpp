@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "simulate/fluid/lattice_sums.h"
 
 namespace sg::fluid {
 
@@ -123,7 +124,15 @@ template <class T>
 SolveReport Projection<T>::apply(Faces<T>& u, Lattice<T>& p, double tolerance, Spare<T> spare, const Context& context) {
   Lattice<T>& b = shaped(spare[4], grid_.cells);
   divergence(u, b, context);
-  for (size_t i = 0; i < b.values.size(); ++i) b.values[i] = !air_.empty() && air_[i] ? T(0) : -b.values[i];
+  parallel_for(
+      b.values.size(), values_at_once,
+      [&, bv = b.values.data()](size_t begin, size_t end) {
+        if (air_.empty())
+          for (size_t i = begin; i < end; ++i) bv[i] = -bv[i];
+        else
+          for (size_t i = begin; i < end; ++i) bv[i] = air_[i] ? T(0) : -bv[i];
+      },
+      &context);
   for (size_t i = 0; i < air_.size(); ++i)
     if (air_[i]) p.values[i] = 0;
   const SolveReport report = solver_.solve(b, p, tolerance, spare.first(4), context);

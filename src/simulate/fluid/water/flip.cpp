@@ -263,8 +263,10 @@ void describe(Schema& s, FlipLiquidParams& p) {
 
 RunCost cost_of_flip(const FlipLiquidParams& p) {
   constexpr double seconds_a_cell = 1.5e-6;
-  const double cells = fluid::smoke_grid(fluid::as_smoke(p), Context()).count();
-  return cost_of_run(p, "flip_liquid", uint64_t(cells) * 4 * sizeof(float), cells * seconds_a_cell, 0);
+  const fluid::MacGrid g = fluid::smoke_grid(fluid::as_smoke(p), Context());
+  const double cells = double(g.count()), height = g.h * double(g.cells[g.flat() ? 1 : 2]);
+  const double fall = std::sqrt(length(p.gravity.value_or(Vec3(0, 0, -9.81))) * height);  // from half of the height
+  return cost_of_flow(p, "flip_liquid", uint64_t(cells) * 4 * sizeof(float), cells * seconds_a_cell, p.cfl, g.h, fall);
 }
 
 DatasetPtr flip_liquid(const FlipLiquidParams& p, Context& context) {
