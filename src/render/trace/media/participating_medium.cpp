@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "color/black_body.h"
+#include "render/shade/black_body.h"
 #include "render/shade/exp.h"
 
 namespace sg::trace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "color/black_body.h"
+#include "render/shade/black_body.h"
 #include "support/test.h"
 
 using namespace sg;
