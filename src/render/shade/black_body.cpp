@@ -27,7 +27,10 @@ Vec3 black_body_xyz(double kelvin) {
   if (!(kelvin >= 100)) return {};
   constexpr double c2 = 1.438776877e7;  // h c / k in nm K
   Vec3 sum;
-  for (double nm = 360; nm <= 830; nm += 5) sum += observer(nm) * (std::pow(nm / 560, -5) / std::expm1(c2 / (nm * kelvin)));
+  for (double nm = 360; nm <= 830; nm += 5) {
+    const double wave = 560 / nm, square = wave * wave;
+    sum += observer(nm) * (square * square * wave / std::expm1(c2 / (nm * kelvin)));
+  }
   return sum;
 }
 
