@@ -78,8 +78,8 @@ class HdrReader {
     if (!h || !w || parts[0] != "-Y" || parts[2] != "+X") fail("its rows do not run from the top left; only -Y HEIGHT +X WIDTH is read");
     if (*h < 1 || *w < 1 || *h > 32768 || *w > 32768) fail(fmt::format("says that it has {} x {} pixels", *w, *h));
     const double pixels = double(*w) * double(*h), bytes = pixels * sizeof(Vec3f);
-    // The shortest row takes 4 bytes for every 4 x 127 of its pixels and colours.
-    if (pixels > 0x1p26 || (bytes > 0x1p28 && bytes > 100 * double(bytes_.size())))
+    // A run takes 2 bytes for at most 127 values of a channel: 8 bytes for 127 pixels.
+    if (pixels > 0x1p26 || (bytes > 0x1p28 && bytes > 200 * double(bytes_.size())))
       fail(fmt::format("says that it has {} x {} pixels, more than a file of {} may hold", *w, *h, human_bytes(bytes_.size())));
     p.width = int(*w), p.height = int(*h);
   }

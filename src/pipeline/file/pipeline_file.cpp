@@ -8,6 +8,7 @@
 #include <map>
 
 #include "base/file/file.h"
+#include "base/text/quoted_word.h"
 #include "base/text/text.h"
 #include "pipeline/file/yaml_tree.h"
 #include "pipeline/graph/graph_state.h"
@@ -200,7 +201,7 @@ class FileParser {
       unique_keys(map, of + ": ");
       for (const auto& [kind, body] : map.pairs) {
         std::string thing = kind.text;
-        for (const std::string& w : parse_words(body, kind.text)) thing += w.find(' ') == w.npos ? " " + w : " '" + w + "'";
+        for (const std::string& w : parse_words(body, kind.text)) thing += " " + quoted_word(w);
         add(thing);
       }
     };

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <exception>
 #include <mutex>
 #include <set>
@@ -197,7 +198,7 @@ std::vector<double> make_film(PipelineFile plain, const FilmParams& params, cons
     plain.picture.push_back("title=step {n} of {count}, t = {t}");
   if (callbacks.begin) callbacks.begin(film.times);
   // Before anything is drawn steps from all over the series are looked at: simulations run once for that and for the pictures.
-  const KeptFrames kept(film.turns || !film.steps.empty() ? std::vector<double>() : film.times, allowed_memory() / 4 * 3);
+  const KeptFrames kept(film.turns || !film.steps.empty() ? std::vector<double>() : film.times, allowed_memory() / 2);
 
   // The first picture chooses the looks of all.
   const auto cache = std::make_shared<Cache>(0);
@@ -211,7 +212,7 @@ std::vector<double> make_film(PipelineFile plain, const FilmParams& params, cons
     settle_choices(plain, some, graph, each.results, held, silent);
   }
   held = results_of(at_time(plain, film, 0), each.results, cache, silent);
-  const size_t one_step = array_memory();
+  const size_t one_step = array_memory() - std::min(array_memory(), KeptFrames::bytes());
   PipelineFile base = with_looks(plain, at_time(plain, film, 0), each, silent);
   each.coloring.clear();
   load_transfer_files(base);  // what they state is not chosen

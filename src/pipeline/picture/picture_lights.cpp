@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/file/file.h"
 #include "data/dataset.h"
+#include "data/memory/memory_budget.h"
 #include "image/image.h"
 #include "io/io.h"
 
@@ -25,7 +26,9 @@ LinearPicture picture_of(const Data& data, const std::string& path) {
   const Field* field = nullptr;
   for (const Field& f : (*dataset)->fields())
     if (f.association == Association::point && !field) field = &f;
-  if (!field) fail_data("has no pixels", path);
+  if (!field) fail_data("has no pixels", path, "give a picture of all directions");
+  const double pixels = double(grid->dims[0]) * double(grid->dims[1]);
+  if (pixels > 0x1p26) fail_data(fmt::format("has {} x {} pixels", grid->dims[0], grid->dims[1]), path, "make it smaller: 8192 x 4096 do");
   LinearPicture p;
   p.width = int(grid->dims[0]), p.height = int(grid->dims[1]);
   p.pixels.resize(grid->dims[0] * grid->dims[1]);
@@ -52,10 +55,12 @@ std::shared_ptr<const LinearPicture> read_environment(const std::string& path, C
   else p = picture_of(read_data(path, {}, context), path);
   for (size_t i = 0; i < p.pixels.size(); ++i)
     for (int c = 0; c < 3; ++c)
-      if (!(p.pixels[i][c] >= 0 && std::isfinite(p.pixels[i][c])))
+      if (!(p.pixels[i][c] >= 0 && p.pixels[i][c] <= 1e30f))
         fail_data(
             fmt::format("pixel {},{} is {}; light is finite and not negative", i % size_t(p.width), i / size_t(p.width), p.pixels[i][c]),
-            path);
+            path, "pixels of light are between 0 and 1e30");
+  constexpr double bytes_of_pixel = 64;  // with what directions are drawn by
+  need_memory(double(p.pixels.size()) * bytes_of_pixel, "the picture of an environment", path, "make it smaller");
   return std::make_shared<const LinearPicture>(std::move(p));
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // PhaseFunction: where a volume scatters light, by the kind that was chosen for it.
 #pragma once
+#include <algorithm>
+#include <numbers>
+
 #include "render/shade/phase.h"
 #include "scene/items/volume_scattering.h"
 

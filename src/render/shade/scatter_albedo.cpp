@@ -17,4 +17,13 @@ Vec3f single_scatter_albedo(Vec3f surface, float g) {
   return scattered;
 }
 
+Vec3f surface_albedo(Vec3f scattered, float g) {
+  Vec3f surface;
+  for (int i = 0; i < 3; ++i) {
+    const double a = std::clamp(double(scattered[i]), 0.0, 1.0), s = std::sqrt(std::max(0.0, (1 - a) / (1 - double(g) * a)));
+    surface[i] = float((1 - s) * (1 - 0.139 * s) / (1 + 1.17 * s));
+  }
+  return surface;
+}
+
 }  // namespace sg

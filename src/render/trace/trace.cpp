@@ -138,7 +138,10 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
     context.warn("nothing shines: no light, no environment, no material with emission; the picture is dark");
   const auto integrator = make_integrator(options);
   Frame frame(projection.width, projection.height);
-  if (world.empty()) return frame;
+  if (world.empty()) {
+    if (backdrop.seen) put_behind(frame, Eye(projection, world.geometry()), backdrop);
+    return frame;
+  }
   if (lights_whole_picture(options.integrator)) {
     if (world.has_media())
       fail_usage(fmt::format("integrator={} does not light volumes", word_of(options.integrator)), "integrator", "use integrator=path");
@@ -198,8 +201,10 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
             Hit hit;
             if (world.geometry().nearest(ray, hit)) frame.ids[at] = prepared->items[hit.object].id;
             if (media) {
+              // Where half of the light is gone; of several volumes at one place, about there.
               RandomStream random(at);
-              const auto matter = media->collide({ray.origin, ray.direction, hit.t}, 0.5f, random);  // where half of the light is gone
+              const float passes = media->passes_exactly({ray.origin, ray.direction, hit.t});
+              const auto matter = passes <= 0.5f ? media->collide_surely(0.5f / (1 - passes), random) : std::nullopt;
               if (matter) hit.t = matter->t, frame.ids[at] = matter->item + 1;
             }
             if (frame.ids[at] != 0) frame.depth[at] = float((start + eye.world_length(hit.t)) / per_depth);

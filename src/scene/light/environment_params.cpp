@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/text/quoted_word.h"
 #include "base/text/text.h"
 #include "scene/light/light_params.h"
 
@@ -22,7 +23,7 @@ constexpr EnvironmentKind environment_kind(std::string_view name, std::string_vi
   return k;
 }
 
-constexpr std::string_view picture_kind = "picture";
+constexpr std::string_view picture_kind = "panorama";
 constexpr std::string_view background_doc = "Show it behind the data, in the place of the picture's background.";
 
 const EnvironmentKind* kind_named(std::string_view name) {
@@ -113,13 +114,23 @@ std::optional<EnvironmentParams> parse_environment(const std::string& text) {
   return e;
 }
 
+namespace {
+
+// As set_params() understands it.
+bool names_file(const std::string& word) {
+  const size_t sign = word.find('=');
+  return sign != word.npos && equal_ignoring_case(trim(std::string_view(word).substr(0, sign)), "file");
+}
+
+}  // namespace
+
 std::string environment_file(const std::string& text) {
   try {
     const std::vector<std::string> all = words_of(text);
     if (all.empty() || !equal_ignoring_case(all[0], picture_kind)) return {};
     std::string file;
     for (const std::string& w : all)
-      if (w.starts_with("file=")) file = w.substr(5);
+      if (names_file(w)) file = w.substr(w.find('=') + 1);
     return file;
   } catch (const Error&) {  // a quote that is not closed: parse_environment() tells of it
     return {};
@@ -127,12 +138,8 @@ std::string environment_file(const std::string& text) {
 }
 
 std::string with_environment_file(const std::string& text, const std::string& file) {
-  const auto quoted = [](const std::string& w) {
-    if (w.find(' ') == std::string::npos) return w;
-    return w.find('\'') == std::string::npos ? "'" + w + "'" : '"' + w + '"';
-  };
   std::string r;
-  for (const std::string& w : words_of(text)) r += (r.empty() ? "" : " ") + quoted(w.starts_with("file=") ? "file=" + file : w);
+  for (const std::string& w : words_of(text)) r += (r.empty() ? "" : " ") + quoted_word(names_file(w) ? "file=" + file : w);
   return r;
 }
 

@@ -22,8 +22,8 @@ NearCells::NearCells(const DatasetPtr& data, double margin) : box_(data->bounds(
   const Vec3 extent = box_.size();
   const double most = std::max({extent.x, extent.y, extent.z});
   for (int a = 0; a < 3; ++a) {
-    n_[size_t(a)] = std::max(1, int(std::ceil(cells_along * extent[a] / most)));
-    scale_[a] = n_[size_t(a)] / extent[a];
+    n_[size_t(a)] = most > 0 ? std::max(1, int(std::ceil(cells_along * extent[a] / most))) : 1;
+    scale_[a] = extent[a] > 0 ? n_[size_t(a)] / extent[a] : 0;
   }
   words_ = (size_t(n_[0]) + 63) / 64;
   filled_.assign(row(0, n_[2]), 0);
@@ -51,8 +51,8 @@ NearCells::NearCells(const DatasetPtr& data, double margin) : box_(data->bounds(
       for (const Vec3& p : at) off = std::max(off, std::abs(dot(p - at[0], normal)));
     }
     Part p;
-    part(box.lo - wider, box.hi + wider, p);
-    const Vec3 half{0.5 / scale_.x, 0.5 / scale_.y, 0.5 / scale_.z};
+    if (!part(box.lo - wider, box.hi + wider, p)) continue;
+    const Vec3 half = box_.size() * Vec3(0.5 / n_[0], 0.5 / n_[1], 0.5 / n_[2]);
     const double reach = off + std::abs(normal.x) * half.x + std::abs(normal.y) * half.y + std::abs(normal.z) * half.z + length(wider);
     for (int k = p.lo[2]; k <= p.hi[2]; ++k)
       for (int j = p.lo[1]; j <= p.hi[1]; ++j)

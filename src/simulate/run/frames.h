@@ -100,7 +100,10 @@ DatasetPtr frame_of_run(const std::string& who, Params params, Make&& make, Cont
   const FrameParams frames = params;
   params.time = 0, params.store.clear(), params.store_every = FrameParams().store_every;
   const std::string parameters = who + " " + params_text(schema_of(params)), key = parameters + " " + given.objects();
-  if (DatasetPtr kept_data = KeptFrames::find(key, frame)) return kept_data;
+  // Kept frames outlive what a run was given: their name is its content, not where it lies.
+  const std::string kept_name = given.empty() || !KeptFrames::any() ? key : key_of_state(parameters, given);
+  if (frames.store.empty())
+    if (DatasetPtr kept_data = KeptFrames::find(kept_name, frame)) return kept_data;
   bool stores = !frames.store.empty();
   const std::string state = stores ? key_of_state(parameters, given) : std::string();
   std::unique_ptr<Run> run;
@@ -120,12 +123,12 @@ DatasetPtr frame_of_run(const std::string& who, Params params, Make&& make, Cont
     context.progress(double(run->frame() - first) / double(frame - first), who);
     run->advance(context);
     detail::count_frame();
-    if (run->frame() < frame && KeptFrames::wants(key, frames, run->frame()))
-      KeptFrames::keep(key, frames, run->frame(), run->dataset(context));
+    if (run->frame() < frame && KeptFrames::wants(kept_name, frames, run->frame()))
+      KeptFrames::keep(kept_name, frames, run->frame(), run->dataset(context));
     if (stores && (run->frame() % size_t(frames.store_every) == 0 || run->frame() == frame)) store(*run, frames.store, state);
   }
   DatasetPtr result = run->dataset(context);
-  KeptFrames::keep(key, frames, frame, result);
+  KeptFrames::keep(kept_name, frames, frame, result);
   const std::lock_guard lock(mutex);
   kept.reset();
   size_t bytes = 0;

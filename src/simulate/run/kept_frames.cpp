@@ -49,6 +49,18 @@ KeptFrames::~KeptFrames() {
   gone.splice(gone.begin(), all, std::find_if(all.begin(), all.end(), [&](const State& s) { return &s == state_; }));
 }
 
+bool KeptFrames::any() {
+  const std::lock_guard lock(mutex);
+  return !living<State>().empty();
+}
+
+size_t KeptFrames::bytes() {
+  const std::lock_guard lock(mutex);
+  size_t sum = 0;
+  for (const State& s : living<State>()) sum += s.bytes;
+  return sum;
+}
+
 DatasetPtr KeptFrames::find(const std::string& key, size_t frame) {
   const std::lock_guard lock(mutex);
   for (const State& s : living<State>())

@@ -20,6 +20,10 @@ class KeptFrames {
   KeptFrames(const KeptFrames&) = delete;
   KeptFrames& operator=(const KeptFrames&) = delete;
 
+  /// Whether one lives.
+  static bool any();
+  /// Of those that live, together.
+  static size_t bytes();
   /// What was kept of the run `key`; null: nothing.
   static DatasetPtr find(const std::string& key, size_t frame);
   /// Whether somebody wants this frame of a run, and none has it.

@@ -246,4 +246,17 @@ TEST_CASE("film: where the frames of a simulation do not fit into the memory all
   const KeptFrames some(times, 1000);
   CHECK(KeptFrames::wants("run", p, 2));
   CHECK_FALSE(KeptFrames::wants("run", p, 3));
+  FieldSet fields;
+  fields.add({"f", Association::point, Array::from_vector(std::vector<double>(8)), "", Role::scalars});
+  UniformGrid g;
+  g.dims = {2, 2, 2};
+  const DatasetPtr small = make_dataset(g, fields);  // 64 bytes
+  KeptFrames::keep("run", p, 2, small);
+  CHECK(KeptFrames::find("run", 2) == small);
+  CHECK(KeptFrames::bytes() == 64);
+  g.dims = {6, 6, 6};
+  FieldSet more;
+  more.add({"f", Association::point, Array::from_vector(std::vector<double>(216)), "", Role::scalars});
+  KeptFrames::keep("run", p, 4, make_dataset(g, more));  // 1728 bytes are too many
+  CHECK(KeptFrames::find("run", 4) == nullptr);
 }

@@ -73,14 +73,16 @@ TEST_CASE("environment: kinds, or the name of a file; what cannot be right is re
   CHECK(picture.file == "halls/hall.hdr");
   CHECK(picture.rotate == 90);
   CHECK(environment_file("'my hall.hdr' strength=2") == "my hall.hdr");
-  CHECK(environment_file("picture strength=2 file=a.png") == "a.png");
+  CHECK(environment_file("panorama strength=2 file=a.png") == "a.png");
+  CHECK(environment_file("panorama 'file =a.png'") == "a.png");
+  CHECK(environment_file(with_environment_file("panorama file=a.png", "it's/hall.hdr")) == "it's/hall.hdr");
   CHECK(environment_file("sky") == "");
   CHECK(environment_file("'sky") == "");
   const std::string moved = with_environment_file("'my hall.hdr' strength=2", "../the hall.hdr");
   CHECK(environment_file(moved) == "../the hall.hdr");
   CHECK(std::get<PictureEnvironmentParams>(*parse_environment(moved)).strength == 2);
   CHECK(test::contains(no_environment("skye"), "did you mean 'sky'?"));
-  CHECK(test::contains(no_environment("picture"), "no file"));
+  CHECK(test::contains(no_environment("panorama"), "no file"));
   CHECK(test::contains(no_environment("sky elevation=100"), "90"));
   CHECK(test::contains(no_environment("even brightness=0"), "above 0"));
   CHECK(test::contains(no_environment("even color=1,-1,0"), "not a colour"));

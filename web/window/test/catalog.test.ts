@@ -24,6 +24,7 @@ const free: Record<string, string> = {
   "clip colors widgets transfer": "a notation of their own; the tab of colours writes colors and widgets",
   "second shape size_by": "one of some words or a field, which are suggested",
   "x y z": "a column of a table; the fields are suggested",
+  "lights environment": "kinds with words of their own",
   "measurements": "what a window keeps for itself",
 };
 const known = new Set(Object.keys(free).flatMap((names) => names.split(" ")));

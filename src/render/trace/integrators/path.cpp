@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "render/trace/integrators/integrator.h"
 #include "render/trace/light/luminance.h"
@@ -14,7 +16,7 @@ namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
 /// Matter turns light much more often than surfaces do.
-constexpr int turns_in_media = 128;
+constexpr int turns_per_bounce = 128;
 
 bool is_dark(Vec3f c) { return !(c.x > 0 || c.y > 0 || c.z > 0); }
 float most(Vec3f c) { return std::max({c.x, c.y, c.z}); }
@@ -27,9 +29,11 @@ struct Path {
   bool straight = true;                   // from the camera on, through what is translucent
   Vec3f turned_at;                        // where the direction was drawn
   float since = 0;                        // and how far the path has come
-  int turns = 0;
+  int turns = 0, turns_in_media = 0;      // of these
+  float share = 1;                        // of the pixel that it stands for
 
   explicit Path(const Ray& first) : ray(first), turned_at(first.origin) {}
+  int bounces() const { return turns - turns_in_media; }
 
   void turn(Vec3f from, Vec3f direction, float density) {
     ++turns, straight = false, pdf = density, turned_at = from, since = 0;
@@ -46,7 +50,8 @@ class PathIntegrator : public Integrator {
     const Media::Borrowed media = world.borrow_media();
     Estimate out;
     Path path(first);
-    if (media) {
+    const bool split = media && media->exact();
+    if (split) {
       // What the viewer sees of matter, and what is seen through it: both, as far as there is of each.
       Hit hit;
       path.ray.t_max = world.geometry().nearest(first, hit) ? hit.t : infinite;
@@ -55,15 +60,15 @@ class PathIntegrator : public Integrator {
         const float u = sampler.next();
         RandomStream random(sampler.stream());
         Path scattered = path;
-        scattered.throughput = scattered.throughput * (1 - passes);
+        scattered.share = 1 - passes, scattered.throughput = scattered.throughput * scattered.share;
         const auto matter = media->collide_surely(u, random);
         if (matter && scatter(world, media.get(), *matter, scattered, sampler, out))
           follow(world, media.get(), scattered, false, sampler, out);
       }
-      path.throughput = path.throughput * passes;
+      path.share = passes, path.throughput = path.throughput * passes;
       if (!(passes > 0)) return out;
     }
-    follow(world, media.get(), path, true, sampler, out);
+    follow(world, media.get(), path, split, sampler, out);
     return out;
   }
 
@@ -103,7 +108,7 @@ class PathIntegrator : public Integrator {
       out.radiance += path.throughput * v.emission * power_weight(path.pdf, p);
     }
     const Vec3f wo = v.frame.to_local(-path.ray.direction);
-    if (path.turns < bounces_) {
+    if (path.bounces() < bounces_) {
       const float choice = sampler.next();
       const Vec2f u = sampler.next2();
       if (!v.bsdf.delta_only()) {
@@ -123,7 +128,7 @@ class PathIntegrator : public Integrator {
     const float roulette = sampler.next();
     if (!s || is_dark(s->weight) || (mirrors_only_ && !s->delta)) return false;
     const bool passes = s->delta && s->transmitted && s->eta == 1 && dot(s->direction, wo) < -0.9999f;
-    if (!passes && path.turns >= bounces_) return false;  // what is translucent is seen through all the same
+    if (!passes && path.bounces() >= bounces_) return false;  // what is translucent is seen through all the same
     const Vec3f direction = normalize(v.frame.to_world(s->direction));
     // What the shading normal calls one side and the surface the other is no way for light.
     if ((dot(direction, v.point.face_normal) > 0) != (s->direction.z > 0)) return false;
@@ -139,7 +144,7 @@ class PathIntegrator : public Integrator {
   bool scatter(const World& world, MediaWalk* media, const Collision& c, Path& path, Sampler& sampler, Estimate& out) const {
     out.radiance += path.throughput * c.emission;
     path.throughput = path.throughput * c.albedo;
-    if (is_dark(path.throughput) || path.turns >= turns_in_media * bounces_) return false;
+    if (is_dark(path.throughput) || path.turns_in_media >= turns_per_bounce * bounces_) return false;
     const bool last = c.last || mirrors_only_;
     const Vec3f along = path.ray.direction, at = path.ray.origin + along * c.t, from = c.on_surface ? at + c.normal * c.clear : at;
     const auto scattered = [&](Vec3f direction) -> Scattered {
@@ -164,12 +169,12 @@ class PathIntegrator : public Integrator {
       direction = LocalFrame::about(along).to_world({sine * std::cos(turn), sine * std::sin(turn), cosine});
     }
     direction = normalize(direction);
-    path.turn(from, direction, scattered(direction).pdf);
+    path.turn(from, direction, scattered(direction).pdf), ++path.turns_in_media;
     return path.turns <= 3 || survives(path, 1, roulette);
   }
 
   static bool survives(Path& path, float chance, float u) {
-    const float stay = std::min(chance, most(path.throughput));
+    const float stay = std::min(chance, most(path.throughput) / path.share);
     if (u >= stay) return false;
     path.throughput = path.throughput / stay;
     return true;

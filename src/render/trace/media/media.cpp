@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "data/bricked.h"
 #include "render/volume/effects/scatter_colors.h"
 #include "render/volume/natural_units.h"
 #include "render/volume/prepare_cast.h"
@@ -25,7 +26,8 @@ void check(const VolumeItem& item) {
 }
 
 void check_glow(const VolumeItem& item, const ColorScale& shown) {
-  if (item.scattering.black_body && !(shown.hi >= 100 && shown.hi > shown.lo))
+  const bool glows = item.scattering.black_body && item.scattering.glow > 0 && item.scattering.light != VolumeLighting::emission;
+  if (glows && !(shown.hi >= 100 && shown.hi > shown.lo))
     fail_usage(fmt::format("the range of the colours ends at {}, which is no temperature that glows", shown.hi), "black_body",
                "state a range in kelvin, e.g. range=300,1800, of a field that is one (calc makes it of others)");
 }
@@ -41,13 +43,21 @@ std::shared_ptr<Media> Media::make(const Scene& scene, const Projection& project
   const Projection inner = natural ? natural->projection(projection) : projection;
   const auto own = std::make_shared<Scene>(natural ? std::move(natural->scene) : scene);
   out->scene_ = own;
+  // Bricks are read for what a camera sees; light goes everywhere.
+  volume::Knobs knobs;
+  knobs.coarser = 0;
   for (size_t i = 0; i < own->items.size(); ++i) {
     auto* item = std::get_if<VolumeItem>(&own->items[i]);
     if (!item) continue;
     context.check();
     if (item->scattering.light != VolumeLighting::emission) *item = volume::with_scatter_colors(std::move(*item));
+    if (const BrickedPtr bricks = item->data->bricks(); bricks && bricks->levels.size() > 1)
+      context.info("a volume in bricks is lit at the level that is in memory; --memory allows more");
+    const VolumeLight& l = item->light;
+    if (l.shadows > 0 || l.occlusion > 0 || l.depth_cue > 0 || l.style != LightStyle::none || l.ink > 0)
+      context.info("shadows=, occlusion=, depth_cue=, style= and ink= are left out: paths have their own shadows");
     std::shared_ptr<const volume::Volume> lattice;
-    volume::CastVolume prepared = volume::prepare_volume(*item, uint32_t(i + 1), inner, {}, context, lattice);
+    volume::CastVolume prepared = volume::prepare_volume(*item, uint32_t(i + 1), inner, knobs, context, lattice);
     if (!prepared.source) continue;
     const auto& stated = std::get<VolumeItem>(scene.items[i]);
     const ColorScale& shown = stated.detail.color_by_second ? stated.detail.second_color : stated.color;

@@ -3,7 +3,6 @@
 #pragma once
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <vector>
 
 #include "base/context.h"

@@ -203,6 +203,10 @@ std::optional<Collision> MediaWalk::collide(const Ray& ray, float u, RandomStrea
   return first;
 }
 
+bool MediaWalk::exact() const {
+  return std::none_of(walkers_.begin(), walkers_.end(), [](const Walker& w) { return w.medium->tracking() == Tracking::march; });
+}
+
 float MediaWalk::passes_exactly(const Ray& ray) {
   double all = 0;
   for (Walker& w : walkers_) {
@@ -246,7 +250,7 @@ std::optional<Collision> MediaWalk::collide_surely(float u, RandomStream& random
     // Gradients and second fields are asked of a walker that is there.
     each_stretch(*w.cells, w.ray, place.stretch.from, place.stretch.to, [&](const Stretch& s) {
       place.stretch = s;
-      return false;
+      return s.to < place.t;
     });
     first = collision_at(w, w.ray, place, random);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // MediaWalk: one thread's way through all media of a scene.
 #pragma once
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -17,7 +18,9 @@ class MediaWalk {
   /// The first place up to ray.t_max at which light that comes along the ray would meet matter, drawn by tau exp(-integral of tau); nothing
   /// where it passes. u in [0, 1) decides in the first medium, `random` on the rest.
   std::optional<Collision> collide(const Ray& ray, float u, RandomStream& random);
-  /// The share of light that passes up to ray.t_max, exactly but for march; remembers the way for collide_surely().
+  /// Whether optical depths are those of the field, not of steps.
+  bool exact() const;
+  /// The share of light that passes up to ray.t_max, without any chance; remembers the way for collide_surely().
   float passes_exactly(const Ray& ray);
   /// The same as collide() on the way of passes_exactly(), which must be below 1, on the condition that something is met. u in [0, 1).
   std::optional<Collision> collide_surely(float u, RandomStream& random);

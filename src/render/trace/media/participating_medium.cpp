@@ -6,6 +6,7 @@
 
 #include "render/shade/black_body.h"
 #include "render/shade/exp.h"
+#include "render/shade/scatter_albedo.h"
 
 namespace sg::trace {
 
@@ -51,11 +52,14 @@ Collision ParticipatingMedium::collision(Vec3f color, float coloring) const {
     c.emission = color, c.last = true;
   } else {
     c.albedo = color * float(s.albedo), c.last = light != VolumeLighting::path;
-    const double place = (double(coloring) - glow_lo_) * glow_per_ + 0.5;
-    const Vec3f shines = glow_.empty() ? color : place >= 0 ? glow_[size_t(std::min(place, double(glow_steps)))] : Vec3f();
-    c.emission = shines * float(s.glow);
+    if (s.glow > 0) c.emission = (glow_.empty() ? surface_albedo(color, phase_.mean_cosine()) : black_body_at(coloring)) * float(s.glow);
   }
   return c;
+}
+
+Vec3f ParticipatingMedium::black_body_at(float coloring) const {
+  const double place = (double(coloring) - glow_lo_) * glow_per_ + 0.5;
+  return place >= 0 ? glow_[size_t(std::min(place, double(glow_steps)))] : Vec3f();
 }
 
 float ParticipatingMedium::surface(float tau, Vec3f gradient) const {

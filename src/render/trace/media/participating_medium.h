@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // ParticipatingMedium: a volume of the scene, on any kind of mesh, as light meets it.
 #pragma once
-#include <memory>
+#include <cstdint>
 #include <vector>
 
 #include "render/shade/phase_function.h"
@@ -55,6 +55,8 @@ class ParticipatingMedium {
   float surface(float tau, Vec3f gradient) const;
 
  private:
+  Vec3f black_body_at(float coloring) const;
+
   volume::CastVolume volume_;
   volume::DepthIntegral depth_;
   PhaseFunction phase_;

@@ -34,8 +34,10 @@ void check_light(const VolumeItem& item) {
     fail_usage("light=map is light of matter: gradients, occlusion and styles have no part in it", "volume",
                "leave out shaded=, occlusion= and style=, or light=map");
   if ((l.shadows > 0 || l.occlusion > 0 || scatters_by_map(item)) && !info_of(item.mode).absorbs)
-    fail_usage("shadows and occlusion need emission and absorption, which this ray function does not have", "volume",
-               "use mode=composite, or leave out shadows= and occlusion=");
+    fail_usage("shadows, occlusion and light=map need absorption, which this ray function does not have", "volume",
+               "use mode=composite, or leave out shadows=, occlusion= and light=");
+  if (scatters_by_map(item) && item.scattering.black_body)
+    fail_usage("light=map has no black bodies", "black_body", "use light=single or light=path");
   const VolumeScattering& s = item.scattering;
   check_share(s.albedo, "albedo"), check_share(s.back_share, "back_share");
   for (const double g : {s.anisotropy, s.back_anisotropy})

@@ -62,3 +62,11 @@ TEST_CASE("subsurface: the diffusion profile integrates to the albedo, and its d
     CHECK(nearer / double(n) == Approx(within / whole).epsilon(5e-3));
   }
 }
+
+TEST_CASE("subsurface: colours of thick bodies and the shares that make them are each other's inverse") {
+  for (const float g : {0.f, 0.5f, -0.4f})
+    for (float c = 0; c <= 1; c += 0.125f) {
+      const Vec3f back = surface_albedo(single_scatter_albedo({c, c, c}, g), g);
+      CHECK(back.x == doctest::Approx(c).epsilon(1e-4));
+    }
+}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SplatFilm: a picture to which any thread adds light anywhere. Sums are whole numbers of 2^-32, as these are the same in any order, which
+// SplatFilm: a picture to which any thread adds light anywhere. Sums are whole numbers of 2^-24, as these are the same in any order, which
 // sums of floats are not: the same bytes for any number of threads, without lists of splats that would be larger than the picture.
 #pragma once
 #include <algorithm>
@@ -24,7 +24,7 @@ class SplatFilm {
     const size_t at = 3 * (size_t(y) * size_t(width_) + size_t(x));
     for (size_t c = 0; c < 3; ++c) {
       const double v = light[int(c)];
-      if (v > 0 && std::isfinite(v)) sums_[at + c].fetch_add(std::llround(std::min(v, 0x1p24) * 0x1p32), std::memory_order_relaxed);
+      if (v > 0 && std::isfinite(v)) sums_[at + c].fetch_add(std::llround(std::min(v, 0x1p24) * 0x1p24), std::memory_order_relaxed);
     }
   }
   Vec3 sum(size_t pixel) const { return {value(3 * pixel), value(3 * pixel + 1), value(3 * pixel + 2)}; }
@@ -33,7 +33,7 @@ class SplatFilm {
   }
 
  private:
-  double value(size_t i) const { return double(sums_[i].load(std::memory_order_relaxed)) * 0x1p-32; }
+  double value(size_t i) const { return double(sums_[i].load(std::memory_order_relaxed)) * 0x1p-24; }
 
   int width_, height_;
   std::unique_ptr<std::atomic<int64_t>[]> sums_;

@@ -66,6 +66,7 @@ class LatticeRay final : public LatticeWalker, public RaySpans {
 
   void start(Vec3 origin, Vec3 direction, double from, double to) override {
     if (second_) second_->start(origin, direction, from, to);
+    std::fill(slopes_of_, slopes_of_ + 3, -9l);  // on a side between two cells the one of this ray counts, not of the one before
     c_ = course(v_, origin, direction, from, to);
     t_ = c_.enter, end_ = c_.leave, brick_ = size_t(-1);
     for (int a = 0; a < 3; ++a) {
