@@ -25,6 +25,7 @@ double spread(double depth, Camera camera) {
   Scene scene;
   scene.items.emplace_back(item);
   scene.lighting.environment = parse_environment("none");
+  scene.background = {0, 0, 0};  // before white it could not be told
   camera.position = {0, 0, depth}, camera.target = {0, 0, 0}, camera.up = {0, 1, 0}, camera.near_plane = depth / 2,
   camera.far_plane = 2 * depth;
   const Projection p = make_projection(camera, side, side);

@@ -35,9 +35,20 @@ TEST_CASE("particles: a short way meets the same cell at the same place whether 
       CHECK(near.may_meet(x, x + d) == (count > 0));
       REQUIRE(all.has_value() == some.has_value());
       if (!all) ++free;
-      else REQUIRE((all->cell == some->cell && all->t == some->t && all->normal == some->normal)), ++hits;
+      if (!all) continue;
+      ++hits;
+      REQUIRE((all->cell == some->cell && all->t == some->t && all->normal == some->normal));
     }
     CHECK(hits > 1000);
     CHECK(free > 1000);
   }
+}
+
+TEST_CASE("near cells: a mesh whose points all coincide") {
+  SurfaceMesh mesh;
+  mesh.points.xyz = Array::from_vector(std::vector<double>{5, 5, 5, 5, 5, 5, 5, 5, 5}, 3);
+  mesh.polygons.fixed = 3;
+  mesh.polygons.connectivity = Array::from_vector(std::vector<int32_t>{0, 1, 2});
+  const swarm::NearCells near(make_dataset(mesh), 0);
+  CHECK(near.may_meet({4, 5, 5}, {6, 5, 5}));
 }
