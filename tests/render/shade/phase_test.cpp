@@ -7,7 +7,6 @@
 #include "support/test.h"
 
 using namespace sg;
-using namespace sg::trace;
 using doctest::Approx;
 
 namespace {
