@@ -13,6 +13,7 @@
 #include "render/prepare/shared_progress.h"
 #include "render/trace/integrators/bidirectional/whole_picture.h"
 #include "render/trace/integrators/integrator.h"
+#include "render/trace/integrators/picture_camera.h"
 #include "render/trace/light/luminance.h"
 #include "render/trace/sampling/warp.h"
 #include "render/trace/studio.h"
@@ -25,34 +26,6 @@ using namespace trace;
 
 constexpr int side = 8;        // of the squares of pixels that are finished together
 constexpr uint32_t pass = 16;  // paths a pixel between two looks at the error
-
-/// From a pixel into traced coordinates, beginning where the ray enters a ball about the scene, so that it loses no digits on the way
-/// there.
-class Eye {
- public:
-  Eye(const Projection& projection, const Geometry& geometry)
-      : projection_(projection), placement_(geometry.placement()), reach_(2 / placement_.scale) {}
-
-  bool has_lens() const { return projection_.lens > 0; }
-  /// `lens`: a place in the unit disc, from which the ray leaves towards what is sharp.
-  Ray ray(Vec2f pixel, Vec2f lens, double& start, double& per_depth) const {
-    Projection::Ray r = projection_.ray(pixel.x, pixel.y);
-    if (has_lens()) {
-      const Vec3 sharp = r.origin + r.direction * (projection_.focus * r.per_depth);
-      r.origin += (projection_.right * double(lens.x) + projection_.up * double(lens.y)) * (projection_.lens / 2);
-      r.direction = normalize(sharp - r.origin);
-    }
-    start = std::max(dot(placement_.middle - r.origin, r.direction) - reach_, projection_.near_plane * r.per_depth);
-    per_depth = r.per_depth;
-    return {placement_.traced(r.origin + r.direction * start), normalize(Vec3f(r.direction))};
-  }
-  double world_length(float traced) const { return double(traced) / placement_.scale; }
-
- private:
-  const Projection& projection_;
-  const Placement& placement_;
-  double reach_;
-};
 
 /// Sums over the paths of a pixel.
 struct PixelSum {
@@ -116,12 +89,11 @@ World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Proje
 }
 
 /// What is around the scene, as the middle of each pixel sees it.
-void put_behind(Frame& frame, const Eye& eye, const Backdrop& backdrop) {
+void put_behind(Frame& frame, const PictureCamera& camera, const Backdrop& backdrop) {
   for (int y = 0; y < frame.height; ++y)
     for (int x = 0; x < frame.width; ++x) {
       float* rgba = &frame.rgba[4 * (size_t(y) * size_t(frame.width) + size_t(x))];
-      double start = 0, per_depth = 1;
-      const Vec3f seen = backdrop.radiance(eye.ray({float(x) + 0.5f, float(y) + 0.5f}, {}, start, per_depth).direction);
+      const Vec3f seen = backdrop.radiance(camera.ray({float(x) + 0.5f, float(y) + 0.5f}).direction);
       for (int c = 0; c < 3; ++c) rgba[c] += (1 - rgba[3]) * seen[c];
       rgba[3] = 1;
     }
@@ -137,9 +109,10 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
   if (!world.lights().any() && options.integrator != IntegratorKind::ambient_occlusion)
     context.warn("nothing shines: no light, no environment, no material with emission; the picture is dark");
   const auto integrator = make_integrator(options);
+  const PictureCamera camera(projection, world.geometry().placement());
   Frame frame(projection.width, projection.height);
   if (world.empty()) {
-    if (backdrop.seen) put_behind(frame, Eye(projection, world.geometry()), backdrop);
+    if (backdrop.seen) put_behind(frame, camera, backdrop);
     return frame;
   }
   if (lights_whole_picture(options.integrator)) {
@@ -150,11 +123,9 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
                  "leave out aperture=, or use integrator=path");
     WholePicture whole = draw_whole_picture(world, projection, options, context);
     report = {whole.paths, whole.noise, whole.reached};
-    if (backdrop.seen) put_behind(whole.frame, Eye(projection, world.geometry()), backdrop);
+    if (backdrop.seen) put_behind(whole.frame, camera, backdrop);
     return std::move(whole.frame);
   }
-  const Eye eye(projection, world.geometry());
-
   const auto across = size_t(projection.width + side - 1) / side, down = size_t(projection.height + side - 1) / side;
   std::vector<SquareReport> squares(across * down);
   SharedProgress progress(context, squares.size(), "following light");
@@ -177,9 +148,8 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
               const int x = x0 + p % w, y = y0 + p / w;
               for (uint32_t k = n; k < to; ++k) {
                 sampler.start(uint32_t(x), uint32_t(y), k);
-                const Vec2f in_pixel = sampler.next2(), on_lens = eye.has_lens() ? concentric_disc(sampler.next2()) : Vec2f();
-                double start = 0, per_depth = 1;
-                const Ray ray = eye.ray({float(x) + in_pixel.x, float(y) + in_pixel.y}, on_lens, start, per_depth);
+                const Vec2f in_pixel = sampler.next2(), on_lens = camera.has_lens() ? concentric_disc(sampler.next2()) : Vec2f();
+                const Ray ray = camera.ray({float(x) + in_pixel.x, float(y) + in_pixel.y}, on_lens);
                 sums[p].add(integrator->along(world, ray, sampler), backdrop.seen ? backdrop.radiance(ray.direction) : around[p / w]);
               }
             }
@@ -196,8 +166,8 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
             for (int c = 0; c < 3; ++c) frame.rgba[4 * at + size_t(c)] = float(seen[c] / n);
             frame.rgba[4 * at + 3] = backdrop.seen ? 1 : float(1 - sums[p].passed / n);
             // What the middle of the pixel sees.
-            double start = 0, per_depth = 1;
-            const Ray ray = eye.ray({float(x) + 0.5f, float(y) + 0.5f}, {}, start, per_depth);
+            const Vec2f middle{float(x) + 0.5f, float(y) + 0.5f};
+            const Ray ray = camera.ray(middle);
             Hit hit;
             if (world.geometry().nearest(ray, hit)) frame.ids[at] = prepared->items[hit.object].id;
             if (media) {
@@ -207,7 +177,7 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
               const auto matter = passes <= 0.5f ? media->collide_surely(0.5f / (1 - passes), random) : std::nullopt;
               if (matter) hit.t = matter->t, frame.ids[at] = matter->item + 1;
             }
-            if (frame.ids[at] != 0) frame.depth[at] = float((start + eye.world_length(hit.t)) / per_depth);
+            if (frame.ids[at] != 0) frame.depth[at] = float(camera.depth(middle, hit.t));
           }
           progress.step();
         }

@@ -158,6 +158,19 @@ TEST_CASE("media: smoke shadows surfaces, and surfaces stand in smoke") {
   CHECK(std::abs(under.value - std::exp(-1.2)) <= 4 * under.error + 1e-3);
 }
 
+TEST_CASE("media: turns in matter take nothing from those at surfaces") {
+  // A half white ball deep in white matter: what eight bounces cut off is 0.5^8 of the light at it, however often matter turned it.
+  PointCloud cloud;
+  cloud.points.xyz = Array::from_vector(std::vector<float>{0, 0, 0}, 3);
+  PointsItem ball;
+  ball.data = make_dataset(Mesh(cloud)), ball.color = {0.735f, 0.735f, 0.735f}, ball.size = 800;  // a radius of 0.4
+  VolumeItem v = even(grid(cube(5, -1, 1), one), 3);
+  const World world = world_of(scene_of({ball, v}), {}, white);
+  const Mean few = seen(world, {0.05, 0.02, 3}, {0, 0, -1}, 20000, 8), many = seen(world, {0.05, 0.02, 3}, {0, 0, -1}, 20000, 100, 2);
+  CHECK(std::abs(few.value - many.value) <= 4 * std::hypot(few.error, many.error) + 0.004);
+  CHECK(few.value < 0.99);
+}
+
 TEST_CASE("media: pictures of smoke and floors are the same bytes for any number of threads") {
   VolumeItem v = item(grid(cube(17, -1, 1), [](Vec3 p) { return 1.1 - length(p); }), one_color({0.9f, 0.9f, 0.9f}), density_is_value(0, 2));
   v.unit_distance = 0.3;

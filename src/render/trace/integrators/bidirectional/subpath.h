@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "render/trace/integrators/bidirectional/numbers.h"
-#include "render/trace/integrators/bidirectional/picture_camera.h"
+#include "render/trace/integrators/picture_camera.h"
 #include "render/trace/integrators/world.h"
 #include "render/trace/light/emission.h"
 

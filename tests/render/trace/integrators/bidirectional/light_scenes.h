@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "render/raster/raster_support.h"
-#include "render/trace/integrators/bidirectional/picture_camera.h"
 #include "render/trace/integrators/bidirectional/whole_picture.h"
 #include "render/trace/integrators/integrator.h"
+#include "render/trace/integrators/picture_camera.h"
 #include "support/statistics.h"
 #include "support/test.h"
 

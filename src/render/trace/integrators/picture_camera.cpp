@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/trace/integrators/bidirectional/picture_camera.h"
+#include "render/trace/integrators/picture_camera.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,13 @@ double PictureCamera::start(const Projection::Ray& r) const {
   return std::max(dot(placement_.middle - r.origin, r.direction) - 2 / placement_.scale, projection_.near_plane * r.per_depth);
 }
 
-Ray PictureCamera::ray(Vec2f pixel) const {
-  const Projection::Ray r = projection_.ray(double(pixel.x), double(pixel.y));
+Ray PictureCamera::ray(Vec2f pixel, Vec2f on_lens) const {
+  Projection::Ray r = projection_.ray(double(pixel.x), double(pixel.y));
+  if (has_lens()) {
+    const Vec3 sharp = r.origin + r.direction * (projection_.focus * r.per_depth);
+    r.origin += (projection_.right * double(on_lens.x) + projection_.up * double(on_lens.y)) * (projection_.lens / 2);
+    r.direction = normalize(sharp - r.origin);
+  }
   return {placement_.traced(r.origin + r.direction * start(r)), normalize(Vec3f(r.direction))};
 }
 

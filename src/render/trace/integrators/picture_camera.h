@@ -17,7 +17,8 @@ struct Sight {
                      ///< radiance * |cos| * importance over the surfaces that it sees
 };
 
-/// A pinhole or a parallel projection. Rays begin where they enter a ball about the scene, so that they lose no digits on the way there.
+/// A pinhole, a parallel projection or a thin lens; the way back is that of the pinhole in its middle. Rays begin where they enter a ball
+/// about the scene, so that they lose no digits on the way there.
 class PictureCamera {
  public:
   PictureCamera(const Projection& projection, const Placement& placement);
@@ -25,7 +26,9 @@ class PictureCamera {
   double pixels() const { return double(projection_.width) * double(projection_.height); }
   int width() const { return projection_.width; }
   int height() const { return projection_.height; }
-  Ray ray(Vec2f pixel) const;
+  bool has_lens() const { return projection_.lens > 0; }
+  /// `on_lens`: a place in the unit disc, from which the ray leaves towards what is sharp.
+  Ray ray(Vec2f pixel, Vec2f on_lens = {}) const;
   /// Of a place along such a ray, t in traced coordinates: the distance along the viewing axis in the world.
   double depth(Vec2f pixel, float t) const;
   /// Nothing for points beside the picture, behind the eye or nearer than the near plane. O(1).

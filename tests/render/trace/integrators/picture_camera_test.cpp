@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/trace/integrators/bidirectional/picture_camera.h"
+#include "render/trace/integrators/picture_camera.h"
 
 #include <cmath>
 #include <vector>
