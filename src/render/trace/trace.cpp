@@ -75,17 +75,23 @@ World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Proje
   size.around = media->bounds();
   const double depth = projection.to_eye(scene_bounds(scene).center()).z;
   size.pixel = projection.parallel ? 1 / projection.scale : std::max(depth, projection.near_plane) / projection.scale;
+  Isosurfaces isosurfaces = isosurfaces_of(scene, projection, context);
+  size.more = std::move(isosurfaces.objects);
   Geometry geometry = Geometry::make(*prepared, size, context);
   media->place(geometry.placement());
   SurfaceMaterial plain;
   plain.specular_roughness = 0.45, plain.specular_weight = 0.6;
   const auto of_data = std::make_shared<const trace::Material>(plain);
   std::vector<std::shared_ptr<const trace::Material>> materials;
-  for (const raster::PreparedItem& item : prepared->items)
-    materials.push_back(item.made_of ? std::make_shared<const trace::Material>(*item.made_of) : of_data);
+  const auto add = [&](const std::optional<SurfaceMaterial>& made_of) {
+    materials.push_back(made_of ? std::make_shared<const trace::Material>(*made_of, geometry.placement().scale) : of_data);
+  };
+  for (const raster::PreparedItem& item : prepared->items) add(item.made_of);
+  for (const Isosurfaces::Look& look : isosurfaces.looks) add(look.made_of);
   Studio studio = studio_of(scene, projection, geometry.placement());
   backdrop = studio.backdrop;
-  return {prepared, std::move(geometry), std::move(materials), std::move(studio.lights), std::move(studio.environment), media};
+  return {prepared, std::move(geometry),         std::move(materials), std::move(studio.lights), std::move(studio.environment),
+          media,    std::move(isosurfaces.looks)};
 }
 
 /// What is around the scene, as the middle of each pixel sees it.
@@ -169,7 +175,7 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
             const Vec2f middle{float(x) + 0.5f, float(y) + 0.5f};
             const Ray ray = camera.ray(middle);
             Hit hit;
-            if (world.geometry().nearest(ray, hit)) frame.ids[at] = prepared->items[hit.object].id;
+            if (world.geometry().nearest(ray, hit)) frame.ids[at] = world.id(hit);
             if (media) {
               // Where half of the light is gone; of several volumes at one place, about there.
               RandomStream random(at);

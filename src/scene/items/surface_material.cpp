@@ -76,7 +76,7 @@ SurfaceMaterial of_glass(double ior, double roughness) {
 
 }  // namespace
 
-SurfaceMaterial preset_material(MaterialPreset preset) {
+SurfaceMaterial preset_material(MaterialPreset preset, double size) {
   SurfaceMaterial m;
   switch (preset) {
     case MaterialPreset::matte: m.specular_weight = 0; return m;
@@ -102,6 +102,11 @@ SurfaceMaterial preset_material(MaterialPreset preset) {
     case MaterialPreset::diamond: return of_glass(2.417, 0);
     case MaterialPreset::wax:
       m.base_color = {0.9, 0.75, 0.5}, m.subsurface_weight = 1, m.specular_roughness = 0.4, m.specular_ior = 1.44;
+      m.subsurface_radius = Vec3{0.04, 0.02, 0.01} * size;
+      return m;
+    case MaterialPreset::skin:  // of a head of 40 cm from corner to corner: diffuse mean free paths of "skin1" (Jensen et al. 2001)
+      m.base_color = {0.75, 0.47, 0.34}, m.subsurface_weight = 1, m.specular_roughness = 0.45, m.specular_ior = 1.4;
+      m.subsurface_radius = Vec3{0.0092, 0.0034, 0.0017} * size;
       return m;
     case MaterialPreset::car_paint:
       m.base_color = {0.6, 0.05, 0.04}, m.base_metalness = 0.5, m.specular_roughness = 0.5, m.coat_weight = 1;

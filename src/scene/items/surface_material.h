@@ -3,7 +3,7 @@
 // are a part, and presets by name.
 //
 // Light meets, in this order, the coat; then metal (base_metalness) or else a boundary of transparent matter; and what passes that enters
-// the body: clear (transmission_weight), or diffuse. Colours are linear sRGB, from 0 to 1.
+// the body: clear (transmission_weight), or diffuse. Colours are linear sRGB, from 0 to 1, lengths those of the data.
 #pragma once
 #include <optional>
 
@@ -75,6 +75,7 @@ enum class MaterialPreset {
   water,
   diamond,
   wax,
+  skin,
   car_paint,
   retroreflector
 };
@@ -100,9 +101,11 @@ constexpr auto enum_words(MaterialPreset) {
                     Word{"water", water},
                     Word{"diamond", diamond},
                     Word{"wax", wax},
+                    Word{"skin", skin},
                     Word{"car_paint", car_paint},
                     Word{"retroreflector", retroreflector}};
 }
-SurfaceMaterial preset_material(MaterialPreset preset);
+/// `size`: diagonal of the body, of which lengths are shares.
+SurfaceMaterial preset_material(MaterialPreset preset, double size = 1);
 
 }  // namespace sg

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // VolumeItem: a scalar field that is seen through, and everything that decides how.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "filter/field/sampling/reconstruction.h"
 #include "scene/items/material.h"
 #include "scene/items/ray_function.h"
+#include "scene/items/surface_material.h"
 #include "scene/items/volume_scattering.h"
 
 namespace sg {
@@ -114,6 +116,7 @@ struct VolumeItem {
   RayFunction mode = RayFunction::composite;
   std::vector<double> levels;  ///< of first_hit, distance, accumulate (one) and isosurface
   bool shaded = true;
+  std::optional<SurfaceMaterial> made_of;  ///< of mode isosurface, for integrators; empty = plastic of its colours
   VolumeSampling sampling;
   VolumeLight light;
   VolumeScattering scattering;

@@ -114,7 +114,7 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceSh
     if (item.data != whole && !item.edge_lines) item.edge_lines = whole;
   }
   if (p.material) {
-    item.made_of = preset_material(*p.material);
+    item.made_of = preset_material(*p.material, input->bounds().diagonal());
     const Vec3f own(item.made_of->base_color);
     item.color = {srgb_encode(own.x), srgb_encode(own.y), srgb_encode(own.z)};
   }

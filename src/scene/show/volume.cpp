@@ -29,8 +29,7 @@ const Field& mesh_field(const Dataset& d, const std::string& name, std::string_v
 }
 
 // One colour for all values.
-void take_one_colour(ColorScale& scale, const std::string& color) {
-  const Vec3f c = parse_color(color, "color");
+void take_one_colour(ColorScale& scale, Vec3f c) {
   scale.map = Colormap{"one", MapKind::sequential, "One colour.", {c, c}, {}};
   scale.labels.clear(), scale.label_names.clear();
 }
@@ -255,7 +254,7 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const VolumeSho
   coloring.component = component_of(p, fields, *fields.color);
   ColorScale colors = choose_scale(*input, *fields.color, coloring, context);
   const ColorScale whole = colors;
-  if (!p.coloring.color.empty()) take_one_colour(colors, p.coloring.color);
+  if (!p.coloring.color.empty()) take_one_colour(colors, parse_color(p.coloring.color, "color"));
   if (!p.colors.empty()) parse_color_stops(p.colors, colors, !p.coloring.range.empty());
   if (fields.color == fields.opacity) item.color = whole;
   else {
@@ -268,7 +267,15 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const VolumeSho
   if (!p.widgets.empty()) {
   } else if (!p.opacity) choose_transfer(p, *fields.opacity, item, context);
   else item.opacity = parse_opacity(*p.opacity, item.color);
-  const bool own_colors = !p.colors.empty() || !p.coloring.color.empty();
+  bool own_colors = !p.colors.empty() || !p.coloring.color.empty();
+  if (p.material) {
+    item.made_of = preset_material(*p.material, input->bounds().diagonal());
+    if (!p.opacity) item.opacity.points = {{item.color.lo, 1}};
+    if (!own_colors && !p.coloring.map && p.coloring.range.empty() && p.color_by.empty()) {
+      const Vec3f own(item.made_of->base_color);
+      take_one_colour(colors, {srgb_encode(own.x), srgb_encode(own.y), srgb_encode(own.z)}), own_colors = true;
+    }
+  }
   if (fields.color == fields.opacity && own_colors) item.color = colors;
   take_collected_range(item, p.coloring.range.empty() && p.colors.empty(), !p.coloring.map && !own_colors);
   const Legend legend = legend_of(item);

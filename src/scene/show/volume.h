@@ -35,6 +35,7 @@ struct VolumeShow {
   RayFunction mode = RayFunction::composite;
   std::vector<double> levels;
   bool shaded = true;
+  std::optional<MaterialPreset> material;
   VolumeSampling sampling;
   VolumeLight light;
   VolumeScattering scattering;

@@ -41,9 +41,10 @@ Geometry Geometry::make(const PreparedScene& scene, const GeometryOptions& optio
   const double pixel = options.pixel > 0 ? options.pixel : diagonal_of(scene) / 1000;
   Geometry g;
   Box3 box = options.around;
-  for (size_t i = 0; i < scene.items.size(); ++i) {
+  const size_t items = scene.items.size();
+  for (size_t i = 0; i < items + options.more.size(); ++i) {
     context.check();
-    ObjectPtr o = make_object(scene.items[i], options, pixel, context);
+    std::shared_ptr<Object> o = i < items ? make_object(scene.items[i], options, pixel, context) : options.more[i - items];
     if (!o || o->bounds().empty()) continue;
     o->item = uint32_t(i);
     box.add(world_box(*o));

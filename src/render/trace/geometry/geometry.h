@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Geometry: all of a scene as one thing that rays can meet. Surfaces as triangles, points as balls or oriented discs, lines as round tubes,
-// glyphs as instances of their shapes.
+// glyphs as instances of their shapes, and whatever else is an Object.
 #pragma once
 #include <memory>
 #include <vector>
@@ -12,18 +12,14 @@
 
 namespace sg::trace {
 
-/// What has a size in pixels gets one in the world: rays that are reflected know no pixels.
-struct GeometryOptions {
-  double pixel = 0;         ///< world length of a pixel at the scene's distance; 0: a thousandth of the scene's diagonal
-  double line_radius = 0;   ///< world radius of lines; 0: half their width in pixels
-  double point_radius = 0;  ///< the same of points that are no discs
-  Box3 around;              ///< world: what traced coordinates hold besides
-};
+struct GeometryOptions;
 
-/// Objects are numbered like PreparedScene::items, primitives from 0 in each (the picture's number less first_primitive): what a hit's
-/// colour is the items tell. All numbers are in traced coordinates (placement()). Nothing is altered by asking: any number of threads may.
+/// Objects are numbered like PreparedScene::items, and on from there; primitives from 0 in each (the picture's number less
+/// first_primitive): what a hit's colour is the items tell. All numbers are in traced coordinates (placement()). Nothing is altered by
+/// asking: any number of threads may.
 class Geometry {
  public:
+  class Object;
   Geometry();
   Geometry(Geometry&&) noexcept;
   Geometry& operator=(Geometry&&) noexcept;
@@ -48,12 +44,19 @@ class Geometry {
   const Placement& placement() const { return placement_; }
   size_t bytes() const;
 
-  class Object;
-
  private:
-  std::vector<std::unique_ptr<Object>> objects_;
+  std::vector<std::shared_ptr<Object>> objects_;
   Placement placement_;
   Box3f bounds_;
+};
+
+/// What has a size in pixels gets one in the world: rays that are reflected know no pixels.
+struct GeometryOptions {
+  double pixel = 0;         ///< world length of a pixel at the scene's distance; 0: a thousandth of the scene's diagonal
+  double line_radius = 0;   ///< world radius of lines; 0: half their width in pixels
+  double point_radius = 0;  ///< the same of points that are no discs
+  Box3 around;              ///< world: what traced coordinates hold besides
+  std::vector<std::shared_ptr<Geometry::Object>> more;  ///< numbered after the items; of this Geometry alone from now on
 };
 
 }  // namespace sg::trace

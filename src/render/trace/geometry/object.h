@@ -27,7 +27,7 @@ class Geometry::Object {
   virtual Box3f bounds() const = 0;
   virtual size_t bytes() const = 0;
 
-  uint32_t item = 0;  ///< number in the scene
+  uint32_t item = 0;  ///< number in the geometry
   Placement local;
 
   /// Tells where the object lies in the scene: local = traced * ratio + offset.

@@ -46,7 +46,7 @@ inline bool can_trace(const Ray& r) {
 /// The nearest of several at the same t is that of the lowest object, then of the lowest primitive.
 struct Hit {
   float t = std::numeric_limits<float>::infinity();
-  uint32_t object = 0;     ///< number in PreparedScene::items
+  uint32_t object = 0;     ///< number in PreparedScene::items, or of what comes after them
   uint32_t primitive = 0;  ///< number in the object
   float u = 0, v = 0;      ///< triangles: the weights of the second and third corner; tubes: u = place along the segment, 0 to 1
 };

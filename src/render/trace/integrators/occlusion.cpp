@@ -2,12 +2,14 @@
 #include <limits>
 
 #include "render/trace/integrators/integrator.h"
-#include "render/trace/integrators/surface_color.h"
 #include "render/trace/sampling/warp.h"
 
 namespace sg::trace {
 
 namespace {
+
+/// Rays to the open for each from the camera, in as many strata of the hemisphere along each axis: edges of pixels need fewer.
+constexpr int strata = 2;
 
 class OcclusionIntegrator : public Integrator {
  public:
@@ -37,15 +39,19 @@ class OcclusionIntegrator : public Integrator {
       }
       if (!met) break;
       const SurfacePoint point = world.geometry().at(ray, hit);
-      const Vec4f color = surface_color(world.scene().items[hit.object], hit);
+      const Vec4f color = world.color(hit);
       const bool below = dot(point.face_normal, ray.direction) > 0;
       const Vec3f normal = below ? -point.shading_normal : point.shading_normal;
-      const Vec3f direction = normalize(LocalFrame::about(normal).to_world(cosine_hemisphere(sampler.next2())));
+      const LocalFrame frame = LocalFrame::about(normal);
       const float side = below ? -1.f : 1.f;
-      // Directions below the face are those that the rounded normal would have, not the surface.
-      const bool open =
-          dot(direction, point.face_normal) * side > 0 && !world.geometry().blocked({leave(point, direction), direction, reach_});
-      if (open) out.radiance += Vec3f(color.x, color.y, color.z) * (share * color.w);
+      int open = 0;
+      for (int i = 0; i < strata * strata; ++i) {
+        const Vec2f in = sampler.next2(), u{(float(i % strata) + in.x) / strata, (float(i / strata) + in.y) / strata};
+        const Vec3f direction = normalize(frame.to_world(cosine_hemisphere(u)));
+        // Directions below the face are those that the rounded normal would have, not the surface.
+        open += dot(direction, point.face_normal) * side > 0 && !world.geometry().blocked({leave(point, direction), direction, reach_});
+      }
+      out.radiance += Vec3f(color.x, color.y, color.z) * (share * color.w * float(open) / (strata * strata));
       share *= 1 - color.w;
       ray = {leave(point, ray.direction), ray.direction};
     }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "render/trace/integrators/integrator.h"
+#include "render/trace/integrators/subsurface_walk.h"
 #include "render/trace/light/luminance.h"
 #include "render/trace/sampling/mis.h"
 #include "render/trace/sampling/warp.h"
@@ -101,7 +102,7 @@ class PathIntegrator : public Integrator {
 
   /// On from a surface; false where the path ends.
   bool meet(const World& world, MediaWalk* media, const Hit& hit, Path& path, Sampler& sampler, Estimate& out) const {
-    const Vertex v = world.at(path.ray, hit);
+    const Vertex v = world.at(path.ray, hit, !mirrors_only_);
     if (!is_dark(v.emission)) {
       const float p =
           world.lights().triangle_pdf(hit.object, hit.primitive, path.since + hit.t, dot(path.ray.direction, v.point.face_normal));
@@ -122,6 +123,19 @@ class PathIntegrator : public Integrator {
       }
     }
 
+    // Into the body.
+    if (const Vec3f enters = v.bsdf.entering(wo); !is_dark(enters) && path.bounces() < bounces_) {
+      const float below = luminance(enters * v.bsdf.base_color()), chance = below / (below + luminance(v.bsdf.albedo(wo)));
+      if (sampler.next() < chance) {
+        RandomStream random(sampler.stream());
+        const auto exit = walk_below(world, v, random);
+        if (!exit) return false;
+        path.throughput = path.throughput * enters * exit->weight / chance;
+        return come_out(world, media, exit->at, path, sampler, out);
+      }
+      path.throughput = path.throughput / (1 - chance);
+    }
+
     // On to the next surface.
     const float choice = sampler.next();
     const auto s = v.bsdf.sample(wo, choice, sampler.next2());
@@ -137,6 +151,28 @@ class PathIntegrator : public Integrator {
     if (passes) path.go_straight(from, hit.t);
     else path.turn(from, direction, s->delta ? infinite : s->pdf);
     if (s->transmitted && v.material->has_inside() && !passes) path.absorption = s->direction.z < 0 ? v.material->absorption() : Vec3f();
+    return path.turns <= 3 || survives(path, 0.95f, roulette);
+  }
+
+  /// On from where light leaves a body in which it wandered; false where the path ends.
+  bool come_out(const World& world, MediaWalk* media, const Vertex& v, Path& path, Sampler& sampler, Estimate& out) const {
+    const auto scattered = [&](Vec3f direction) -> Scattered {
+      const Vec3f wi = v.frame.to_local(direction);
+      if (!(wi.z > 0) || !(dot(direction, v.point.face_normal) > 0)) return {};
+      const float density = wi.z / std::numbers::pi_v<float>, share = v.bsdf.leaving(wi) * density;
+      return {{share, share, share}, density};
+    };
+    const auto from = [&](Vec3f direction) { return leave(v.point, direction); };
+    const float choice = sampler.next();
+    const Vec2f u = sampler.next2();
+    out.radiance += path.throughput * direct(world, media, v.point.position, from, scattered, choice, u, sampler);
+
+    const Vec3f direction = normalize(v.frame.to_world(cosine_hemisphere(sampler.next2())));
+    const float roulette = sampler.next();
+    const Scattered s = scattered(direction);
+    if (!(s.pdf > 0)) return false;
+    path.throughput = path.throughput * s.share / s.pdf;
+    path.turn(leave(v.point, direction), direction, s.pdf);
     return path.turns <= 3 || survives(path, 0.95f, roulette);
   }
 

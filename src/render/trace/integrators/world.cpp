@@ -41,27 +41,41 @@ float reach_of(const Geometry& geometry, const Media* media) {
 }  // namespace
 
 World::World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_ptr<const Material>> materials,
-             std::vector<AnyLight> lights, Environment environment, std::shared_ptr<const Media> media)
+             std::vector<AnyLight> lights, Environment environment, std::shared_ptr<const Media> media,
+             std::vector<Isosurfaces::Look> isosurfaces)
     : scene_(std::move(scene)),
       geometry_(std::move(geometry)),
       materials_(std::move(materials)),
       lights_(with_emitters(*scene_, materials_, geometry_.placement(), std::move(lights)), std::move(environment),
               reach_of(geometry_, media.get())),
-      media_(std::move(media)) {
+      media_(std::move(media)),
+      isosurfaces_(std::move(isosurfaces)) {
   for (const raster::PreparedItem& item : scene_->items)
     translucent_ = translucent_ || item.translucent || item.opacity < 1 || item.color.translucent;
+  for (const Isosurfaces::Look& look : isosurfaces_)
+    for (const Vec4f& c : look.colors) translucent_ = translucent_ || c.w < 1;
   for (const auto& m : materials_) translucent_ = translucent_ || m->passes_straight();
 }
 
-Vertex World::at(const Ray& ray, const Hit& hit) const {
+Vec4f World::color(const Hit& hit) const {
+  const size_t items = scene_->items.size();
+  return hit.object < items ? surface_color(scene_->items[hit.object], hit) : isosurfaces_[hit.object - items].colors[hit.primitive];
+}
+
+uint32_t World::id(const Hit& hit) const {
+  const size_t items = scene_->items.size();
+  return hit.object < items ? scene_->items[hit.object].id : isosurfaces_[hit.object - items].id;
+}
+
+Vertex World::at(const Ray& ray, const Hit& hit, bool walks) const {
   Vertex v;
   v.point = geometry_.at(ray, hit);
   v.material = materials_[hit.object].get();
-  const Vec4f color = surface_color(scene_->items[hit.object], hit);
+  const Vec4f color = this->color(hit);
   // At a silhouette the shading normal may look away from a viewer who sees the face.
   const bool above = dot(ray.direction, v.point.face_normal) < 0, shaded_above = dot(ray.direction, v.point.shading_normal) < 0;
   v.frame = LocalFrame::about(above == shaded_above ? v.point.shading_normal : v.point.face_normal, v.point.tangent);
-  v.bsdf = make_bsdf(*v.material, {color.x, color.y, color.z}, color.w);
+  v.bsdf = make_bsdf(*v.material, {color.x, color.y, color.z}, color.w, walks && above);
   v.emission = v.material->emission();
   return v;
 }

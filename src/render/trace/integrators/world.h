@@ -7,6 +7,7 @@
 #include "base/context.h"
 #include "render/prepare/prepared.h"
 #include "render/trace/geometry/geometry.h"
+#include "render/trace/isosurface/isosurface.h"
 #include "render/trace/light/lights.h"
 #include "render/trace/material/bsdf.h"
 #include "render/trace/media/media.h"
@@ -25,18 +26,22 @@ struct Vertex {
 
 class World {
  public:
-  /// `lights` in traced coordinates of `geometry`; triangles of emissive items are added to them. One material an item.
+  /// `lights` in traced coordinates of `geometry`; triangles of emissive items are added to them. One material an object of the geometry:
+  /// items, then isosurfaces.
   World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_ptr<const Material>> materials, std::vector<AnyLight> lights,
-        Environment environment, std::shared_ptr<const Media> media = nullptr);
+        Environment environment, std::shared_ptr<const Media> media = nullptr, std::vector<Isosurfaces::Look> isosurfaces = {});
 
   const Geometry& geometry() const { return geometry_; }
   const Lights& lights() const { return lights_; }
-  const PreparedScene& scene() const { return *scene_; }
+  /// Linear colour and opacity of what was met, and the id of its item (its number + 1).
+  Vec4f color(const Hit& hit) const;
+  uint32_t id(const Hit& hit) const;
   /// Null where there are none.
   Media::Borrowed borrow_media() const { return media_ ? media_->borrow() : Media::Borrowed(); }
   bool has_media() const { return media_ && media_->any(); }
   bool empty() const { return geometry_.bounds().empty() && !has_media(); }
-  Vertex at(const Ray& ray, const Hit& hit) const;
+  /// With `walks` the part of light that wanders below a surface which is met from outside is the integrator's (walk_below()).
+  Vertex at(const Ray& ray, const Hit& hit, bool walks = false) const;
   /// Whether an item lets some light pass straight on, so that shadows have shades.
   bool translucent() const { return translucent_; }
   /// Share of light that surfaces let pass along the ray up to t_max: 0 behind anything opaque.
@@ -48,6 +53,7 @@ class World {
   std::vector<std::shared_ptr<const Material>> materials_;
   Lights lights_;
   std::shared_ptr<const Media> media_;
+  std::vector<Isosurfaces::Look> isosurfaces_;
   bool translucent_ = false;
 };
 

@@ -48,6 +48,7 @@ class Bsdf {
   /// wo goes in, and the one, relative to a density of cos / pi, with which it comes out along wi. White bodies without a coat keep all
   /// energy.
   Vec3f entering(Vec3f wo) const;
+  Vec3f base_color() const { return base_; }  ///< of which matter below the surface is
   float leaving(Vec3f wi) const;
 
  private:

@@ -23,16 +23,16 @@ AlbedoCurve lost_by(const BoundaryAlbedo& albedo) {
 
 }  // namespace
 
-Material::Material(const SurfaceMaterial& m) {
+Material::Material(const SurfaceMaterial& m, double length) {
   check(m);
-  base_color_ = Vec3f(m.base_color), emission_ = Vec3f(m.emission), subsurface_radius_ = Vec3f(m.subsurface_radius);
+  base_color_ = Vec3f(m.base_color), emission_ = Vec3f(m.emission), subsurface_radius_ = Vec3f(m.subsurface_radius * length);
   subsurface_anisotropy_ = float(m.subsurface_anisotropy), thin_ = m.thin_walled;
   coat = float(m.coat_weight), retro = float(m.retro_weight), metalness = float(m.base_metalness), clear = float(m.transmission_weight);
   subsurface = float(m.subsurface_weight);
   for (int i = 0; i < 3; ++i) {
     coat_filter[i] = float(std::sqrt(m.coat_color[i]));
     if (m.transmission_depth <= 0 || thin_) clear_filter[i] = float(m.transmission_color[i]);
-    else absorption_[i] = float(-std::log(std::max(m.transmission_color[i], 1e-10)) / m.transmission_depth);
+    else absorption_[i] = float(-std::log(std::max(m.transmission_color[i], 1e-10)) / (m.transmission_depth * length));
   }
   if (coat > 0) {
     coat_ggx = Ggx::of_roughness(float(m.coat_roughness)), coat_eta = float(m.coat_ior);

@@ -21,7 +21,8 @@ struct BoundarySide {
 class Material {
  public:
   /// Some ten milliseconds: albedos of rough boundaries are integrated. Throws Error(usage) for values out of range (check()).
-  explicit Material(const SurfaceMaterial& described);
+  /// `length`: of a length of the description, in those of rays.
+  explicit Material(const SurfaceMaterial& described, double length = 1);
 
   Vec3f base_color() const { return base_color_; }
   Vec3f emission() const { return emission_; }

@@ -14,9 +14,9 @@ namespace sg::trace {
 namespace {
 
 void check(const VolumeItem& item) {
-  if (item.mode != RayFunction::composite)
+  if (item.mode != RayFunction::composite && item.mode != RayFunction::isosurface)
     fail_usage(fmt::format("mode={} shows no matter that light could meet", info_of(item.mode).name), "integrator",
-               "use mode=composite, or leave integrator out");
+               "use mode=composite or mode=isosurface, or leave integrator out");
   if (item.method != VolumeMethod::ray)
     fail_usage(fmt::format("method={} does not follow light", word_of(item.method)), "integrator",
                "use method=ray, or leave integrator out");
@@ -48,7 +48,7 @@ std::shared_ptr<Media> Media::make(const Scene& scene, const Projection& project
   knobs.coarser = 0;
   for (size_t i = 0; i < own->items.size(); ++i) {
     auto* item = std::get_if<VolumeItem>(&own->items[i]);
-    if (!item) continue;
+    if (!item || item->mode != RayFunction::composite) continue;
     context.check();
     if (item->scattering.light != VolumeLighting::emission) *item = volume::with_scatter_colors(std::move(*item));
     if (const BrickedPtr bricks = item->data->bricks(); bricks && bricks->levels.size() > 1)

@@ -87,32 +87,54 @@ Sum length_at_least(RayField& ray, double level) {
   return sum;
 }
 
-void all_crossings(RayField& ray, std::span<const double> levels, std::vector<Crossing>& out) {
-  out.clear();
+namespace {
+
+/// Calls f(crossing, stretch) from near to far while it returns true.
+template <class F>
+void each_crossing(RayField& ray, std::span<const double> levels, F&& f) {
+  std::vector<Crossing> here;
   Stretch s[batch];
   double last_to = -HUGE_VAL;
   float last_value = 0;
   for (size_t n; (n = ray.next(s)) > 0;)
     for (size_t i = 0; i < n; ++i) {
       const Stretch& p = s[i];
-      const size_t first = out.size();
       const bool joined = p.from - last_to <= 1e-9 * (1 + std::abs(p.from));
+      here.clear();
       for (uint32_t l = 0; l < levels.size(); ++l) {
         const float level = float(levels[l]);
         // A jump over the level between neighbours; and a crossing exactly between them counts once, with the nearer one.
         const bool jump = joined && ((last_value < level && p.b[0] > level) || (last_value > level && p.b[0] < level));
-        if (jump) out.push_back({p.from, l, ray.gradient(p, p.from)});
-        double f[3];
-        const int count = crossings(p.b, level, f);
-        for (int k = 0; k < count; ++k) {
-          if (f[k] == 0 && joined && last_value == level) continue;
-          const double t = p.from + f[k] * (p.to - p.from);
-          out.push_back({t, l, ray.gradient(p, t)});
-        }
+        if (jump) here.push_back({p.from, l, {}});
+        double at[3];
+        const int count = crossings(p.b, level, at);
+        for (int k = 0; k < count; ++k)
+          if (!(at[k] == 0 && joined && last_value == level)) here.push_back({p.from + at[k] * (p.to - p.from), l, {}});
       }
-      std::stable_sort(out.begin() + ptrdiff_t(first), out.end(), [](const Crossing& a, const Crossing& b) { return a.t < b.t; });
+      std::stable_sort(here.begin(), here.end(), [](const Crossing& a, const Crossing& b) { return a.t < b.t; });
+      for (const Crossing& c : here)
+        if (!f(c, p)) return;
       last_to = p.to, last_value = p.b[3];
     }
+}
+
+}  // namespace
+
+void all_crossings(RayField& ray, std::span<const double> levels, std::vector<Crossing>& out) {
+  out.clear();
+  each_crossing(ray, levels, [&](const Crossing& c, const Stretch& s) {
+    out.push_back({c.t, c.level, ray.gradient(s, c.t)});
+    return true;
+  });
+}
+
+std::optional<Crossing> first_crossing(RayField& ray, std::span<const double> levels, double after) {
+  std::optional<Crossing> first;
+  each_crossing(ray, levels, [&](const Crossing& c, const Stretch&) {
+    if (c.t > after) first = c;
+    return !first;
+  });
+  return first;
 }
 
 }  // namespace sg::volume

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a ray collects other than emission and absorption, exactly for the cubics of its stretches.
 #pragma once
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -38,5 +39,7 @@ struct Crossing {
 };
 /// All crossings of the levels, from near to far; where the value jumps over a level between two stretches without a gap there is one too.
 void all_crossings(RayField& ray, std::span<const double> levels, std::vector<Crossing>& out);
+/// The nearest of them with `after` < t; its gradient is left out.
+std::optional<Crossing> first_crossing(RayField& ray, std::span<const double> levels, double after);
 
 }  // namespace sg::volume

@@ -13,6 +13,8 @@ namespace {
 constexpr size_t row_grain = 32;
 constexpr size_t coarsest = 64;  // cells that sweeps alone solve
 constexpr int coarsest_sweeps = 16;
+/// Coarse cells that are open by less, of six faces, are closed.
+constexpr double narrowest = 0.1;
 
 // Row (j, k) of cells, the rows about it and the open shares of its faces; outside of the box there are zeros.
 template <class T>
@@ -124,6 +126,20 @@ Lattice<T> coarse_faces(const Walls<T>& fine, int axis, const std::array<size_t,
   return out;
 }
 
+// Closes cells that are all but solid: what they are given of the residual around them they would answer with a huge pressure.
+template <class T>
+void close_narrow_cells(const std::array<size_t, 3>& n, Faces<T>& open) {
+  auto& [x, y, z] = open;
+  std::vector<std::array<size_t, 3>> narrow;
+  for (size_t k = 0; k < n[2]; ++k)
+    for (size_t j = 0; j < n[1]; ++j)
+      for (size_t i = 0; i < n[0]; ++i) {
+        const T sum = (x(i, j, k) + x(i + 1, j, k)) + (y(i, j, k) + y(i, j + 1, k)) + (z(i, j, k) + z(i, j, k + 1));
+        if (sum > 0 && sum < T(narrowest)) narrow.push_back({i, j, k});
+      }
+  for (const auto& [i, j, k] : narrow) x(i, j, k) = x(i + 1, j, k) = y(i, j, k) = y(i, j + 1, k) = z(i, j, k) = z(i, j, k + 1) = 0;
+}
+
 }  // namespace
 
 template <class T>
@@ -163,6 +179,7 @@ Multigrid<T>::Multigrid(std::array<size_t, 3> cells, Walls<T> walls) {
         if (!outside) take_part(up ? own + 1 : own - 1, i, T(0.25));
       }
     }
+    close_narrow_cells(n, next.walls.open);
     next.coupling = {T(h[1] * h[2] / h[0]), T(h[0] * h[2] / h[1]), T(h[0] * h[1] / h[2])};
     next.x = next.b = next.r = Lattice<T>(n);
     find_plain_rows(next);

@@ -116,7 +116,7 @@ void depths_and_ids(const World& world, const PictureCamera& camera, Frame& fram
       Hit hit;
       if (!world.geometry().nearest(camera.ray(middle), hit)) continue;
       frame.depth[i] = float(camera.depth(middle, hit.t));
-      frame.ids[i] = world.scene().items[hit.object].id;
+      frame.ids[i] = world.id(hit);
     }
   });
 }

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Isosurfaces: the level sets of volumes on any kind of mesh as geometry that rays meet, without a mesh of their own.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/context.h"
+#include "render/trace/geometry/geometry.h"
+#include "scene/scene.h"
+
+namespace sg::trace {
+
+/// All volumes of a scene with the ray function isosurface: objects for GeometryOptions::more, and how they look, in the same order. The
+/// number of a level is the primitive of its hits. The surface's outer side is that of smaller values, as of contours.
+struct Isosurfaces {
+  struct Look {
+    uint32_t id = 0;            ///< item number + 1
+    std::vector<Vec4f> colors;  ///< of the levels: linear, straight alpha
+    std::optional<SurfaceMaterial> made_of;
+  };
+  std::vector<std::shared_ptr<Geometry::Object>> objects;
+  std::vector<Look> looks;
+};
+
+/// Volumes in bricks are taken at the level in memory. Throws Error(usage) as for pictures without paths.
+Isosurfaces isosurfaces_of(const Scene& scene, const Projection& projection, Context& context);
+
+}  // namespace sg::trace
