@@ -53,10 +53,11 @@ class IsosurfaceObject : public Geometry::Object {
 
   bool nearest(const Ray& ray, Hit& hit) const override {
     const auto field = fields_.borrow();
-    const auto met = first(*field, ray, 0, ray.t_max);
+    const float up_to = std::min(ray.t_max, hit.t);
+    const auto met = first(*field, ray, 0, up_to);
     if (!met) return false;
     const auto t = float(met->t / per_local_);
-    if (!(t > 0 && t <= ray.t_max)) return false;
+    if (!(t > 0 && t <= up_to)) return false;
     hit = {}, hit.t = t, hit.primitive = met->level;
     return true;
   }

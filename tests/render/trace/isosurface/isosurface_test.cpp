@@ -90,6 +90,19 @@ TEST_CASE("isosurface: no ray gets out of a closed one, and the nearest level is
   }
 }
 
+TEST_CASE("isosurface: of two volumes the nearer one is met, whichever comes first") {
+  const DatasetPtr data = grid(cube(24, -1, 1), to_middle);
+  for (const double first : {0.1, 0.4}) {
+    const World world = isosurface_world(scene_of({levels_of(data, {first}), levels_of(data, {0.5 - first})}), matte(), {});
+    Hit hit;
+    REQUIRE(world.geometry().nearest(ray_of(world.geometry().placement(), {0.1, 0.05, 2}, {0, 0, -1}), hit));
+    CHECK(world.id(hit) == (first == 0.1 ? 1 : 2));
+    hit = Hit();
+    REQUIRE(world.geometry().nearest(ray_of(world.geometry().placement(), {0.1, 0.05, 0}, {0, 0, -1}), hit));
+    CHECK(world.id(hit) == (first == 0.1 ? 2 : 1));
+  }
+}
+
 TEST_CASE("isosurface: white ones are invisible in even light, whatever they are made of") {
   for (const DatasetPtr& data : {grid(cube(17, -1, 1), to_middle), tets_of(to_middle)})
     for (const MaterialPreset preset : {MaterialPreset::matte, MaterialPreset::glass, MaterialPreset::plastic}) {
