@@ -36,6 +36,7 @@ struct PictureParams {
   double adaptive = 0;
   double text = 1;
   std::optional<trace::IntegratorKind> integrator;
+  int seed = 0;
   LightOptions light;
   std::string lights, environment;
 };

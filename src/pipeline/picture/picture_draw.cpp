@@ -100,7 +100,7 @@ DrawnPicture draw_picture(const Scene& scene, const Camera& camera, const Stated
   options.width = int(area.width), options.height = int(area.height), options.samples = s.picture.samples;
   options.adaptive = s.picture.adaptive, options.coarser = coarser;
   if (s.picture.integrator || scatters_light(scene)) {
-    options.light = s.picture.light;
+    options.light = s.picture.light, options.light->seed = uint64_t(s.picture.seed);
     options.light->integrator = s.picture.integrator.value_or(trace::IntegratorKind::path);
   }
   const bool beside = options.width < s.width || options.height < s.height;
