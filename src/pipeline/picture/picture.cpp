@@ -150,6 +150,14 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   Context computing(context, 0, 0.5), drawing(context, 0.5, 1);
   const PreparedPicture prepared = prepare_picture(file, options, computing);
   Picture picture = draw_prepared(prepared, prepared.stated, options, drawing);
+  if (!in_panels(prepared.stated.picture) && !picture.image.pixels.empty()) {
+    // The same picture on any machine.
+    std::erase_if(file.picture, [](const std::string& w) { return w.starts_with("seconds="); });
+    if (picture.stopped > 0) {
+      std::erase_if(file.picture, [](const std::string& w) { return w.starts_with("stop="); });
+      file.picture.push_back(fmt::format("stop={}", picture.stopped));
+    }
+  }
   context.progress(1, "done");
   return picture;
 }

@@ -128,7 +128,7 @@ Image draw_around(const Panel& panel, const StatedPicture& stated, Context& cont
   empty.transparent = panel.scene.transparent;
   Annotation texts = panel.annotation;
   texts.box.reset(), texts.axes = texts.triad = texts.scale_bar = false;
-  return draw_picture(empty, panel.camera, stated, texts, 1, context).image;
+  return draw_picture(empty, panel.camera, stated, texts, {}, context).image;
 }
 
 }  // namespace
@@ -183,7 +183,7 @@ DrawnView LocalRenderer::draw(const DrawRequest& request, Context& context) {
     StatedPicture how = stated;
     const bool exact = request.quality == Quality::exact;
     if (!exact) how.picture.samples = 1;
-    DrawnPicture picture = draw_picture(rough(panel.scene, request.quality), panel.camera, how, panel.annotation, 1, context);
+    DrawnPicture picture = draw_picture(rough(panel.scene, request.quality), panel.camera, how, panel.annotation, {}, context);
     drawn.camera = view_camera(panel.camera);
     drawn.type = exact ? "image/png" : "image/jpeg", drawn.bytes = exact ? png_of(picture.image) : jpeg_of(picture.image);
     auto planes = std::make_shared<Planes>();

@@ -19,8 +19,9 @@ namespace {
 constexpr int reach = 7;   // of the neighbours, to each side
 constexpr int patch = 2;   // of the pixels around both that are compared, to each side
 constexpr int block = 64;  // pixels, along each side, that one thread does at a time
-constexpr float color_bandwidth = 0.45f, feature_bandwidth = 0.6f;  // k, as Rousselle et al. 2013
-constexpr float least_feature_variance = 1e-3f;
+constexpr float color_bandwidth = 0.45f, feature_bandwidth = 0.75f;  // k, as Rousselle et al. 2013
+// Squares of differences that are none: of colours, which are data, less than of directions and distances.
+constexpr float least_color_variance = 1e-3f, least_shape_variance = 1e-2f;
 constexpr float tiny = 1e-12f;
 
 /// About exp(-d), which compilers make vectors of.
@@ -53,15 +54,18 @@ struct Noisy {
           const float share = y > 0 ? std::clamp(rgba[c] / y, 0.25f, 4.f) : 1;
           variance[c][i] = v * share * share;
         }
-        for (size_t c = 0; c < Features::channels; ++c)
-          feature_scale[c][i] = 1 / (feature_bandwidth * feature_bandwidth *
-                                     std::max({least_feature_variance, features.variance[c][i], slope_squared(features.mean[c], i)}));
+        for (size_t c = 0; c < Features::channels; ++c) {
+          const float least = c >= Features::normal && c < Features::cover ? least_shape_variance : least_color_variance;
+          const float v = std::max({least, features.variance[c][i], slope_squared(features.mean[c], i)});
+          feature_scale[c][i] = 1 / (feature_bandwidth * feature_bandwidth * v);
+        }
       }
     });
   }
 
   // The own variance, or that of neighbours which look alike where it is small by chance.
   float around(const Plane<float>& v, size_t i) const {
+    if (!(v[i] > 0) && !(features.mean[Features::cover][i] > 0)) return 0;  // nothing is there
     const int x = int(i % size_t(width)), y = int(i / size_t(width));
     float sum = 0, count = 0;
     for (int b = std::max(0, y - 1); b <= std::min(height - 1, y + 1); ++b)

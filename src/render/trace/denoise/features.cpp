@@ -15,7 +15,7 @@ namespace sg::trace {
 
 namespace {
 
-constexpr int most_rays = 16;
+constexpr int most_rays = 16, most_rays_in_matter = 4;  // ways through matter cost more than they tell
 constexpr int most_layers = 16;  // of what is translucent
 
 using Seen = std::array<float, Features::channels>;
@@ -66,11 +66,11 @@ Features features_of(const World& world, const PictureCamera& camera, const Ligh
   Features f;
   f.width = camera.width(), f.height = camera.height();
   const size_t pixels = size_t(f.width) * size_t(f.height);
-  need_memory(double(pixels) * 2 * Features::channels * sizeof(float), fmt::format("{}x{} pixels to compare", f.width, f.height), "denoise",
+  need_memory(double(pixels) * double(2 * sizeof(Seen)), fmt::format("{}x{} pixels to compare", f.width, f.height), "denoise",
               "make a smaller picture: --size");
   for (auto* planes : {&f.mean, &f.variance})
     for (Plane<float>& p : *planes) p.resize(pixels);
-  const int rays = std::min(options.paths, most_rays);
+  const int rays = std::min(options.paths, world.has_media() ? most_rays_in_matter : most_rays);
   parallel_for(
       size_t(f.height), 1,
       [&](size_t y, size_t) {
