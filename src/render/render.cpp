@@ -116,9 +116,8 @@ void check_picture_memory(int width, int height, int frames) {
 }
 
 std::string light_text(const TraceReport& report) {
-  const std::string paths = fmt::format("{:.0f} paths a pixel on average", report.paths);
-  return report.paths < 2 ? paths + ", too few to know the error"
-                          : fmt::format("{}, standard error {:.4f} of full scale", paths, report.noise);
+  if (report.paths < 2) return "1 path a pixel, too few to know the error";
+  return fmt::format("{:.0f} paths a pixel on average, standard error {:.4f} of full scale", report.paths, report.noise);
 }
 
 Frame render(const Scene& scene, const Camera& camera, const RenderOptions& options, Context& context, TraceReport* report) {
