@@ -34,6 +34,7 @@ void Context::on_message(std::function<void(bool, std::string_view)> f) {
       if (level != sg::LogLevel::debug) f(level == sg::LogLevel::warning, text);
     };
 }
+void Context::on_picture(std::function<void(const Image&)> f) { state_->picture = std::move(f); }
 void Context::cancel() const noexcept { state_->core.cancel(); }
 bool Context::cancelled() const noexcept { return state_->core.cancelled(); }
 

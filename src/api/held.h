@@ -42,6 +42,7 @@ struct Array::Held {
 };
 struct Context::State {
   sg::Context core;
+  std::function<void(const Image&)> picture;
 };
 
 /// A context for work on data that keeps what is said, and passes it on.
@@ -66,6 +67,8 @@ struct Image::Held {
   std::vector<Legend> legends = {};
 };
 
+/// Has pictures on the way told to the context, if that wants any; `file` and `context` must outlive the work.
+void watch(sg::PictureOptions& options, const sg::PipelineFile& file, const Context& context);
 /// Of those of a picture, what the library tells.
 std::vector<Legend> told_legends(const std::vector<sg::Legend>& legends);
 

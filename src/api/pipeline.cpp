@@ -165,6 +165,7 @@ Image Pipeline::render(int width, int height, const Context& context) const {
     options.results = state_->results;
     sg::PipelineFile file = state_->file;
     if (width > 0 && height > 0) file.picture.push_back(fmt::format("size={}x{}", width, height));
+    watch(options, file, context);
     sg::Picture picture = sg::make_picture(file, options, context.state().core);
     return Image(std::make_shared<const Image::Held>(Image::Held{std::move(picture.image), std::move(file), std::move(picture.notes),
                                                                  std::move(picture.seen), told_legends(picture.legends)}));

@@ -74,6 +74,14 @@ sg::PipelineFile Scene::State::pipeline(int width, int height,
   return file;
 }
 
+void watch(sg::PictureOptions& options, const sg::PipelineFile& file, const Context& context) {
+  if (!context.state().picture) return;
+  options.on_draft = [&file, &context](const sg::Picture& picture, const sg::PictureDraft&) {
+    context.state().picture(
+        Image(std::make_shared<const Image::Held>(Image::Held{picture.image, file, picture.notes, picture.seen, told_legends(picture.legends)})));
+  };
+}
+
 Scene::Scene() : state_(std::make_shared<State>()) {}
 
 Scene& Scene::show(const Data& data) { return show(data, sg::auto_show); }
@@ -114,6 +122,7 @@ Image Scene::render(int width, int height, const Context& context) const {
     });
     // What is shown is at hand, so nothing above it runs.
     for (const auto& step : file.steps) options.results.try_emplace(step.name, sg::DatasetPtr());
+    watch(options, file, context);
     sg::Picture picture = sg::make_picture(file, options, context.state().core);
     return Image(std::make_shared<const Image::Held>(Image::Held{std::move(picture.image), std::move(file), std::move(picture.notes),
                                                                  std::move(picture.seen), told_legends(picture.legends)}));
@@ -126,6 +135,7 @@ int Image::height() const { return held_->image.height; }
 int Image::channels() const { return held_->image.channels; }
 std::span<const uint8_t> Image::pixels() const { return held_->image.pixels; }
 std::span<const float> Image::depth() const { return {held_->seen.depth.data(), held_->seen.depth.size()}; }
+std::span<const float> Image::error() const { return {held_->seen.light.error.data(), held_->seen.light.error.size()}; }
 std::span<const uint32_t> Image::ids() const { return {held_->seen.show.data(), held_->seen.show.size()}; }
 const std::vector<Legend>& Image::legends() const { return held_->legends; }
 const std::vector<std::string>& Image::notes() const { return held_->notes; }

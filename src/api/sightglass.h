@@ -91,6 +91,8 @@ struct Param {
 };
 using Params = std::vector<Param>;
 
+class Image;
+
 /// Progress, messages and an end before the end, of the work it is given to. Copies are the same context. Once cancelled it stays so.
 class SIGHTGLASS_API Context {
  public:
@@ -99,6 +101,9 @@ class SIGHTGLASS_API Context {
   void on_progress(std::function<void(double fraction, std::string_view doing)> f);
   /// Called with what a user should know: notes (warning = false) and warnings. The same rules.
   void on_message(std::function<void(bool warning, std::string_view text)> f);
+  /// Called by render() with pictures by paths of light (picture: integrator) while they grow: one at once, then better ones, every second
+  /// and then more rarely; not with the one that render() returns. The same rules.
+  void on_picture(std::function<void(const Image&)> f);
   /// The work ends soon, with Error of kind cancelled. From any thread, and from a signal handler.
   void cancel() const noexcept;
   bool cancelled() const noexcept;
@@ -409,6 +414,8 @@ class SIGHTGLASS_API Image {
   std::span<const float> depth() const;
   /// Which of what was shown is seen: 1 is that of the first show(), 0 nothing, legends or axes. Empty for the pictures of a film.
   std::span<const uint32_t> ids() const;
+  /// Of pictures by paths of light the standard error of each pixel as displayed, as a share of full scale, before denoising; else empty.
+  std::span<const float> error() const;
   /// What the legends say, each once. Empty without legends and for the pictures of a film.
   const std::vector<Legend>& legends() const;
   /// What was chosen and why, one line each.

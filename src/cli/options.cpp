@@ -214,17 +214,19 @@ void add_look(CLI::App& a, Options& o) {
         fmt::format("--{}", name), [&o, name](const std::string& text) { o.light.push_back(fmt::format("{}={}", name, text)); },
         doc_of<PictureParams>(name));
   };
-  add_light("environment"), add_light("integrator"), add_light("noise");
+  add_light("environment"), add_light("integrator"), add_light("noise"), add_light("denoise");
   a.add_option("--background", o.background, doc_of<PictureParams>("background"));
 }
 
 void add_picture(CLI::App& a, Options& o, RawText& raw) {
   add_look(a, o), add_film(a, o);
   a.add_flag("--progressive", o.progressive,
-             "Volumes larger than memory: write a coarse picture at once, then replace it by finer ones up to the final one");
+             "Volumes larger than memory, and with an integrator: write a coarse picture at once, then replace it by finer ones up to the "
+             "final one");
   a.add_option(
       "--within", raw.within,
-      "Volumes larger than memory: write the best picture ready after this time, e.g. 2s or 500ms, and report its level and error");
+      "Volumes larger than memory, and with an integrator: write the best picture ready after this time, e.g. 2s or 500ms, and report its "
+      "level and error");
   add_output(a, o);
 }
 

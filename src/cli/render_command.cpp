@@ -33,7 +33,9 @@
 #include "pipeline/offline/page.h"
 #include "pipeline/picture/picture.h"
 #include "pipeline/picture/picture_cost.h"
+#include "pipeline/picture/picture_layers.h"
 #include "pipeline/picture/picture_sets.h"
+#include "render/render.h"
 
 namespace sg {
 
@@ -63,6 +65,7 @@ void check_output(const std::string& path) {
 const auto program_start = std::chrono::steady_clock::now();
 
 std::string describe(const PictureDraft& d) {
+  if (d.light) return light_text(*d.light);
   std::string text = fmt::format("{}, a voxel covers at most {:.3g} pixel{}", d.made_of, d.voxel_pixels, d.voxel_pixels == 1 ? "" : "s");
   if (d.compared)
     text +=
@@ -88,12 +91,14 @@ void set_drafts(PictureOptions& options, const PipelineFile& file, const std::st
   }
 }
 
-int render_to(PipelineFile& file, const std::string& output, PictureOptions options, const Options& o, Context& context) {
+int render_to(PipelineFile& file, const std::string& output, const std::string& layers, PictureOptions options, const Options& o,
+              Context& context) {
   if (o.explain) {
     print_explanation(file, true);
     return 0;
   }
   check_output(output);
+  if (!layers.empty()) format_to_write(layers), options.layers = true;
   if (o.memory > 0) check_memory(build_graph(file), o);
   const bool streamed = output == standard_output;
   if (streamed && (o.progressive || o.within > 0))
@@ -107,6 +112,7 @@ int render_to(PipelineFile& file, const std::string& output, PictureOptions opti
     return 0;
   }
   const StopWatch watch;
+  if (!layers.empty()) write_data(layers, layers_of(picture), {}, context);
   write_image(output, picture.image);
   context.log(LogLevel::debug, fmt::format("writing '{}': {}", output, watch.text()));
   if (!o.quiet) {
@@ -145,6 +151,8 @@ int render_page(PipelineFile file, const PageParams& params, const FilmParams& f
 // Makes a picture, the pictures of a film, or a page, whatever the output is.
 int render_into(PipelineFile file, const FilmParams& film, const PictureOptions& options, const Options& o, Context& context) {
   PageParams page;
+  if (!film.layers.empty() && (is_page(film.output) || is_film(film.output)))
+    fail_usage("layers belong to a single picture", "--layers", "name one picture with -o, or leave out layers");
   if (is_page(film.output)) {
     take_page_words(file, page);
     if (!o.explain) return render_page(std::move(file), page, film, options, o, context);
@@ -164,7 +172,7 @@ int render_into(PipelineFile file, const FilmParams& film, const PictureOptions&
   if ((word_value(o.film, "times") || film.turntable > 0) && !o.explain)
     fail_usage("several pictures are asked for, but the output name is a single one", film.turntable > 0 ? "--turntable" : "--times",
                "number them with -o out_{n}.png, or make a film with -o film.webm");
-  return render_to(file, film.output, options, o, context);
+  return render_to(file, film.output, film.layers, options, o, context);
 }
 
 }  // namespace
@@ -229,7 +237,7 @@ int run_open(const Options& o, Context& context) {
     PipelineFile file = recipe_in(image, path, changed);
     for (const std::string& c : changed) context.warn(fmt::format("'{}' has changed since the picture was made", c));
     if (!o.size.empty()) file.picture.push_back("size=" + o.size);
-    render_to(file, output, {}, o, context);
+    render_to(file, output, "", {}, o, context);
   }
   return 0;
 }

@@ -76,16 +76,33 @@ std::vector<uint8_t> uneven_squares(const Frame& frame, int side, double thresho
 /// little. The bands depend on the size of the picture alone.
 constexpr size_t band_pixels = size_t(1) << 21;
 
-Frame render_light(const Scene& scene, const Camera& camera, const RenderOptions& options, Context& context) {
+// What became of the noise that was asked for.
+std::string unreached(const TraceReport& report, const LightOptions& light) {
+  if (report.reached) return "";
+  if (report.stopped > 0 && light.seconds > 0)
+    return fmt::format("; noise={} was not reached everywhere in {:.3g} s, enough for {} paths a pixel there", light.noise,
+                       light.seconds, report.stopped);
+  if (report.stopped > 0) return fmt::format("; stopped before noise={} was reached everywhere", light.noise);
+  if (light.stop > 0 && light.stop < light.paths)
+    return fmt::format("; noise={} was not reached everywhere with stop={}", light.noise, light.stop);
+  return fmt::format("; noise={} was not reached everywhere with paths={}", light.noise, light.paths);
+}
+
+Frame render_light(const Scene& scene, const Camera& camera, const RenderOptions& options, TraceReport& report, Context& context) {
   check_picture_memory(options.width, options.height, 2);
-  TraceReport report;
+  LightWatch watch;
+  watch.every = options.watch.every;
+  if (options.watch.on_frame)
+    watch.on_frame = [&](const Frame& light, const TraceReport& so_far) {
+      Frame frame = light;
+      composite_background(scene, frame);
+      return options.watch.on_frame(frame, so_far);
+    };
   Frame frame = trace_scene(scene, prepare_scene(scene, context), make_projection(camera, options.width, options.height), *options.light,
-                            report, context);
+                            report, context, watch);
   composite_background(scene, frame);
-  context.info(fmt::format(
-      "light: {:.0f} paths a pixel on average, standard error {:.4f} of full scale{}", report.paths, report.noise,
-      report.reached ? ""
-                     : fmt::format("; noise={} was not reached everywhere with paths={}", options.light->noise, options.light->paths)));
+  context.info(fmt::format("light: {}{}{}", light_text(report), unreached(report, *options.light),
+                           options.light->denoise ? "; denoised, the error is that before" : ""));
   return frame;
 }
 
@@ -98,13 +115,21 @@ void check_picture_memory(int width, int height, int frames) {
               "make a smaller picture: --size");
 }
 
-Frame render(const Scene& scene, const Camera& camera, const RenderOptions& options, Context& context) {
+std::string light_text(const TraceReport& report) {
+  if (report.paths < 2) return "1 path a pixel, too few to know the error";
+  return fmt::format("{:.0f} paths a pixel on average, standard error {:.4f} of full scale", report.paths, report.noise);
+}
+
+Frame render(const Scene& scene, const Camera& camera, const RenderOptions& options, Context& context, TraceReport* report) {
   if (options.width < 1 || options.height < 1 || options.width > 32768 || options.height > 32768)
     fail_usage(fmt::format("picture size {}x{} is out of range", options.width, options.height), "render",
                "each side must be 1 to 32768 pixels");
   if (options.samples < 0 || options.samples > 8)
     fail_usage(fmt::format("{} samples per pixel and axis", options.samples), "render", "give 1 to 8, or 0 for the default");
-  if (options.light) return render_light(scene, camera, options, context);
+  if (options.light) {
+    TraceReport own;
+    return render_light(scene, camera, options, report ? *report : own, context);
+  }
   const int n = chosen_samples(scene, options.samples);
   const Projection whole = make_projection(camera, options.width * n, options.height * n);
   const bool adaptive = options.adaptive > 0 && n > 1;

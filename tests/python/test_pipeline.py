@@ -102,3 +102,31 @@ def test_legends_say_what_is_drawn(volume):
     named, = sg.uniform(parts, name="part").slice(axis="y").plot(size=(80, 60)).legend
     assert [e.value for e in named.entries] == [0, 3, 7] and named.colors.shape == (0, 3)
     assert len({e.color for e in named.entries}) == 3
+
+
+def test_pictures_by_paths_grow_and_tell_their_error(volume):
+    scene = sg.scene().add(sg.uniform(volume).contour(values=[8]), "surface", color="tomato")
+    scene.picture(integrator="path", noise=0.02, paths=32)
+    seen = []
+    picture = scene.render((80, 60), on_picture=seen.append)
+    assert picture.error.shape == (60, 80)
+    assert 0 < picture.error.max() < 0.5
+    assert seen and seen[0].size == (80, 60)
+    assert (seen[0].array != picture.array).any()
+    assert np.sqrt((seen[0].error ** 2).mean()) > np.sqrt((picture.error ** 2).mean())
+    assert (scene.render((80, 60)).array == picture.array).all()
+    assert sg.scene().add(sg.uniform(volume)).render((80, 60)).error.size == 0
+
+    def stop(_):
+        raise LookupError("seen enough")
+
+    with pytest.raises(LookupError, match="seen enough"):
+        scene.render((80, 60), on_picture=stop)
+
+
+def test_a_picture_that_time_ended_can_be_made_again(volume, tmp_path):
+    scene = sg.scene().add(sg.uniform(volume).contour(values=[8]), "surface", color="tomato")
+    scene.picture(integrator="path", noise=0.0001, paths=100000, seconds=0.2, denoise=True)
+    picture = scene.render((80, 60))
+    stated = picture.recipe.split("picture:")[1]
+    assert "stop: " in stated and "seconds" not in stated and "denoise: true" in stated

@@ -100,6 +100,48 @@ TEST_CASE("session: a saved picture has the window's camera, and its recipe make
   CHECK_FALSE(session->saved("somethingelse"));
 }
 
+TEST_CASE("session: pictures by paths grow while nothing else is wanted, and end as the one that a file would hold") {
+  PipelineFile file = pipeline(ball + skin, "  - {surface: {color: tomato}, of: skin}\n");
+  file.picture = {"integrator=path", "noise=0.0001", "paths=48", "denoise=yes"};
+  const auto session = session_of(file);
+  Window window(*session);
+  window.say(draw);
+  const std::vector<Shot> shots = window.frames();
+  // One by the rasterizer, one path a pixel, two, perhaps more, and all.
+  REQUIRE(shots.size() >= 4);
+  CHECK(shots[0].header["told"].text().empty());
+  CHECK(shots[1].header["told"].text() == "1 path a pixel, too few to know the error");
+  CHECK(shots[2].header["told"].text().starts_with("2 paths a pixel"));
+  CHECK(shots.back().header["told"].text().find("standard error") != std::string::npos);
+  for (size_t i = 0; i + 1 < shots.size(); ++i) {
+    CHECK_FALSE(shots[i].header["final"].boolean());
+    CHECK(shots[i].header["size"][0].number() == (i == 0 ? shots[0].header["size"][0].number() : 240));
+  }
+  CHECK(shots.back().header["final"].boolean());
+  file.picture.push_back("size=240x180");
+  Context context;
+  const Picture whole = make_picture(file, {}, context);
+  CHECK(image_of(shots.back().bytes).pixels == whole.image.pixels);
+}
+
+TEST_CASE("session: a camera that turns ends a picture by paths at once, and nothing of it comes afterwards") {
+  PipelineFile file = pipeline(ball + skin, "  - {surface: {color: tomato}, of: skin}\n");
+  file.picture = {"integrator=path", "noise=0.0001", "paths=1000000"};  // an hour
+  const auto session = session_of(file);
+  Window window(*session);
+  window.say(draw);
+  while (!window.next_frame().header["told"].text().starts_with("2 paths")) continue;
+  const std::string camera = "'camera':{'position':[3,-4,2],'target':[0,0,0],'up':[0,0,1],'parallel':true,'view_angle':30,'height':2.5}";
+  window.say("{'do':'draw','n':2,'view':0,'size':[240,180],'scale':1,'moving':true," + camera + "}");
+  Shot shot = window.next_frame();
+  while (shot.header["n"].number() == 1) shot = window.next_frame();  // what was on its way
+  CHECK(shot.header["n"].number() == 2);
+  CHECK(shot.header["told"].text().empty());
+  window.say("{'do':'draw','n':3,'view':0,'size':[240,180],'scale':1,'moving':false," + camera + "}");
+  for (int i = 0; i < 3; ++i) CHECK(window.next_frame().header["n"].number() >= 2);
+  window.close();
+}
+
 TEST_CASE("session: of several wishes the newest counts, and pictures wait until the last one was shown") {
   const auto session = session_of(pipeline(ball, "  - {volume: {opacity: \"0:0.3,1:0\"}, of: ball}\n"));
   Window window(*session);

@@ -56,6 +56,28 @@ TEST_CASE("workers: the same bytes as in this process") {
   CHECK(worker.save(request(), "a.png", context) == local.save(request(), "a.png", context));
 }
 
+TEST_CASE("workers: pictures by paths come on the way, and end as in this process") {
+  PipelineFile file = parse_pipeline("sightglass: 1\nsteps:\n  ball: {sphere: {size: 24}}\n  skin: {contour: {values: 0}, from: ball}\nshow:\n"
+                                     "  - {surface: {color: tomato}, of: skin}\n",
+                                     "", picture_vocabulary());
+  file.picture = {"integrator=path", "noise=0.0001", "paths=64"};
+  Context context;
+  WorkerRenderer worker(options());
+  LocalRenderer local(64 << 20, {});
+  worker.load(file, context), local.load(file, context);
+  std::vector<std::string> told;
+  const OnFiner on_finer = [&](const DrawnView& d) {
+    told.push_back(d.told);
+    CHECK(d.width == 160);
+    CHECK(d.type == "image/jpeg");
+  };
+  const DrawnView there = worker.draw(request(), on_finer, context), here = local.draw(request(), context);
+  CHECK(*there.bytes == *here.bytes);
+  CHECK(there.told == here.told);
+  REQUIRE_FALSE(told.empty());
+  CHECK(told[0].find("paths a pixel") != std::string::npos);
+}
+
 TEST_CASE("workers: errors and cancelling pass between the processes") {
   Context context;
   WorkerRenderer worker(options());

@@ -107,6 +107,7 @@ export interface FrameHeader {
   area?: [number, number, number, number]; // where in `of` the camera looks: x, y, width, height; the rest is room of legends
   part?: boolean; // the picture is of `area` alone; the rest stays
   milliseconds: number;
+  told?: string; // of pictures by paths of light: how exact it is
 }
 
 export interface ProbeAnswer {

@@ -107,7 +107,7 @@ function status(app: App): TemplateResult {
     <span class="grow probe">${here ? probeText(here, app.state?.length_unit) : html`<span class="quiet">${toolHint(app.tool)}</span>`}</span>
     ${p ? html`<span class="progress"><progress max="1" .value=${p.share} aria-label="Progress"></progress> ${p.doing}</span>` : nothing}
     ${session.people.count > 1 ? people(app) : nothing}
-    ${f ? html`<span class="quiet facts-line">${f.of[0]}×${f.of[1]} · ${Math.round(f.milliseconds)} ms${app.view.camera?.parallel ? " · parallel" : ""}${f.final ? "" : f.coarse > 1 ? ` · ${plain(f.coarse)}× coarser` : " · refining"}</span>` : nothing}
+    ${f ? html`<span class="quiet facts-line">${f.of[0]}×${f.of[1]} · ${Math.round(f.milliseconds)} ms${app.view.camera?.parallel ? " · parallel" : ""}${f.told ? ` · ${f.told}` : ""}${f.final ? "" : f.coarse > 1 ? ` · ${plain(f.coarse)}× coarser` : " · refining"}</span>` : nothing}
   </footer>`;
 }
 

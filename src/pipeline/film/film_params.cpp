@@ -21,6 +21,10 @@ void describe(Schema& s, FilmParams& p) {
   s("fps", p.fps, "Films: pictures per second; default: 25, or fewer, down to 2, for a film of less than four seconds.").range(0.1, 1000);
   s("turntable", p.turntable, "Films: pictures of one turn of the camera about the shape, in place of times; e.g. 100. 0: none.")
       .range(0, 100000);
+  s("layers", p.layers,
+    "Of a single picture: also write what lies behind its colours, a number for each pixel, as data on a grid (.vti, .nrrd, .zarr, ...): "
+    "light, color, depth, show; with an integrator error, albedo and normal.")
+      .unit("new file");
 }
 
 double pictures_per_second(const FilmParams& p, size_t count) {

@@ -34,7 +34,7 @@ Image poster_of(const offline::PageStep& step, Context& context) {
   StatedPicture small = step.stated;
   const double factor = std::min(1.0, poster_width / double(small.width));
   small.width = std::max(1, int(small.width * factor)), small.height = std::max(1, int(small.height * factor));
-  return draw_picture(step.panel.scene, step.panel.camera, small, step.panel.annotation, 1, context).image;
+  return draw_picture(step.panel.scene, step.panel.camera, small, step.panel.annotation, {}, context).image;
 }
 
 std::string recipe_text(const PipelineFile& file, const std::string& output) {

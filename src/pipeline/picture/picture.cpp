@@ -67,8 +67,20 @@ void describe(Schema& s, PictureParams& p) {
     "metropolis finish all of it together.")
       .range(0.0001, 1);
   s("paths", p.light.paths, "With an integrator: most paths per pixel.").range(1, 1 << 20);
+  s("seconds", p.light.seconds,
+    "With an integrator: seconds after which the picture stops, all of it as far as it has come, and says which noise it has reached. The "
+    "recipe then has the paths in 'stop' in place of them. 0: no limit.")
+      .range(0, 1e6)
+      .unit("s");
+  s("stop", p.light.stop,
+    "With an integrator: the picture stops at this number of paths per pixel, as one that seconds=... has stopped there. 0: at 'paths'.")
+      .range(0, 1 << 20);
+  s("denoise", p.light.denoise,
+    "With an integrator: take each pixel's light from all pixels near it that look alike as far as noise can tell, guided by colours, "
+    "directions and distances of what is seen. What is finer than the noise is lost.");
   s("bounces", p.light.bounces, "With an integrator: most turns of a path.").range(0, 1000);
   s("sampler", p.light.sampler, "With an integrator: how the random numbers of a pixel lie to each other (see: sightglass samples).");
+  s("seed", p.seed, "With an integrator: another number draws other paths, with other noise.").range(0, 1e9);
   s("lights", p.lights,
     "Lights apart by semicolons, each a kind and words: 'rectangle from=left-above size=0.5; sphere from=right brightness=0.3', 'sun "
     "elevation=20'. Kinds: point, directional, sphere, disc, rectangle, sun (sightglass ops KIND). Without an integrator each becomes a "
@@ -138,6 +150,14 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   Context computing(context, 0, 0.5), drawing(context, 0.5, 1);
   const PreparedPicture prepared = prepare_picture(file, options, computing);
   Picture picture = draw_prepared(prepared, prepared.stated, options, drawing);
+  if (!in_panels(prepared.stated.picture) && !picture.image.pixels.empty()) {
+    // The same picture on any machine.
+    std::erase_if(file.picture, [](const std::string& w) { return w.starts_with("seconds="); });
+    if (picture.stopped > 0) {
+      std::erase_if(file.picture, [](const std::string& w) { return w.starts_with("stop="); });
+      file.picture.push_back(fmt::format("stop={}", picture.stopped));
+    }
+  }
   context.progress(1, "done");
   return picture;
 }

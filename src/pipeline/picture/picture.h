@@ -15,6 +15,7 @@
 #include "image/image.h"
 #include "pipeline/file/pipeline_file.h"
 #include "render/trace/light_options.h"
+#include "render/trace/progress/light_watch.h"
 
 namespace sg {
 
@@ -36,6 +37,7 @@ struct PictureParams {
   double adaptive = 0;
   double text = 1;
   std::optional<trace::IntegratorKind> integrator;
+  int seed = 0;
   LightOptions light;
   std::string lights, environment;
 };
@@ -51,10 +53,11 @@ struct Picture;
 struct Panel;
 struct StatedPicture;
 
-/// One of several pictures of a volume that memory does not hold.
+/// One of several pictures: of a volume that memory does not hold, or by paths.
 struct PictureDraft {
   std::string made_of;      ///< "level 3 of 7 (204x204x204)": what is in memory; or "bricks"
   double voxel_pixels = 1;  ///< largest number of pixels a voxel covers (if the allowed memory suffices)
+  std::optional<TraceReport> light;  ///< of pictures by paths that grow, instead of these
   bool compared = false;
   double most = 0, mean = 0;  ///< of full scale: change from the picture with voxels of about twice that size, an estimate of the error
 };
@@ -64,10 +67,11 @@ inline constexpr std::string_view auto_show = "auto";
 
 struct PictureOptions {
   std::shared_ptr<Cache> cache;  ///< shared between pictures; null = one of its own
-  /// For volumes that memory does not hold: gets a picture at once, then finer ones; only the final one is returned. Not called for
-  /// others.
+  /// For volumes that memory does not hold, and pictures by paths: gets a picture at once, then finer ones; only the final one is returned.
+  /// Not called for others, nor for several panels.
   std::function<void(const Picture&, const PictureDraft&)> on_draft;
   std::optional<std::chrono::steady_clock::time_point> until;  ///< with on_draft: then the finest picture so far is returned
+  bool layers = false;                                         ///< fill in all of Seen
   /// What is about to be drawn; false: it is not, and the picture has no pixels. Throws Error(usage) for a picture of several panels.
   std::function<bool(const Panel&, const StatedPicture&)> on_panel;
   std::function<void(std::string_view name, double seconds)> on_ran;  ///< see GraphOptions
@@ -79,6 +83,8 @@ struct PictureOptions {
 struct Seen {
   Plane<float> depth;    ///< along the view, in units of the data; of volumes where half of the light is gone; infinity where nothing is
   Plane<uint32_t> show;  ///< which entry under `show`, from 1; 0 where none is
+  LightPlanes light;     ///< of pictures by paths; albedo and normal with PictureOptions::layers
+  Plane<float> rgba;     ///< 4 a pixel, with PictureOptions::layers: the picture before texts, linear and premultiplied
 };
 
 struct Picture {
@@ -87,10 +93,12 @@ struct Picture {
   std::vector<Legend> legends;       ///< each once, as drawn
   std::vector<std::string> notes;    ///< what was chosen and why, one line each
   std::vector<PictureDraft> drafts;  ///< with on_draft: of each that was made, this one last
+  int stopped = 0;                   ///< by paths, where time ended it: as TraceReport::stopped
 };
 
 /// Evaluates the steps, shows what is requested (or else what the data suggests), renders and annotates.
-/// `file` is completed with what was chosen, so that recipe_of() gives the recipe. All mistakes that can be seen beforehand are
+/// `file` is completed with what was chosen, so that recipe_of() gives the recipe; where time ended a picture by paths, `stop` stands in the
+/// place of `seconds`. All mistakes that can be seen beforehand are
 /// reported together, before anything runs.
 Picture make_picture(PipelineFile& file, const PictureOptions& options, Context& context);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of volumes that memory does not hold: one at once, finer ones as long as there is time.
+// Pictures of volumes that memory does not hold, and by paths: one at once, finer ones as long as there is time.
 #include <fmt/core.h>
 
 #include <condition_variable>
@@ -77,15 +77,35 @@ void compare(const Image& a, const Image& b, PictureDraft& draft) {
   draft.compared = true, draft.most = most / 255.0, draft.mean = double(sum) / 255.0 / double(std::max<size_t>(1, a.pixels.size()));
 }
 
+void draw_by_paths(const Scene& scene, const Camera& camera, const StatedPicture& stated, const Annotation& annotation,
+                   const PictureOptions& options, Picture& picture, Context& context) {
+  DrawHow how;
+  how.until = options.until, how.layers = options.layers;
+  const auto take = [&](DrawnPicture drawn) {
+    picture.image = std::move(drawn.image), picture.seen = std::move(drawn.seen), picture.stopped = drawn.light.stopped;
+    PictureDraft draft;
+    draft.light = std::move(drawn.light);
+    return draft;
+  };
+  if (options.on_draft)
+    how.on_finer = [&](DrawnPicture drawn) {
+      options.on_draft(picture, take(std::move(drawn)));
+      return true;
+    };
+  PictureDraft last = take(draw_picture(scene, camera, stated, annotation, how, context));
+  if (options.on_draft) picture.drafts.push_back(std::move(last));
+}
+
 }  // namespace
 
 void draw_drafts(const Scene& scene, const Camera& camera, const StatedPicture& stated, const Annotation& annotation,
                  const PictureOptions& options, Picture& picture, Context& context) {
+  if (follows_light(scene, stated)) return draw_by_paths(scene, camera, stated, annotation, options, picture, context);
   PictureDraft draft;
   const Rect area = picture_beside_legends(annotation, stated);
   const Projection p = make_projection(camera, int(area.width), int(area.height));
   const double coarsest = options.on_draft ? pixels_in_memory(scene, p, draft.made_of) : 0;
-  const auto draw = [&](double coarser, Context& c) { return draw_picture(scene, camera, stated, annotation, coarser, c); };
+  const auto draw = [&](double coarser, Context& c) { return draw_picture(scene, camera, stated, annotation, {.coarser = coarser, .layers = options.layers}, c); };
   const auto take = [&](DrawnPicture drawn) { picture.image = std::move(drawn.image), picture.seen = std::move(drawn.seen); };
   if (!(coarsest > 1)) {  // all is in memory, or fine enough there
     take(draw(1, context));

@@ -2,6 +2,10 @@
 // The picture without its legends, and the box behind the data.
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <chrono>
+#include <optional>
+
 #include "pipeline/graph/step_report.h"
 #include "pipeline/picture/picture_parts.h"
 #include "pipeline/picture/picture_report.h"
@@ -93,48 +97,90 @@ Rect picture_beside_legends(const Annotation& annotation, const StatedPicture& s
   return {double(room.left), double(room.top), double(s.width - room.left - room.right), double(s.height - room.top - room.bottom)};
 }
 
-DrawnPicture draw_picture(const Scene& scene, const Camera& camera, const StatedPicture& s, const Annotation& annotation, double coarser,
-                          Context& context) {
+bool follows_light(const Scene& scene, const StatedPicture& s) { return s.picture.integrator || scatters_light(scene); }
+
+namespace {
+
+// What is asked of paths, if any are followed.
+std::optional<LightOptions> light_of(const Scene& scene, const StatedPicture& s, const DrawHow& how) {
+  if (!follows_light(scene, s)) return {};
+  LightOptions light = s.picture.light;
+  light.integrator = s.picture.integrator.value_or(trace::IntegratorKind::path);
+  light.seed = uint64_t(s.picture.seed), light.features = how.layers;
+  if (how.until) {
+    const double left = std::max(1e-3, std::chrono::duration<double>(*how.until - std::chrono::steady_clock::now()).count());
+    light.seconds = light.seconds > 0 ? std::min(light.seconds, left) : left;
+  }
+  return light;
+}
+
+// Numbers of a part of a picture, in the whole one.
+Plane<float> placed(const Plane<float>& part, size_t each, const Rect& at, int width, int height) {
+  Plane<float> whole;
+  if (part.empty()) return whole;
+  whole.assign(each * size_t(width) * size_t(height), 0);
+  const size_t row = each * size_t(at.width);
+  for (size_t y = 0; y < size_t(at.height); ++y)
+    std::copy_n(&part[y * row], row, &whole[each * ((y + size_t(at.y)) * size_t(width) + size_t(at.x))]);
+  return whole;
+}
+
+}  // namespace
+
+DrawnPicture draw_picture(const Scene& scene, const Camera& camera, const StatedPicture& s, const Annotation& annotation,
+                          const DrawHow& how, Context& context) {
   const Rect area = picture_beside_legends(annotation, s);
   RenderOptions options;
   options.width = int(area.width), options.height = int(area.height), options.samples = s.picture.samples;
-  options.adaptive = s.picture.adaptive, options.coarser = coarser;
-  if (s.picture.integrator || scatters_light(scene)) {
-    options.light = s.picture.light;
-    options.light->integrator = s.picture.integrator.value_or(trace::IntegratorKind::path);
-  }
+  options.adaptive = s.picture.adaptive, options.coarser = how.coarser;
+  options.light = light_of(scene, s, how);
   const bool beside = options.width < s.width || options.height < s.height;
   // The frame, one of single samples, and one of all pixels if a legend is next to it.
   check_picture_memory(s.width, s.height, 1 + (beside || options.adaptive > 0 ? 1 : 0));
+  const Projection projection = make_projection(camera, options.width, options.height);
+  const auto finish = [&](Frame frame, TraceReport light) {
+    Annotation with_texts = annotation;
+    with_texts.texts = seen_texts(scene, projection, frame);
+    for (Legend& l : with_texts.legends)
+      if (l.glyph && annotation.box) {
+        const double depth = projection.to_eye(annotation.box->center()).z;
+        l.glyph->pixels = l.glyph->in_pixels    ? l.glyph->length
+                          : projection.parallel ? l.glyph->length * projection.scale
+                          : depth > 0           ? l.glyph->length * projection.scale / depth
+                                                : 0;
+      }
+    LightPlanes planes = std::move(light.planes);
+    light.planes = {};
+    if (beside) {
+      frame = placed(frame, scene, camera, options, area, s.width, s.height, context);
+      planes = {placed(planes.error, 1, area, s.width, s.height), placed(planes.albedo, 3, area, s.width, s.height),
+                placed(planes.normal, 3, area, s.width, s.height)};
+    }
+    Image image = to_image(frame, scene.transparent);
+    annotate(image, with_texts, projection, int(area.x), int(area.y));
+    for (uint32_t& id : frame.ids) id = id > 0 && id <= scene.shows.size() ? scene.shows[id - 1] : 0;
+    Seen seen{std::move(frame.depth), std::move(frame.ids), std::move(planes), {}};
+    if (how.layers) seen.rgba = std::move(frame.rgba);
+    return DrawnPicture{std::move(image), std::move(seen), std::move(light)};
+  };
+  if (how.on_finer)
+    options.watch = {[&](const Frame& frame, const TraceReport& light) { return how.on_finer(finish(frame, light)); }, how.every};
   Frame frame;
+  TraceReport light;
   const StopWatch drawing;
   if (scene.background_top && options.height < s.height) {
     Scene part = scene;
     take_background_of(int(area.y), options.height, s.height, part);
-    frame = render(part, camera, options, context);
+    frame = render(part, camera, options, context, &light);
   } else {
-    frame = render(scene, camera, options, context);
+    frame = render(scene, camera, options, context, &light);
   }
   context.log(LogLevel::debug,
               fmt::format("drawing {}x{}: {}: {}", options.width, options.height, drawing.text(), drawn_text(scene, options)));
   const StopWatch annotating;
-  const Projection projection = make_projection(camera, options.width, options.height);
-  Annotation with_texts = annotation;
-  with_texts.texts = seen_texts(scene, projection, frame);
-  for (Legend& l : with_texts.legends)
-    if (l.glyph && annotation.box) {
-      const double depth = projection.to_eye(annotation.box->center()).z;
-      l.glyph->pixels = l.glyph->in_pixels    ? l.glyph->length
-                        : projection.parallel ? l.glyph->length * projection.scale
-                        : depth > 0           ? l.glyph->length * projection.scale / depth
-                                              : 0;
-    }
-  if (beside) frame = placed(frame, scene, camera, options, area, s.width, s.height, context);
-  Image image = to_image(frame, scene.transparent);
-  annotate(image, with_texts, projection, int(area.x), int(area.y));
+  DrawnPicture drawn = finish(std::move(frame), std::move(light));
   context.log(LogLevel::debug, fmt::format("legends, axes and texts: {}", annotating.text()));
-  for (uint32_t& id : frame.ids) id = id > 0 && id <= scene.shows.size() ? scene.shows[id - 1] : 0;
-  return {std::move(image), {std::move(frame.depth), std::move(frame.ids)}};
+  return drawn;
 }
 
 }  // namespace sg

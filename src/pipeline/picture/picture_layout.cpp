@@ -101,6 +101,7 @@ StatedPicture inside_layout(const StatedPicture& stated, const Annotation& aroun
   StatedPicture s = stated;
   s.width = std::max(1, int(area.width) / layout.columns), s.height = std::max(1, int(area.height) / layout.rows);
   s.picture.title.clear(), s.picture.caption.clear(), s.notes.clear();
+  s.picture.light.seconds /= double(count);
   return s;
 }
 
@@ -116,17 +117,22 @@ DrawnPicture draw_layout(const std::vector<NamedPanel>& panels, const StatedPict
   empty.background = stated.bottom, empty.background_top = stated.top, empty.transparent = stated.transparent;
   Frame frame = render(empty, panels[0].panel.camera, options, context);
   Image whole = to_image(frame, stated.transparent);
+  LightPlanes light;
+  const DrawHow how;
   for (size_t i = 0; i < panels.size(); ++i) {
     Annotation annotation = panels[i].panel.annotation;
     annotation.title = panels[i].title;
     Context part(context, double(i) / double(panels.size()), double(i + 1) / double(panels.size()));
-    const DrawnPicture drawn = draw_picture(panels[i].panel.scene, panels[i].panel.camera, inside, annotation, 1, part);
+    const DrawnPicture drawn = draw_picture(panels[i].panel.scene, panels[i].panel.camera, inside, annotation, how, part);
     const int x0 = int(area.x) + int(i) % columns * inside.width, y0 = int(area.y) + int(i) / columns * inside.height;
     paste(drawn.image, whole, x0, y0);
     for (int y = 0; y < inside.height && y0 + y < stated.height && x0 + inside.width <= stated.width; ++y) {
       const size_t from = size_t(y) * size_t(inside.width), to = size_t(y0 + y) * size_t(stated.width) + size_t(x0);
       std::copy_n(&drawn.seen.depth[from], inside.width, &frame.depth[to]),
           std::copy_n(&drawn.seen.show[from], inside.width, &frame.ids[to]);
+      if (drawn.seen.light.error.empty()) continue;
+      if (light.error.empty()) light.error.assign(frame.pixels(), 0);
+      std::copy_n(&drawn.seen.light.error[from], inside.width, &light.error[to]);
     }
   }
   Annotation rest;
@@ -134,7 +140,7 @@ DrawnPicture draw_layout(const std::vector<NamedPanel>& panels, const StatedPict
   rest.show_nan_in_legend = around.show_nan_in_legend;
   rest.dark_background = around.dark_background, rest.scale = around.scale, rest.triad = false;
   annotate(whole, rest, make_projection(panels[0].panel.camera, stated.width, stated.height));
-  return {std::move(whole), {std::move(frame.depth), std::move(frame.ids)}};
+  return {std::move(whole), {std::move(frame.depth), std::move(frame.ids), std::move(light), {}}, {}};
 }
 
 }  // namespace sg

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The parts of make_picture(): what is stated, what is chosen, what is drawn.
 #pragma once
+#include <chrono>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -65,6 +67,16 @@ const std::string& shown_step(const PipelineFile& file, size_t i);
 struct DrawnPicture {
   Image image;
   Seen seen;
+  TraceReport light;  ///< of pictures by paths, without planes
+};
+
+/// How a picture is drawn, beside what is stated.
+struct DrawHow {
+  double coarser = 1;  ///< as in RenderOptions
+  std::optional<std::chrono::steady_clock::time_point> until;  ///< by paths: then it stops
+  std::function<bool(DrawnPicture)> on_finer;                  ///< by paths: gets pictures on the way; false: no more of them
+  double every = 1;                                            ///< as in LightWatch
+  bool layers = false;                                         ///< as in PictureOptions
 };
 
 /// A scene, seen and annotated.
@@ -130,10 +142,11 @@ LinesItem back_edges(const Box3& box, const Camera& camera);
 /// Where the picture itself lies, without its legends; whole pixels.
 Rect picture_beside_legends(const Annotation& annotation, const StatedPicture& stated);
 /// Renders beside the legends, continues the background behind them, and annotates.
-/// `coarser` as in RenderOptions.
 DrawnPicture draw_picture(const Scene& scene, const Camera& camera, const StatedPicture& stated, const Annotation& annotation,
-                          double coarser, Context& context);
-/// Fills in picture.image, picture.seen and picture.drafts, through options.on_draft where that is set.
+                          const DrawHow& how, Context& context);
+/// Whether it is drawn by paths.
+bool follows_light(const Scene& scene, const StatedPicture& stated);
+/// Fills in picture.image, picture.seen, picture.stopped and picture.drafts, through options.on_draft where that is set.
 void draw_drafts(const Scene& scene, const Camera& camera, const StatedPicture& stated, const Annotation& annotation,
                  const PictureOptions& options, Picture& picture, Context& context);
 

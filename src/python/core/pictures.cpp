@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include <cstring>
+#include <optional>
 
 #include "python/core/calls.h"
 #include "python/core/module.h"
@@ -36,6 +37,29 @@ py::array plane_of(const Image& image, std::span<const T> (Image::*plane)() cons
   return r;
 }
 
+// f(context), while pictures on the way go to a Python function. What that raises ends the work.
+template <class F>
+Image watched(const py::object& on_picture, F&& f) {
+  if (on_picture.is_none()) return call(f);
+  std::optional<py::error_already_set> raised;
+  try {
+    return call([&](Context& context) {
+      context.on_picture([&](const Image& image) {
+        const py::gil_scoped_acquire locked;
+        try {
+          if (!raised) on_picture(image);
+        } catch (py::error_already_set& e) {
+          raised.emplace(e), context.cancel();
+        }
+      });
+      return f(context);
+    });
+  } catch (const Error&) {
+    if (raised) throw *raised;
+    throw;
+  }
+}
+
 template <size_t N>
 py::array_t<uint8_t> colors_of(const std::vector<std::array<uint8_t, N>>& colors) {
   py::array_t<uint8_t> r({py::ssize_t(colors.size()), py::ssize_t(N)});
@@ -58,6 +82,7 @@ void declare_image(py::module_& m) {
       .def_property_readonly("height", &Image::height)
       .def("pixels", &pixels_of)
       .def("depth", [](const Image& image) { return plane_of(image, &Image::depth); })
+      .def("error", [](const Image& image) { return plane_of(image, &Image::error); })
       .def("ids", [](const Image& image) { return plane_of(image, &Image::ids); })
       .def("legends",
            [](const Image& image) {
@@ -83,8 +108,11 @@ void declare_scene(py::module_& m) {
            [](Scene& scene, const Data& data, const std::string& way, const py::dict& params) { scene.show(data, way, params_of(params)); })
       .def("camera", [](Scene& scene, const py::dict& params) { scene.camera(params_of(params)); })
       .def("picture", [](Scene& scene, const py::dict& params) { scene.picture(params_of(params)); })
-      .def("render", [](const Scene& scene, int width,
-                        int height) { return call([&](const Context& context) { return scene.render(width, height, context); }); })
+      .def("render",
+           [](const Scene& scene, int width, int height, const py::object& on_picture) {
+             return watched(on_picture, [&](const Context& context) { return scene.render(width, height, context); });
+           },
+           py::arg("width"), py::arg("height"), py::arg("on_picture") = py::none())
       .def("film",
            [](const Scene& scene, const std::string& output, const py::dict& params, int width, int height) {
              const Params stated = params_of(params);
@@ -121,8 +149,11 @@ void declare_pipeline(py::module_& m) {
            })
       .def("result",
            [](const Pipeline& p, const std::string& step) { return call([&](const Context& context) { return p.result(step, context); }); })
-      .def("render", [](const Pipeline& p, int width,
-                        int height) { return call([&](const Context& context) { return p.render(width, height, context); }); })
+      .def("render",
+           [](const Pipeline& p, int width, int height, const py::object& on_picture) {
+             return watched(on_picture, [&](const Context& context) { return p.render(width, height, context); });
+           },
+           py::arg("width"), py::arg("height"), py::arg("on_picture") = py::none())
       .def("explain", &Pipeline::explain)
       .def("text", &Pipeline::text)
       .def("write", &Pipeline::write)

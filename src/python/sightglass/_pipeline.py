@@ -8,10 +8,11 @@ import warnings
 from . import _core
 from ._data import Data
 from ._errors import SightglassWarning
-from ._scene import Picture
+from ._scene import Picture, wrapped
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from typing import Any
 
 
@@ -43,9 +44,12 @@ class Pipeline:
         """Of a step; default: the last one."""
         return Data(self._core.result(step))
 
-    def render(self, size: tuple[int, int] | None = None) -> Picture:
-        """What it shows; where it shows nothing, what suits the last results. ``size``: as it states, else 1280x720."""
-        return Picture(self._core.render(*(int(n) for n in size or (0, 0))))
+    def render(self, size: tuple[int, int] | None = None, on_picture: Callable[[Picture], Any] | None = None) -> Picture:
+        """What it shows; where it shows nothing, what suits the last results. ``size``: as it states, else 1280x720.
+
+        ``on_picture``: as of :meth:`Scene.render`.
+        """
+        return Picture(self._core.render(*(int(n) for n in size or (0, 0)), wrapped(on_picture)))
 
     def explain(self) -> str:
         """The plan as a table: what runs, what is cached, with sizes and times expected."""

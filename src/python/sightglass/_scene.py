@@ -12,6 +12,7 @@ from ._errors import usage
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from typing import Any
 
     from ._legend import Legend
@@ -21,6 +22,11 @@ if TYPE_CHECKING:
 def _at_values(value: Any) -> Any:
     """A mapping from values to opacities or colours in the words of the command line."""
     return ",".join(f"@{float(at)!r}:{what}" for at, what in value.items()) if isinstance(value, Mapping) else value
+
+
+def wrapped(on_picture: Callable[[Picture], Any] | None) -> Any:
+    """The same for pictures of the core."""
+    return None if on_picture is None else lambda core: on_picture(Picture(core))
 
 
 class Picture:
@@ -42,6 +48,12 @@ class Picture:
         """(height, width): how far what is seen lies along the view, in units of the data; of volumes where half of the light is gone;
         infinity where nothing is."""
         return self._core.depth()
+
+    @property
+    def error(self) -> np.ndarray:
+        """(height, width): of pictures by paths of light (``integrator``) the standard error of each pixel as displayed, as a share of full
+        scale, before denoising; else of no rows."""
+        return self._core.error()
 
     @property
     def ids(self) -> np.ndarray:
@@ -119,9 +131,12 @@ class Scene:
         self._core.picture(params)
         return self
 
-    def render(self, size: tuple[int, int] = (1280, 720)) -> Picture:
-        """The picture, ``size`` pixels wide and high."""
-        return Picture(self._core.render(int(size[0]), int(size[1])), _core.Scene(self._core))
+    def render(self, size: tuple[int, int] = (1280, 720), on_picture: Callable[[Picture], Any] | None = None) -> Picture:
+        """The picture, ``size`` pixels wide and high.
+
+        ``on_picture`` is called with pictures by paths of light (``integrator``) while they grow: one at once, then better ones.
+        """
+        return Picture(self._core.render(int(size[0]), int(size[1]), wrapped(on_picture)), _core.Scene(self._core))
 
     def interactive(self, size: tuple[int, int] = (1280, 720), **params: Any) -> Page:
         """A page that turns, as :meth:`Picture.interactive`."""

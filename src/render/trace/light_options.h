@@ -37,6 +37,10 @@ struct LightOptions {
   int paths = 256;      ///< most paths a pixel
   int bounces = 8;      ///< most turns of a path
   uint64_t seed = 0;
+  double seconds = 0;     ///< time after which the picture stops where it is, evenly; 0: none
+  int stop = 0;           ///< the same by a number of paths a pixel, at most `paths`; 0: none
+  bool denoise = false;   ///< denoise/denoise.h
+  bool features = false;  ///< keep LightPlanes::albedo and normal
 };
 
 }  // namespace sg

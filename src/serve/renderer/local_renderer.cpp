@@ -128,7 +128,7 @@ Image draw_around(const Panel& panel, const StatedPicture& stated, Context& cont
   empty.transparent = panel.scene.transparent;
   Annotation texts = panel.annotation;
   texts.box.reset(), texts.axes = texts.triad = texts.scale_bar = false;
-  return draw_picture(empty, panel.camera, stated, texts, 1, context).image;
+  return draw_picture(empty, panel.camera, stated, texts, {}, context).image;
 }
 
 }  // namespace
@@ -165,7 +165,41 @@ DrawnView LocalRenderer::draw_moving(const PreparedPicture& prepared, const Stat
   return drawn;
 }
 
-DrawnView LocalRenderer::draw(const DrawRequest& request, Context& context) {
+// All pixels. Pictures by paths come as drafts with one path a pixel, then better and better to the exact one.
+DrawnView LocalRenderer::draw_whole(const PreparedPicture& prepared, const StatedPicture& stated, const DrawRequest& request,
+                                    const OnFiner& on_finer, Context& context) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Panel panel = panel_of(prepared, stated);
+  StatedPicture how = stated;
+  const bool exact = request.quality == Quality::exact, light = follows_light(panel.scene, stated);
+  if (!exact) how.picture.samples = 1, how.picture.light.stop = 1, how.picture.light.denoise = false;
+  const Rect area = picture_beside_legends(panel.annotation, stated);
+  const auto view_of = [&](DrawnPicture& picture, bool final) {
+    DrawnView drawn;
+    drawn.width = stated.width, drawn.height = stated.height, drawn.camera = view_camera(panel.camera);
+    drawn.type = final ? "image/png" : "image/jpeg", drawn.bytes = final ? png_of(picture.image) : jpeg_of(picture.image);
+    if (light) drawn.told = light_text(picture.light);
+    set_area(area, drawn), drawn.seconds = seconds_since(begin);
+    return drawn;
+  };
+  DrawHow drawing;
+  if (exact && light && on_finer)
+    drawing.on_finer = [&](DrawnPicture picture) {
+      context.check();
+      on_finer(view_of(picture, false));
+      return true;
+    };
+  DrawnPicture picture = draw_picture(rough(panel.scene, request.quality), panel.camera, how, panel.annotation, drawing, context);
+  DrawnView drawn = view_of(picture, exact);
+  auto planes = std::make_shared<Planes>();
+  planes->seen = std::move(picture.seen), planes->width = stated.width, planes->area = area;
+  planes->projection = make_projection(panel.camera, int(area.width), int(area.height));
+  const std::lock_guard lock(mutex_);
+  planes_[request.view] = planes;
+  return drawn;
+}
+
+DrawnView LocalRenderer::draw(const DrawRequest& request, const OnFiner& on_finer, Context& context) {
   const auto begin = std::chrono::steady_clock::now();
   const auto now = loaded();
   const StatedPicture stated = stated_for(request, now->prepared);
@@ -179,20 +213,7 @@ DrawnView LocalRenderer::draw(const DrawRequest& request, Context& context) {
   } else if (request.quality == Quality::moving) {
     drawn = draw_moving(now->prepared, stated, request, coarse_[request.view], context);
   } else {
-    const Panel panel = panel_of(now->prepared, stated);
-    StatedPicture how = stated;
-    const bool exact = request.quality == Quality::exact;
-    if (!exact) how.picture.samples = 1;
-    DrawnPicture picture = draw_picture(rough(panel.scene, request.quality), panel.camera, how, panel.annotation, 1, context);
-    drawn.camera = view_camera(panel.camera);
-    drawn.type = exact ? "image/png" : "image/jpeg", drawn.bytes = exact ? png_of(picture.image) : jpeg_of(picture.image);
-    auto planes = std::make_shared<Planes>();
-    planes->seen = std::move(picture.seen), planes->width = stated.width;
-    planes->area = picture_beside_legends(panel.annotation, stated);
-    planes->projection = make_projection(panel.camera, int(planes->area.width), int(planes->area.height));
-    set_area(planes->area, drawn);
-    const std::lock_guard lock(mutex_);
-    planes_[request.view] = planes;
+    drawn = draw_whole(now->prepared, stated, request, on_finer, context);
   }
   drawn.seconds = seconds_since(begin);
   return drawn;

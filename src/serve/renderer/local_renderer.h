@@ -17,7 +17,8 @@ class LocalRenderer : public Renderer {
   LocalRenderer(uint64_t cache_bytes, std::vector<std::string> coloring);
   PipelineFile load(const PipelineFile& pipeline, Context& context) override;
   Json::Members tell(Context& context) override;
-  DrawnView draw(const DrawRequest& request, Context& context) override;
+  using Renderer::draw;
+  DrawnView draw(const DrawRequest& request, const OnFiner& on_finer, Context& context) override;
   void forget(int view) override;
   Json::Members answer(const Json& question, Context& context) override;
   std::string save(const DrawRequest& request, const std::string& name, Context& context) override;
@@ -36,6 +37,8 @@ class LocalRenderer : public Renderer {
   };
   std::shared_ptr<const Loaded> loaded() const;
   std::shared_ptr<const Planes> planes_of(int view) const;
+  DrawnView draw_whole(const PreparedPicture& prepared, const StatedPicture& stated, const DrawRequest& request, const OnFiner& on_finer,
+                       Context& context);
   DrawnView draw_moving(const PreparedPicture& prepared, const StatedPicture& stated, const DrawRequest& request, double& coarse,
                         Context& context);
 

@@ -2,6 +2,7 @@
 // What a session asks for pictures: something in this process or in another one. All that passes is a value that could be sent.
 #pragma once
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,7 +17,7 @@ namespace sg::serve {
 /// How good a picture is to be.
 enum class Quality {
   moving,  ///< within the time that a drag leaves: fewer pixels, coarse samples, without numbers at the axes
-  draft,   ///< all pixels, one coarse sample each
+  draft,   ///< all pixels, one coarse sample or path each
   exact,   ///< the picture that a file would hold
 };
 
@@ -39,7 +40,11 @@ struct DrawnView {
   std::array<int, 4> area{};  ///< x, y, width, height of the part in which the camera looks; legends stand beside it
   double coarse = 1;          ///< pixels of the view that one of the picture stands for, along each side
   double seconds = 0;         ///< that it took
+  std::string told;           ///< of pictures by paths: how exact it is; "" for others
 };
+
+/// Gets pictures that are better than the last one and not yet what was asked for. Called by the thread that draws.
+using OnFiner = std::function<void(const DrawnView&)>;
 
 /// A pipeline, and what becomes of it. load(), tell() and draw() are called by one thread, answer() and save() by another one meanwhile, of
 /// what was last loaded. All stop with Error(cancelled) when the context is cancelled, and stay usable then and after any other error.
@@ -50,7 +55,9 @@ class Renderer {
   virtual PipelineFile load(const PipelineFile& pipeline, Context& context) = 0;
   /// Of what is loaded: members of the message "state" (docs/protocol.md).
   virtual Json::Members tell(Context& context) = 0;
-  virtual DrawnView draw(const DrawRequest& request, Context& context) = 0;
+  /// `on_finer` may be empty; pictures by paths come to it about every second.
+  virtual DrawnView draw(const DrawRequest& request, const OnFiner& on_finer, Context& context) = 0;
+  DrawnView draw(const DrawRequest& request, Context& context) { return draw(request, {}, context); }
   /// A view that will not be drawn again.
   virtual void forget(int view) = 0;
   /// Questions of docs/protocol.md: the members of the answer.

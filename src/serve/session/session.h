@@ -65,6 +65,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void warm_up(std::unique_lock<std::mutex>& lock);
   std::pair<Client*, WantedView*> next_view(bool coarse_only);
   void draw(std::unique_lock<std::mutex>& lock, Client& client, WantedView& view);
+  void send_finer(int client, const DrawnView& drawn, const WantedView& view, uint64_t revision);  // takes the mutex itself
   void answer(std::unique_lock<std::mutex>& lock, const Question& question);
   void answer_next_time(std::unique_lock<std::mutex>& lock, Question question);
   Context& begin_answer(int client);

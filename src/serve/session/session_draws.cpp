@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -29,6 +31,7 @@ std::string frame_message(const DrawnView& drawn, const WantedView& view, int nu
                     {"part", Json(drawn.part)},
                     {"coarse", Json(drawn.coarse)},
                     {"final", Json(final)},
+                    {"told", text(drawn.told)},
                     {"camera", camera_json(drawn.camera)},
                     {"area", numbers({double(drawn.area[0]), double(drawn.area[1]), double(drawn.area[2]), double(drawn.area[3])})},
                     {"milliseconds", Json(1000 * drawn.seconds)}});
@@ -97,6 +100,18 @@ std::pair<Client*, WantedView*> Session::next_view(bool coarse_only) {
   return best;
 }
 
+// What is drawn by paths grows while nothing else is wanted.
+void Session::send_finer(int id, const DrawnView& drawn, const WantedView& view, uint64_t revision) {
+  const int number = view.request.view % most_views;
+  const std::lock_guard lock(mutex_);
+  const auto it = clients_.find(id);
+  if (it == clients_.end() || revision != revision_) return;
+  WantedView& now = it->second->views[number];
+  if (now.n != view.n || now.on_its_way) return;
+  now.on_its_way = it->second->socket->send_binary(std::make_shared<const std::string>(frame_message(drawn, view, number, revision, false)));
+  now.whole = revision, now.whole_area = drawn.area;
+}
+
 void Session::draw(std::unique_lock<std::mutex>& lock, Client& client, WantedView& wanted) {
   const int id = client.id, renderer_view = wanted.request.view;
   WantedView view = wanted;
@@ -111,7 +126,7 @@ void Session::draw(std::unique_lock<std::mutex>& lock, Client& client, WantedVie
   std::string problem;
   bool cancelled = false;
   try {
-    drawn = renderer_->draw(view.request, context);
+    drawn = renderer_->draw(view.request, [&](const DrawnView& finer) { send_finer(id, finer, view, revision); }, context);
   } catch (const Error& e) {
     cancelled = e.kind() == ErrorKind::cancelled, problem = e.what();
   } catch (const std::exception& e) {

@@ -122,7 +122,7 @@ void draw(const std::vector<DatasetPtr>& parts, const std::vector<std::pair<std:
   all.add(box);
   fit_planes(camera, all);
   if (annotation.box) scene.items.emplace_back(back_edges(box, camera));
-  draw_picture(scene, camera, stated, annotation, 1, context);
+  draw_picture(scene, camera, stated, annotation, {}, context);
 }
 
 void show_one(uint64_t seed, Count& count) {

@@ -47,7 +47,8 @@ Json drawn_json(const DrawnView& d) {
                             {"part", Json(d.part)},
                             {"area", area_json(d.area)},
                             {"coarse", Json(d.coarse)},
-                            {"seconds", Json(d.seconds)}});
+                            {"seconds", Json(d.seconds)},
+                            {"told", text(d.told)}});
 }
 
 DrawnView drawn_from(const Json& json, std::string bytes) {
@@ -57,6 +58,7 @@ DrawnView drawn_from(const Json& json, std::string bytes) {
   d.part = json["part"].boolean();
   d.area = area_from(json["area"]);
   d.coarse = json["coarse"].number(), d.seconds = json["seconds"].number();
+  d.told = json["told"].text();
   d.bytes = std::make_shared<const std::string>(std::move(bytes));
   return d;
 }

@@ -107,7 +107,10 @@ class Worker {
     } else if (what == Call::tell) {
       reply.emplace_back("members", Json(renderer_->tell(context)));
     } else if (what == Call::draw) {
-      const DrawnView drawn = renderer_->draw(request_from(call["request"]), context);
+      const auto on_finer = [&](const DrawnView& drawn) {
+        channel_.send(Json(Json::Members{{"id", call["id"]}, {"finer", drawn_json(drawn)}}), *drawn.bytes);
+      };
+      const DrawnView drawn = renderer_->draw(request_from(call["request"]), on_finer, context);
       reply.emplace_back("drawn", drawn_json(drawn)), bytes = *drawn.bytes;
     } else if (what == Call::forget) {
       renderer_->forget(int(call["view"].number()));

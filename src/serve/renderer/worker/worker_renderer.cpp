@@ -67,6 +67,8 @@ struct WorkerRenderer::Process {
       if (it == calls.end()) continue;
       if (message->head.contains("progress")) {
         it->second.share = message->head["progress"].number(), it->second.doing = message->head["doing"].text(), it->second.told = true;
+      } else if (message->head.contains("finer")) {
+        it->second.finer = std::move(*message);  // in the place of one that was not taken
       } else {
         it->second.reply = std::move(*message);
       }
@@ -78,7 +80,7 @@ struct WorkerRenderer::Process {
   }
 
   struct Waiting {
-    std::optional<ChannelMessage> reply;
+    std::optional<ChannelMessage> reply, finer;
     bool told = false;
     double share = 0;
     std::string doing;
@@ -93,7 +95,7 @@ struct WorkerRenderer::Process {
   std::thread listener;
 
   // Throws Error(data) when the process ends meanwhile.
-  ChannelMessage call(Json::Members message, Context& context) {
+  ChannelMessage call(Json::Members message, Context& context, const OnFiner& on_finer = {}) {
     std::unique_lock lock(mutex);
     const uint64_t id = ++last_id;
     calls[id] = {};
@@ -111,6 +113,13 @@ struct WorkerRenderer::Process {
         const std::string doing = calls[id].doing;
         lock.unlock();
         context.progress(share, doing);
+        lock.lock();
+      }
+      if (calls[id].finer) {
+        ChannelMessage finer = std::move(*calls[id].finer);
+        calls[id].finer.reset();
+        lock.unlock();
+        if (on_finer) on_finer(drawn_from(finer.head["finer"], std::move(finer.bytes)));
         lock.lock();
       }
       if (context.cancelled() && !cancelled) {
@@ -170,8 +179,8 @@ PipelineFile WorkerRenderer::load(const PipelineFile& pipeline, Context& context
 
 Json::Members WorkerRenderer::tell(Context& context) { return call({{"call", word(Call::tell)}}, context).head["members"].members(); }
 
-DrawnView WorkerRenderer::draw(const DrawRequest& request, Context& context) {
-  ChannelMessage reply = call({{"call", word(Call::draw)}, {"request", request_json(request)}}, context);
+DrawnView WorkerRenderer::draw(const DrawRequest& request, const OnFiner& on_finer, Context& context) {
+  ChannelMessage reply = started(context)->call({{"call", word(Call::draw)}, {"request", request_json(request)}}, context, on_finer);
   return drawn_from(reply.head["drawn"], std::move(reply.bytes));
 }
 

@@ -29,7 +29,8 @@ class WorkerRenderer : public Renderer {
   ~WorkerRenderer() override;
   PipelineFile load(const PipelineFile& pipeline, Context& context) override;
   Json::Members tell(Context& context) override;
-  DrawnView draw(const DrawRequest& request, Context& context) override;
+  using Renderer::draw;
+  DrawnView draw(const DrawRequest& request, const OnFiner& on_finer, Context& context) override;
   void forget(int view) override;
   Json::Members answer(const Json& question, Context& context) override;
   std::string save(const DrawRequest& request, const std::string& name, Context& context) override;

@@ -546,7 +546,7 @@ const C=(t,e)=>[t[0]+e[0],t[1]+e[1],t[2]+e[2]],P=(t,e)=>[t[0]-e[0],t[1]-e[1],t[2
     <span class="grow probe">${n?Gn(n,t.state?.length_unit):h`<span class="quiet">${Vr(t.tool)}</span>`}</span>
     ${o?h`<span class="progress"><progress max="1" .value=${o.share} aria-label="Progress"></progress> ${o.doing}</span>`:f}
     ${s.people.count>1?Wr(t):f}
-    ${i?h`<span class="quiet facts-line">${i.of[0]}×${i.of[1]} · ${Math.round(i.milliseconds)} ms${t.view.camera?.parallel?" · parallel":""}${i.final?"":i.coarse>1?` · ${y(i.coarse)}× coarser`:" · refining"}</span>`:f}
+    ${i?h`<span class="quiet facts-line">${i.of[0]}×${i.of[1]} · ${Math.round(i.milliseconds)} ms${t.view.camera?.parallel?" · parallel":""}${i.told?` · ${i.told}`:""}${i.final?"":i.coarse>1?` · ${y(i.coarse)}× coarser`:" · refining"}</span>`:f}
   </footer>`}function Wr(t){const{people:e}=t.session,s=e.cursors.filter(n=>n.camera);return h`<span class="people">${e.count} people
     <label class="row"><input type="checkbox" .checked=${e.together} @change=${n=>t.company.setTogether(n.target.checked)} />one view for all</label>
     ${!e.together&&s.length>0?h`<select class="small" aria-label="Look along with" @change=${n=>t.company.follow(Number(n.target.value)||null)}>

@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "data/memory/memory_budget.h"
 #include "render/trace/integrators/bidirectional/picture_integrator.h"
+#include "render/trace/progress/pixel_noise.h"
 
 namespace sg::trace {
 
@@ -58,7 +59,7 @@ class Gathering {
     });
   }
 
-  /// The variance of a pixel, as displayed: by the slope of sRGB's curve there, at least that of a dark grey.
+  /// Of the displayed variance.
   struct Variance {
     double of_all = 0, of_seen = 0;  // means over all pixels, and over those in which something is seen
   };
@@ -72,14 +73,8 @@ class Gathering {
         [&](size_t begin, size_t end) {
           Part part;
           for (size_t i = begin; i < end; ++i) {
-            const Gathered& g = pixels_[i];
-            if (!(g.sum > 0) && g.passed >= paths_) continue;
-            const double mean = g.sum / paths_, off = mean * factor_error;
-            const double spread = std::max(0.0, g.square - g.sum * mean) / ((passes_ - 1) * paths_) + off * off;
-            constexpr float step = 0.01f;
-            const float y = std::clamp(float(mean), 2 * step, 1.f);
-            const double slope = double(srgb_encode(y + step) - srgb_encode(y - step)) / (2 * double(step));
-            part.sum += spread * slope * slope, part.seen += 1;
+            if (!shows(i)) continue;
+            part.sum += displayed_variance(pixels_[i].sum / paths_, variance(i, factor_error)), part.seen += 1;
           }
           return part;
         },
@@ -89,12 +84,14 @@ class Gathering {
     return {all.sum / double(pixels_.size()), all.seen > 0 ? all.sum / all.seen : 0};
   }
 
-  void develop(double factor, Frame& frame) const {
+  void develop(double factor, double factor_error, Frame& frame, Plane<float>& variances, Plane<float>& errors) const {
     parallel_for(pixels_.size(), width_, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         const Vec3 light = pixels_[i].own + pixels_[i].splats * factor;
         for (int c = 0; c < 3; ++c) frame.rgba[4 * i + size_t(c)] = float(light[c] / paths_);
         frame.rgba[4 * i + 3] = float(1 - pixels_[i].passed / paths_);
+        const double v = passes_ < 2 || !shows(i) ? 0 : variance(i, factor_error);
+        variances[i] = float(v), errors[i] = float(std::sqrt(displayed_variance(pixels_[i].sum / paths_, v)));
       }
     });
   }
@@ -102,6 +99,14 @@ class Gathering {
   double passes() const { return passes_; }
 
  private:
+  bool shows(size_t i) const { return pixels_[i].sum > 0 || pixels_[i].passed < paths_; }
+  // Of the luminance of the mean of all passes.
+  double variance(size_t i, double factor_error) const {
+    const Gathered& g = pixels_[i];
+    const double mean = g.sum / paths_, off = mean * factor_error;
+    return std::max(0.0, g.square - g.sum * mean) / ((passes_ - 1) * paths_) + off * off;
+  }
+
   PassFilm film_;
   std::vector<Gathered> pixels_;
   size_t width_;
@@ -127,31 +132,57 @@ bool lights_whole_picture(IntegratorKind kind) {
   return kind == IntegratorKind::light || kind == IntegratorKind::bdpt || kind == IntegratorKind::metropolis;
 }
 
-WholePicture draw_whole_picture(const World& world, const Projection& projection, const LightOptions& options, Context& context) {
-  const PictureCamera camera(projection, world.geometry().placement());
+void draw_whole_picture(const World& world, const PictureCamera& camera, const LightOptions& options, Sweeps& sweeps, Frame& frame,
+                        Plane<float>& variances, TraceReport& report, Context& context) {
   const Emission emission(world.lights(), world.geometry().bounds());
   const PathScene scene{world, emission, camera, options.bounces, true};
   const double pixels = camera.pixels();
   need_memory(pixels * double(sizeof(Gathered) + 2 * sizeof(Vec3) + sizeof(float)),
-              fmt::format("{}x{} pixels lit as a whole", projection.width, projection.height), "render", "make a smaller picture: --size");
+              fmt::format("{}x{} pixels lit as a whole", frame.width, frame.height), "render", "make a smaller picture: --size");
   const auto integrator = make(scene, options);
-  Gathering gathering(projection.width, projection.height);
+  Gathering gathering(frame.width, frame.height);
+  const auto develop = [&] { gathering.develop(integrator->factor(), integrator->factor_error(), frame, variances, report.planes.error); };
+  const auto most = uint32_t(options.stop > 0 ? std::min(options.stop, options.paths) : options.paths);
+  const auto size = uint32_t(integrator->pass_size());
+  report.reached = false;
+  depths_and_ids(world, camera, frame);
+  uint32_t n = 0;
+  for (bool watched = true; watched && n < most && !report.reached;) {
+    // The spread of fewer than two passes tells no error.
+    const uint32_t swept = sweeps.next(gathering.passes() < 2 ? 0 : n, size, pixels);
+    const uint32_t end = std::min(n + swept, most);
+    if (swept == 0) break;
+    while (n < end && !report.reached) {
+      context.progress(double(n) / double(most), "following light");
+      const uint32_t to = std::min(n + size, end);
+      integrator->pass(n, to, gathering.film(), context);
+      gathering.take(double(to - n), integrator->factor());
+      n = to;
+      const Gathering::Variance variance = gathering.variance(integrator->factor_error());
+      report.paths = gathering.paths(), report.noise = std::sqrt(variance.of_all);
+      report.reached = gathering.passes() >= least_passes && std::sqrt(variance.of_seen) <= options.noise;
+    }
+    sweeps.done();
+    if (report.reached || n >= most || !sweeps.wanted()) continue;
+    develop();
+    watched = sweeps.show(frame, report);
+  }
+  if (!report.reached && n < most) report.stopped = int(n);
+  develop();
+}
+
+WholePicture draw_whole_picture(const World& world, const Projection& projection, const LightOptions& options, Context& context) {
+  const PictureCamera camera(projection, world.geometry().placement());
+  const LightWatch nobody;
+  Sweeps sweeps(options, nobody);
   WholePicture picture;
   picture.frame = Frame(projection.width, projection.height);
-  const auto most = uint32_t(options.paths);
-  for (uint32_t n = 0; n < most && !picture.reached;) {
-    context.progress(double(n) / double(most), "following light");
-    const uint32_t to = std::min(n + uint32_t(integrator->pass_size()), most);
-    integrator->pass(n, to, gathering.film(), context);
-    gathering.take(double(to - n), integrator->factor());
-    n = to;
-    const Gathering::Variance variance = gathering.variance(integrator->factor_error());
-    picture.noise = std::sqrt(variance.of_all);
-    picture.reached = gathering.passes() >= least_passes && std::sqrt(variance.of_seen) <= options.noise;
-  }
-  picture.paths = gathering.paths();
-  gathering.develop(integrator->factor(), picture.frame);
-  depths_and_ids(world, camera, picture.frame);
+  TraceReport report;
+  report.planes.error.assign(picture.frame.pixels(), 0);
+  Plane<float> variances;
+  variances.assign(picture.frame.pixels(), 0);
+  draw_whole_picture(world, camera, options, sweeps, picture.frame, variances, report, context);
+  picture.paths = report.paths, picture.noise = report.noise, picture.reached = report.reached;
   return picture;
 }
 

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/trace/squares.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "data/memory/memory_budget.h"
+#include "render/prepare/shared_progress.h"
+#include "render/trace/light/luminance.h"
+#include "render/trace/progress/pixel_noise.h"
+#include "render/trace/sampling/random_stream.h"
+#include "render/trace/sampling/warp.h"
+
+namespace sg::trace {
+
+namespace {
+
+constexpr int side = 8;        // of the squares of pixels that are finished together
+constexpr uint32_t pass = 16;  // paths a pixel between two looks at the error
+constexpr int most_pixels = side * side;
+
+struct Square {
+  uint32_t paths = 0;
+  double variance = 0;  ///< as displayed, mean of its pixels
+  bool reached = false;
+};
+
+class Drawing {
+ public:
+  Drawing(const LitPicture& picture, const Integrator& integrator, Frame& frame, Plane<float>& variance, Plane<float>& error)
+      : picture_(picture),
+        integrator_(integrator),
+        frame_(frame),
+        variance_(variance),
+        error_(error),
+        across_(size_t(frame.width + side - 1) / side),
+        most_(uint32_t(picture.options.stop > 0 ? std::min(picture.options.stop, picture.options.paths) : picture.options.paths)),
+        squares_(across_ * (size_t(frame.height + side - 1) / side)) {}
+
+  size_t size() const { return squares_.size(); }
+  bool finished(size_t square) const { return squares_[square].reached || squares_[square].paths >= most_; }
+  uint32_t most() const { return most_; }
+  uint32_t paths(size_t square) const { return squares_[square].paths; }
+
+  int pixels(size_t square) const {
+    const Place at = place(square);
+    return at.w * at.h;
+  }
+
+  /// Up to so many paths a pixel, unless the noise is reached before.
+  void draw(size_t square, uint32_t to, PixelSum* sums) {
+    const Place at = place(square);
+    const LightOptions& o = picture_.options;
+    Sampler sampler(o.sampler, o.seed, o.paths);
+    Square& told = squares_[square];
+    while (told.paths < std::min(to, most_) && !told.reached) {
+      const uint32_t n = told.paths, end = std::min({to, most_, n + pass - n % pass});
+      for (int p = 0; p < at.w * at.h; ++p) {
+        const int x = at.x + p % at.w, y = at.y + p / at.w;
+        for (uint32_t k = n; k < end; ++k) {
+          sampler.start(uint32_t(x), uint32_t(y), k);
+          const Vec2f in_pixel = sampler.next2(), on_lens = picture_.camera.has_lens() ? concentric_disc(sampler.next2()) : Vec2f();
+          const Ray ray = picture_.camera.ray({float(x) + in_pixel.x, float(y) + in_pixel.y}, on_lens);
+          sums[p].add(integrator_.along(picture_.world, ray, sampler),
+                      picture_.backdrop.seen ? picture_.backdrop.radiance(ray.direction) : picture_.around[size_t(y)]);
+        }
+      }
+      told.paths = end, told.variance = 0;
+      for (int p = 0; p < at.w * at.h && end > 1; ++p)
+        told.variance += displayed_variance(sums[p].mean(end), sums[p].variance(end)) / (at.w * at.h);
+      // Looked at where the next pass would begin, however the way there was divided.
+      told.reached = (end % pass == 0 || end == most_) && end > 1 && told.variance <= o.noise * o.noise;
+    }
+  }
+
+  void develop(size_t square, const PixelSum* sums) {
+    const Place at = place(square);
+    const uint32_t n = squares_[square].paths;
+    for (int p = 0; p < at.w * at.h; ++p) {
+      const size_t i = pixel(at, p);
+      const Vec3 seen = picture_.backdrop.seen ? sums[p].light + sums[p].behind : sums[p].light;
+      for (int c = 0; c < 3; ++c) frame_.rgba[4 * i + size_t(c)] = float(seen[c] / n);
+      frame_.rgba[4 * i + 3] = picture_.backdrop.seen ? 1 : float(1 - sums[p].passed / n);
+      const double variance = n > 1 ? sums[p].variance(n) : 0;
+      variance_[i] = float(variance), error_[i] = float(std::sqrt(displayed_variance(sums[p].mean(n), variance)));
+    }
+  }
+
+  /// What the middle of each pixel sees.
+  void look(size_t square, MediaWalk* media) {
+    const Place at = place(square);
+    for (int p = 0; p < at.w * at.h; ++p) {
+      const size_t i = pixel(at, p);
+      const Vec2f middle{float(at.x + p % at.w) + 0.5f, float(at.y + p / at.w) + 0.5f};
+      const Ray ray = picture_.camera.ray(middle);
+      Hit hit;
+      if (picture_.world.geometry().nearest(ray, hit)) frame_.ids[i] = picture_.world.id(hit);
+      if (media) {
+        // Where half of the light is gone; of several volumes at one place, about there.
+        RandomStream random(i);
+        const float passes = media->passes_exactly({ray.origin, ray.direction, hit.t});
+        const auto matter = passes <= 0.5f ? media->collide_surely(0.5f / (1 - passes), random) : std::nullopt;
+        if (matter) hit.t = matter->t, frame_.ids[i] = matter->item + 1;
+      }
+      if (frame_.ids[i] != 0) frame_.depth[i] = float(picture_.camera.depth(middle, hit.t));
+    }
+  }
+
+  void report(TraceReport& r) const {
+    r.paths = 0, r.reached = true;
+    double variance = 0;
+    const double all = double(frame_.width) * double(frame_.height);
+    for (size_t s = 0; s < squares_.size(); ++s) {
+      const double share = pixels(s) / all;
+      r.paths += squares_[s].paths * share, variance += squares_[s].variance * share;
+      r.reached = r.reached && squares_[s].reached;
+    }
+    r.noise = std::sqrt(variance);
+  }
+
+ private:
+  struct Place {
+    int x, y, w, h;
+  };
+  Place place(size_t square) const {
+    const int x = int(square % across_) * side, y = int(square / across_) * side;
+    return {x, y, std::min(side, frame_.width - x), std::min(side, frame_.height - y)};
+  }
+  size_t pixel(const Place& at, int p) const { return size_t(at.y + p / at.w) * size_t(frame_.width) + size_t(at.x + p % at.w); }
+
+  const LitPicture& picture_;
+  const Integrator& integrator_;
+  Frame& frame_;
+  Plane<float>&variance_, &error_;
+  size_t across_;
+  uint32_t most_;
+  std::vector<Square> squares_;
+};
+
+}  // namespace
+
+void PixelSum::add(const Estimate& e, Vec3f around) {
+  const Vec3f seen = around * e.passed;
+  const auto y = double(luminance(e.radiance + seen));
+  light += Vec3(e.radiance), behind += Vec3(seen), passed += e.passed, sum += y, square += y * y;
+}
+
+double PixelSum::variance(uint32_t n) const {
+  const double m = mean(n);
+  return std::max(0.0, square / n - m * m) / (n - 1);
+}
+
+void draw_squares(const LitPicture& picture, const Integrator& integrator, Sweeps& sweeps, Frame& frame, Plane<float>& variance,
+                  TraceReport& report, Context& context) {
+  Drawing drawing(picture, integrator, frame, variance, report.planes.error);
+  // In one go, pixels need no memory for their sums.
+  if (!sweeps.any()) {
+    SharedProgress progress(context, drawing.size(), "following light");
+    parallel_for(
+        drawing.size(), 1,
+        [&](size_t square, size_t) {
+          const Media::Borrowed media = picture.world.borrow_media();
+          PixelSum sums[most_pixels];
+          drawing.draw(square, drawing.most(), sums);
+          drawing.develop(square, sums);
+          drawing.look(square, media.get());
+          progress.step();
+        },
+        &context);
+    return drawing.report(report);
+  }
+
+  need_memory(double(drawing.size()) * double(most_pixels * sizeof(PixelSum)),
+              fmt::format("{}x{} pixels lit in sweeps", frame.width, frame.height), "render", "make a smaller picture: --size");
+  std::vector<PixelSum, HugeAllocator<PixelSum>> sums;
+  sums.assign(drawing.size() * most_pixels, PixelSum());
+  std::vector<size_t> left(drawing.size());
+  for (size_t i = 0; i < left.size(); ++i) left[i] = i;
+  for (uint32_t n = 0; !left.empty();) {
+    double pixels = 0;
+    for (const size_t square : left) pixels += drawing.pixels(square);
+    const uint32_t paths = sweeps.next(n, n == 0 ? 2 : 1, pixels);
+    if (paths == 0) break;
+    context.progress(double(n) / double(drawing.most()), "following light");
+    parallel_for(
+        left.size(), 1,
+        [&](size_t i, size_t) {
+          PixelSum* own = &sums[left[i] * most_pixels];
+          if (n == 0) {
+            const Media::Borrowed media = picture.world.borrow_media();
+            drawing.look(left[i], media.get());
+          }
+          drawing.draw(left[i], n + paths, own);
+          drawing.develop(left[i], own);
+        },
+        &context);
+    sweeps.done();
+    n = std::min(n + paths, drawing.most());
+    std::erase_if(left, [&](size_t square) { return drawing.finished(square); });
+    if (left.empty()) break;
+    if (!sweeps.wanted()) continue;
+    drawing.report(report);
+    if (!sweeps.show(frame, report)) break;
+  }
+  drawing.report(report);
+  if (!left.empty()) report.stopped = int(drawing.paths(left[0]));
+}
+
+}  // namespace sg::trace
