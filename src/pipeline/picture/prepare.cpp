@@ -15,6 +15,7 @@
 #include "pipeline/file/transfer_file.h"
 #include "pipeline/picture/picture_cost.h"
 #include "pipeline/picture/picture_lights.h"
+#include "pipeline/picture/picture_scene.h"
 #include "pipeline/picture/settle_choices.h"
 #include "scene/choose/coloring.h"
 #include "scene/show/volume.h"
@@ -95,6 +96,7 @@ PreparedPicture prepare_picture(PipelineFile& file, const PictureOptions& option
   stated = stated_in(file);
   load_transfer_files(file);
   stated_shows(file);  // mistakes are reported before anything runs
+  stated_scene(file);
   const auto cache = options.cache ? options.cache : std::make_shared<Cache>(0);
   std::vector<Data> held;
   std::optional<HeadPose> pose;  // of a CT that is contoured, or shown as a volume
@@ -123,8 +125,12 @@ PreparedPicture prepare_picture(PipelineFile& file, const PictureOptions& option
   const PipelineGraph built = build_graph(file, graph_options, options.results);
   std::vector<Target> targets;
   for (NodeId node : built.show) targets.push_back({node, {}});
+  for (const Target& t : place_targets(built)) targets.push_back(t);
   std::vector<Data> results = built.graph.evaluate(targets, context);
+  const std::vector<Data> places(results.begin() + ptrdiff_t(built.show.size()), results.end());
+  results.resize(built.show.size());
   leave_out_sets(file, shows, results, picture.notes, context);
+  results = placed(file, places, std::move(results), context);
   held.clear();
   if (look.shows.empty()) note_colors(shows, results, picture.notes);
   for (size_t i = 0; i < results.size() && look.shows.empty() && !stated.camera.up; ++i)
@@ -165,8 +171,10 @@ PreparedPicture prepare_picture(PipelineFile& file, const PictureOptions& option
       if (!up.empty() && !stated.camera.up) picture.notes.push_back(up);
     }
     if (pose) picture.notes.push_back(face_unstated(*pose, look.camera));
-    face_cut(file, first, look.camera);
-    face_slab(file, first, shown[0].box, look.camera);
+    if (file.show[0].node < 0) {  // elsewhere the cut looks another way
+      face_cut(file, first, look.camera);
+      face_slab(file, first, shown[0].box, look.camera);
+    }
   }
   for (Shown& s : shown) s.box = with_room(s.box);  // after the choice of a view, which tells by the box what is flat
   picture.camera = look.camera;
