@@ -42,8 +42,8 @@ struct AffineParts {
 AffineParts take_apart(const Affine& a);
 Affine put_together(const AffineParts& parts);
 
-/// Between two maps: translation and stretch linearly, the rotation by slerp along the shorter way; t may leave [0, 1]. Of two rigid motions
-/// all between are rigid. From a map that mirrors to one that does not, it is flat somewhere on the way, as it must be.
+/// Between two maps: translation and stretch linearly, the rotation by slerp along the shorter way; t may leave [0, 1]. Of two rigid
+/// motions all between are rigid. From a map that mirrors to one that does not, it is flat somewhere on the way, as it must be.
 Affine interpolate(const AffineParts& a, const AffineParts& b, double t);
 
 }  // namespace sg

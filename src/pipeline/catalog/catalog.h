@@ -31,7 +31,8 @@ constexpr auto enum_words(EntryKind) {
   using enum EntryKind;
   return std::array{Word{"source", source}, Word{"operation", operation}, Word{"show", show},     Word{"reader", reader},
                     Word{"writer", writer}, Word{"read", read},           Word{"camera", camera}, Word{"picture", picture},
-                    Word{"film", film},     Word{"page", page},           Word{"light", light},   Word{"environment", environment}, Word{"node", node}};
+                    Word{"film", film},     Word{"page", page},           Word{"light", light},   Word{"environment", environment},
+                    Word{"node", node}};
 }
 
 struct CatalogEntry {

@@ -83,7 +83,8 @@ std::string picture_text(const std::vector<std::string>& all) {
 
 std::string show_text(const PipelineFile::Show& s) {
   const std::string words = words_text(s.words);
-  return fmt::format("{{{}:{}{}{}}}", yaml_scalar(s.kind), words.empty() ? "" : " ", words, s.of.empty() ? "" : ", of: " + yaml_scalar(s.of));
+  return fmt::format("{{{}:{}{}{}}}", yaml_scalar(s.kind), words.empty() ? "" : " ", words,
+                     s.of.empty() ? "" : ", of: " + yaml_scalar(s.of));
 }
 
 std::string list_text(const char* key, const std::vector<std::string>& items) {

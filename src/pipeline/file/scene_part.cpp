@@ -20,7 +20,8 @@ class SceneParser {
     if (list.kind != Kind::list) return p_.mistake(list.line, of + ": must be a list of nodes, e.g. [{node: lid, angle: 40, show: [...]}]");
     for (const YamlNode& body : list.items) {
       if (body.kind != Kind::map) p_.mistake(body.line, of + ": each item must be a node, e.g. {node: lid, angle: 40, show: [...]}");
-      else if (file_.scene.size() >= most_scene_nodes) return p_.mistake(body.line, fmt::format("scene: more than {} nodes", most_scene_nodes));
+      else if (file_.scene.size() >= most_scene_nodes)
+        return p_.mistake(body.line, fmt::format("scene: more than {} nodes", most_scene_nodes));
       else node(body, parent);
     }
   }
@@ -63,7 +64,8 @@ class SceneParser {
     if (list.items.size() > most_entries)
       return p_.mistake(list.line, fmt::format("{}: more than {}; give them as points: instances: {{of: STEP}}", of, most_entries));
     for (const YamlNode& item : list.items) {
-      if (item.kind != Kind::map && item.kind != Kind::null) p_.mistake(item.line, of + ": each must be a map, e.g. {translate: [1, 0, 0]}");
+      if (item.kind != Kind::map && item.kind != Kind::null)
+        p_.mistake(item.line, of + ": each must be a map, e.g. {translate: [1, 0, 0]}");
       else out.push_back(p_.words(item, of));
     }
   }
@@ -87,12 +89,6 @@ class SceneParser {
 
 void parse_scene(const YamlNode& scene, const SceneParsing& parsing, PipelineFile& file) {
   SceneParser(parsing, file).nodes(scene, -1, "scene");
-  const auto shown = [&](int node) {
-    return std::any_of(file.show.begin(), file.show.end(), [&](const auto& s) { return s.node == node; });
-  };
-  bool any = false;
-  for (size_t i = 0; i < file.scene.size(); ++i) any = any || shown(int(i));
-  if (!file.scene.empty() && !any) parsing.mistake(scene.line, "scene: no node shows anything; give one show: [{surface: {}, of: STEP}]");
 }
 
 }  // namespace sg

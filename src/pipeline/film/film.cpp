@@ -18,7 +18,7 @@
 #include "pipeline/file/transfer_file.h"
 #include "pipeline/film/film_times.h"
 #include "pipeline/picture/picture_parts.h"
-#include "pipeline/picture/picture_scene.h"
+#include "pipeline/picture/scene/picture_scene.h"
 #include "pipeline/picture/settle_choices.h"
 #include "scene/choose/shared_scale.h"
 #include "scene/show/parts.h"
@@ -37,17 +37,6 @@ std::vector<Data> results_of(const PipelineFile& file, const StepResults& result
   for (NodeId n : built.show) targets.push_back({n, {}});
   if (targets.empty()) targets.push_back({built.last, {}});
   return built.graph.evaluate(targets, context);
-}
-
-// The same where they stand in the scene.
-std::vector<Data> placed_results_of(const PipelineFile& file, const StepResults& results, const std::shared_ptr<Cache>& cache,
-                                    Context& context) {
-  std::vector<Data> shown = results_of(file, results, cache, context);
-  if (file.scene.empty()) return shown;
-  GraphOptions options;
-  options.cache = cache;
-  const PipelineGraph built = build_graph(file, options, results);
-  return placed(file, built.graph.evaluate(place_targets(built), context), std::move(shown), context);
 }
 
 // Computes the results of one step while another is drawn, and holds them so that the cache finds them.
@@ -146,7 +135,7 @@ void fix_frame(PipelineFile& first, const std::vector<PipelineFile>& some, const
   bool same = true;
   for (const PipelineFile& file : some) {
     Box3 box;
-    for (const Data& data : placed_results_of(file, options.results, std::make_shared<Cache>(0), context))
+    for (const Data& data : placed(file, results_of(file, options.results, std::make_shared<Cache>(0), context), options.results, context))
       for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { box.add(d->bounds()); });
     same = same && (all.empty() || box == all);
     all.add(box);

@@ -50,8 +50,9 @@ Mat3 rotation_of(const PlaceParams& p, const std::string& owner) {
 
 void describe(Schema& s, InstanceParams& p) { describe_place(s, p.place); }
 void describe(Schema& s, KeyParams& p) {
-  s("time", p.time, "Time at which the node is there; between two of them it moves (translation and stretch evenly, rotation about one axis "
-                    "along the shorter way), before the first and after the last it rests.")
+  s("time", p.time,
+    "Time at which the node is there; between two of them it moves (translation and stretch evenly, rotation about one axis "
+    "along the shorter way), before the first and after the last it rests.")
       .unit("time");
   describe_place(s, p.place);
 }
@@ -74,8 +75,13 @@ Affine affine_of(const PlaceParams& p, const Schema& stated, const std::string& 
   if (stated.stated("order") && !p.euler) fail_usage("order is stated without euler", owner, "give euler=A,B,C");
   Affine r;
   if (!p.matrix.empty()) {
-    for (const char* other : {"translate", "scale", "axis", "angle", "euler", "quaternion", "center"})
-      if (stated.stated(other)) fail_usage(fmt::format("matrix and {} are both stated", other), owner, "the matrix takes the place of all others");
+    PlaceParams others;
+    Schema all;
+    describe_place(all, others);
+    all.decls().pop_back();  // the matrix itself
+    for (const ParamDecl& d : all.decls())
+      if (stated.stated(d.name))
+        fail_usage(fmt::format("matrix and {} are both stated", d.name), owner, "the matrix takes the place of all others");
     r = of_matrix(p.matrix, owner);
   } else {
     if (p.scale.size() == 2) fail_usage("scale has two numbers", owner, "give one, or three along x, y and z");

@@ -16,7 +16,7 @@ struct SceneNode {
   std::string name;
   int parent = -1;  ///< number of a node before it; -1: the world
   bool visible = true;
-  Affine place;                     ///< in the parent
+  Affine place;                       ///< in the parent
   std::vector<Affine> instances{{}};  ///< of the node in itself: the node, and with it its children, stands at place * instance
 };
 

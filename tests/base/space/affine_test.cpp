@@ -66,7 +66,7 @@ TEST_CASE("affine maps: parts put together are the map; the inverse undoes it; t
     CHECK(apart(again.linear, a.linear) < 1e-14);
     CHECK(again.shift == a.shift);
     const Vec3 p{0.3, -0.2, 0.9};
-    CHECK(length((a * b)(p) - a(b(p))) < 1e-14);
+    CHECK(length((a * b)(p)-a(b(p))) < 1e-14);
     CHECK(length(inverse(a)(a(p)) - p) < 1e-11);
     Box3 box;
     box.add(Vec3{-1, 0, 0}), box.add(Vec3{1, 2, 0.5});

@@ -2,8 +2,8 @@
 #include "base/space/euler.h"
 
 #include "base/random.h"
-#include "base/space/rotation.h"
 #include "base/space/matrix_distance.h"
+#include "base/space/rotation.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -20,7 +20,8 @@ TEST_CASE("Euler angles: xyz turns about x first, then y, then z, all of them fi
   CHECK(m * Vec3(0, 1, 0) == Vec3(0, 0, 1));  // y to z by the turn about x, where the one about z leaves it
   CHECK(m * Vec3(1, 0, 0) == Vec3(0, 1, 0));
   const Vec3 a{20, -35, 70};
-  CHECK(apart(euler_matrix(a, EulerOrder::xyz), turn_about({0, 0, 1}, 70) * turn_about({0, 1, 0}, -35) * turn_about({1, 0, 0}, 20)) < 1e-15);
+  CHECK(apart(euler_matrix(a, EulerOrder::xyz), turn_about({0, 0, 1}, 70) * turn_about({0, 1, 0}, -35) * turn_about({1, 0, 0}, 20)) <
+        1e-15);
   // About the body's own axes in the reverse order: z, then the turned y, then the turned x.
   const Mat3 z = turn_about({0, 0, 1}, 70), zy = turn_about(z * Vec3(0, 1, 0), -35) * z, zyx = turn_about(zy * Vec3(1, 0, 0), 20) * zy;
   CHECK(apart(euler_matrix(a, EulerOrder::xyz), zyx) < 1e-15);

@@ -13,7 +13,8 @@ using test::apart;
 namespace {
 
 Quaternion random_quaternion(uint64_t seed) {
-  return normalize(Quaternion{random_unit(seed, 0) - 0.5, random_unit(seed, 1) - 0.5, random_unit(seed, 2) - 0.5, random_unit(seed, 3) - 0.5});
+  return normalize(
+      Quaternion{random_unit(seed, 0) - 0.5, random_unit(seed, 1) - 0.5, random_unit(seed, 2) - 0.5, random_unit(seed, 3) - 0.5});
 }
 
 }  // namespace

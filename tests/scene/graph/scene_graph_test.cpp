@@ -31,7 +31,8 @@ TEST_CASE("scene graph: a child stands in its parent's frame, once for each inst
 }
 
 TEST_CASE("scene graph: what is hidden hides its children") {
-  const std::vector<SceneNode> nodes{{"a", -1, false, Affine()}, {"b", 0, true, Affine()}, {"c", 1, true, Affine()}, {"d", -1, true, Affine()}};
+  const std::vector<SceneNode> nodes{
+      {"a", -1, false, Affine()}, {"b", 0, true, Affine()}, {"c", 1, true, Affine()}, {"d", -1, true, Affine()}};
   const auto world = world_places(nodes);
   CHECK(world[0].empty());
   CHECK(world[2].empty());
@@ -47,7 +48,8 @@ TEST_CASE("scene graph: too many places, and products that flatten, are refused 
 }
 
 TEST_CASE("scene graph: between keys a node moves evenly and turns the shorter way; beside them it rests") {
-  const std::vector<PlaceKey> keys{{1, Affine()}, {3, moved_by(4, 0, 0) * turned_by(120)}, {4, moved_by(4, 0, 0) * turned_by(240) * scaled_by(3)}};
+  const std::vector<PlaceKey> keys{
+      {1, Affine()}, {3, moved_by(4, 0, 0) * turned_by(120)}, {4, moved_by(4, 0, 0) * turned_by(240) * scaled_by(3)}};
   CHECK(place_at(keys, -5) == keys[0].place);
   CHECK(place_at(keys, 1) == keys[0].place);
   CHECK(place_at(keys, 3) == keys[1].place);

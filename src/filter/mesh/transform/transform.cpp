@@ -44,8 +44,7 @@ Affine affine_of(const TransformParams& p) {
     const Vec3 center = p.center.value_or(Vec3());
     r.shift = center - r.linear * center + p.translate;
   }
-  if (!is_invertible(r))
-    fail_usage("the transform flattens the mesh", "transform", "scale factors must not be 0, nor the matrix singular");
+  if (!is_invertible(r)) fail_usage("the transform flattens the mesh", "transform", "scale factors must not be 0, nor the matrix singular");
   return r;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/picture/picture_scene.h"
+#include "pipeline/picture/scene/picture_scene.h"
 
 #include <cmath>
 
@@ -65,8 +65,8 @@ TEST_CASE("scene: volumes turn with their node") {
 }
 
 TEST_CASE("scene: copies stand at the points of a step") {
-  const PreparedPicture p = prepared_of(
-      "scene: [{node: a, show: [{surface: {}, of: skin}], instances: {of: grid, scale: 0.01}, scale: 3}]");
+  const PreparedPicture p =
+      prepared_of("scene: [{node: a, show: [{surface: {}, of: skin}], instances: {of: grid, scale: 0.01}, scale: 3}]");
   CHECK(p.shown[0].scene.items.size() == 729);
 }
 

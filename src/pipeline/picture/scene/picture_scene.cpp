@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/picture/picture_scene.h"
+#include "pipeline/picture/scene/picture_scene.h"
 
 #include <fmt/core.h>
 
@@ -34,7 +34,8 @@ SceneNode scene_node(const PipelineFile::Node& stated) {
     const Affine place = place_in(words, owner + " keys", k);
     if (!std::isfinite(k.time)) fail_usage("a time is not finite", owner + " keys");
     if (!keys.empty() && !(k.time > keys.back().time))
-      fail_usage(fmt::format("time {} does not come after {}", k.time, keys.back().time), owner + " keys", "give them in the order of their times");
+      fail_usage(fmt::format("time {} does not come after {}", k.time, keys.back().time), owner + " keys",
+                 "give them in the order of their times");
     keys.push_back({k.time, place});
   }
   if (p.time && keys.empty()) fail_usage("time is stated, but there are no keys", owner, "give keys: [{time: 0}, {time: 1, angle: 90}]");
@@ -82,7 +83,7 @@ TransformParams params_of(const Affine& a) {
   return p;
 }
 
-Data placed_data(const Data& data, const std::vector<Affine>& places, const std::string& owner, Context& context) {
+Data placed_data(const Data& data, const std::vector<Affine>& places, const std::string& owner, Copies* copies, Context& context) {
   if (places.size() == 1 && places[0] == Affine()) return data;
   double points = 0;
   for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { points += double(d->point_count()); });
@@ -98,6 +99,8 @@ Data placed_data(const Data& data, const std::vector<Affine>& places, const std:
     for (size_t i = 0; i < places.size(); ++i) {
       context.check();
       const DatasetPtr moved = places[i] == Affine() ? d : with_context(owner, [&] { return transform(d, params_of(places[i]), each); });
+      if (copies && places.size() > 1 && moved->as<SurfaceMesh>())
+        copies->emplace(moved.get(), std::make_shared<SurfaceCopy>(SurfaceCopy{d, places[i]}));
       all->parts.push_back({places.size() > 1 ? fmt::format("{} {}", name, i + 1) : name, moved});
     }
   });
@@ -130,7 +133,8 @@ std::vector<Target> place_targets(const PipelineGraph& graph) {
   return targets;
 }
 
-std::vector<Data> placed(const PipelineFile& file, const std::vector<Data>& points, std::vector<Data> results, Context& context) {
+std::vector<Data> placed(const PipelineFile& file, const std::vector<Data>& points, std::vector<Data> results, Copies* copies,
+                         Context& context) {
   if (file.scene.empty()) return results;
   const std::vector<std::vector<Affine>> places = world_places(nodes_with_points(file, points));
   for (size_t i = 0; i < results.size(); ++i) {
@@ -138,13 +142,23 @@ std::vector<Data> placed(const PipelineFile& file, const std::vector<Data>& poin
     if (node < 0) continue;
     // A table has no place; what shows it says so.
     if (std::holds_alternative<TablePtr>(results[i])) continue;
-    results[i] = placed_data(results[i], places[size_t(node)], fmt::format("node '{}'", file.scene[size_t(node)].name), context);
+    results[i] = placed_data(results[i], places[size_t(node)], fmt::format("node '{}'", file.scene[size_t(node)].name), copies, context);
   }
   return results;
 }
 
-std::vector<Affine> places_of_show(const PipelineFile& file, const std::vector<Data>& points, size_t show) {
+std::vector<Data> placed(const PipelineFile& file, std::vector<Data> results, const StepResults& at_hand, Context& context) {
+  if (file.scene.empty()) return results;
+  const PipelineGraph built = build_graph(file, {}, at_hand);
+  return placed(file, built.graph.evaluate(place_targets(built), context), std::move(results), nullptr, context);
+}
+
+std::vector<Affine> places_of_show(const PipelineFile& file, size_t show, const std::shared_ptr<Cache>& cache, Context& context) {
   if (show >= file.show.size() || file.show[show].node < 0) return {Affine()};
+  GraphOptions options;
+  options.cache = cache;
+  const PipelineGraph built = build_graph(file, options);
+  const std::vector<Data> points = built.graph.evaluate(place_targets(built), context);
   return world_places(nodes_with_points(file, points))[size_t(file.show[show].node)];
 }
 
