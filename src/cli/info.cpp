@@ -10,6 +10,7 @@
 #include "cli/info_names.h"
 #include "data/lattice.h"
 #include "data/patient/patient_frame.h"
+#include "io/scene/file_scene.h"
 
 namespace sg {
 
@@ -57,6 +58,8 @@ std::string dataset_json(const Dataset& d, bool quick, const std::vector<double>
     if (in_patient_frame(d)) r += fmt::format(",\"axes\":\"{}\"", axis_letters(g->direction));
   }
   if (in_patient_frame(d)) r += ",\"frame\":\"LPS\"";
+  for (const auto& [key, value] : d.notes())
+    if (key == cameras_note || key == lights_note) r += fmt::format(",\"{}\":{}", key, json_string(value));
   r += ",\"fields\":[";
   first = true;
   for (const Field& f : d.fields()) {
@@ -159,6 +162,9 @@ std::string dataset_text(const Dataset& d, const std::string& name, bool quick) 
     for (const auto& [key, value] : d.notes())
       if (key == stored_space_note) r += "; in the file: " + printable(value);
   }
+  for (const auto& [key, value] : d.notes())
+    if (key == cameras_note || key == lights_note)
+      r += fmt::format("\n  {:<7} {} (--{} file)", key, printable(value), key == cameras_note ? "camera" : "light");
   if (d.time()) r += "\n  time    " + short_number(*d.time());
   r += "\n";
   if (d.fields().empty()) return r + "  no fields\n";

@@ -37,6 +37,9 @@ void describe(Schema& s, CameraParams& p) {
   s("view", p.view,
     "Named view; default: chosen from the data. Front is towards -y and z is up; of graphics (.obj, .gltf...) front is towards +z and y is "
     "up; of scans front is the patient's front, left the patient's left, and bottom the axial view from the feet.");
+  s("file", p.file,
+    "Look through a camera of the file that is shown (glTF): its name or its number, from 1; --camera file: the first. sightglass info "
+    "names them. Its place, direction and angle of view are taken where nothing else is stated.");
   s("position", p.position, "Position of the camera; default: far enough away to see everything.");
   s("target", p.target, "Point to look at; default: the centre of the data.");
   s("direction", p.direction, "Direction from the data towards the camera.");
@@ -56,6 +59,12 @@ void describe(Schema& s, CameraParams& p) {
   s("focus", p.focus,
     "With an aperture: distance from the camera, along the line of sight, of what is sharp; default: the middle of the data.")
       .positive();
+  s("shutter", p.shutter,
+    "Motion blur: time that the shutter is open, the picture's own time in its middle; nodes of a scene that have keys move meanwhile. 0: "
+    "none.")
+      .unit("time")
+      .range(0, 1e30);
+  s("moments", p.moments, "With a shutter: moments that are drawn and averaged.").range(2, 4096);
 }
 
 std::vector<std::string> camera_words(const std::vector<std::string>& words) {
@@ -63,6 +72,7 @@ std::vector<std::string> camera_words(const std::vector<std::string>& words) {
   for (const std::string& w : words) {
     if (w.find('=') != std::string::npos) r.push_back(w);
     else if (value_of_word<ProjectionKind>(w)) r.push_back("projection=" + w);
+    else if (w == "file") r.push_back("file=1");
     else r.push_back("view=" + w);
   }
   return r;

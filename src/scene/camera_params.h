@@ -36,16 +36,19 @@ constexpr auto enum_words(ProjectionKind) {
 
 struct CameraParams {
   std::optional<NamedView> view;
+  std::string file;  ///< name or number of a camera of the file that is shown; put in the place of the others when a picture is made
   std::optional<Vec3> position, target, direction, up;
   double azimuth = 0, elevation = 0, roll = 0, zoom = 1, view_angle = 30;
   std::optional<ProjectionKind> projection;
   std::optional<double> height;
   double aperture = 0;          ///< diameter of the lens as a share of the depth in focus
   std::optional<double> focus;  ///< depth
+  double shutter = 0;           ///< time that it is open
+  int moments = 16;             ///< that are averaged meanwhile
 };
 void describe(Schema& s, CameraParams& p);
 
-/// Words as given on the command line: a bare word is a view ("top") or a flag.
+/// Words as given on the command line: a bare word is a view ("top"), a projection, or "file": its first camera.
 std::vector<std::string> camera_words(const std::vector<std::string>& words);
 
 /// What a camera is made of where nothing is stated.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scene: what is to be seen. Plain data; renderers read it.
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -11,6 +12,7 @@
 #include "filter/glyph/instances.h"
 #include "scene/camera.h"
 #include "scene/items/material.h"
+#include "scene/items/surface_copy.h"
 #include "scene/items/surface_material.h"
 #include "scene/items/surface_texture.h"
 #include "scene/items/volume_item.h"
@@ -42,8 +44,9 @@ struct SurfaceItem {
   /// A SurfaceMesh whose lines are drawn instead (of curved cells: see Skin), or where it has polygons their edges; null = the edges of
   /// the polygons drawn.
   DatasetPtr edge_lines;
-  std::optional<Vec3f> edge_color;    ///< sRGB; empty = that of the surface under it, darker, or lighter on a dark surface
-  std::optional<SurfaceTexture> lic;  ///< directions of a vector field as a texture
+  std::optional<Vec3f> edge_color;             ///< sRGB; empty = that of the surface under it, darker, or lighter on a dark surface
+  std::optional<SurfaceTexture> lic;           ///< directions of a vector field as a texture
+  std::shared_ptr<const SurfaceCopy> copy_of;  ///< what `data` is a moved copy of; null = of nothing that is drawn elsewhere
 };
 
 /// Lines of a SurfaceMesh; constant width on the picture.

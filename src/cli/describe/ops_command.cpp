@@ -24,7 +24,7 @@ std::string formats_line(const std::vector<CatalogEntry>& all, EntryKind kind) {
 
 std::string overview(const std::vector<CatalogEntry>& all) {
   std::string shows = "\nways to show (--show)\n", others = "\nother parameters\n", lights = "\nlights (--light)\n",
-              environments = "\nenvironments (--environment)\n";
+              environments = "\nenvironments (--environment)\n", nodes = "\nscenes (scene: in pipeline files)\n";
   for (const CatalogEntry& e : all) {
     const std::string line = fmt::format("  {:<16} {}\n", e.name, e.sentence);
     switch (e.kind) {
@@ -35,6 +35,7 @@ std::string overview(const std::vector<CatalogEntry>& all) {
       case EntryKind::show: shows += line; break;
       case EntryKind::light: lights += line; break;
       case EntryKind::environment: environments += line; break;
+      case EntryKind::node: nodes += line; break;
       case EntryKind::read:
       case EntryKind::camera:
       case EntryKind::picture:
@@ -42,7 +43,7 @@ std::string overview(const std::vector<CatalogEntry>& all) {
       case EntryKind::page: others += line; break;
     }
   }
-  return ops_help() + shows + lights + environments + others + "\nreadable formats\n" + formats_line(all, EntryKind::reader) +
+  return ops_help() + shows + lights + environments + nodes + others + "\nreadable formats\n" + formats_line(all, EntryKind::reader) +
          "\nwritable formats\n" + formats_line(all, EntryKind::writer) +
          "\nsightglass ops NAME lists its parameters, and knows many names of other programs (ops --other-names: all of them).\n";
 }

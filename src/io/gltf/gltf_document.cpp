@@ -10,6 +10,7 @@
 #include "base/text/json.h"
 #include "base/text/text.h"
 #include "io/gltf/gltf_bytes.h"
+#include "io/gltf/gltf_scene.h"
 
 namespace sg {
 
@@ -259,7 +260,9 @@ GltfDocument read_gltf_document(const std::string& path, Context& context) {
   if (!version.starts_with("2")) fail_data(fmt::format("is glTF {}", version), path, "version 2.0 is supported");
   const Parser parser{path, root};
   parser.check_extensions(context);
-  return parser.document(chunks.binary, file);
+  GltfDocument document = parser.document(chunks.binary, file);
+  take_cameras_and_lights(root, document, context);
+  return document;
 }
 
 }  // namespace sg

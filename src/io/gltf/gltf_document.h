@@ -12,6 +12,7 @@
 #include "base/context.h"
 #include "base/vec.h"
 #include "data/array.h"
+#include "io/scene/file_scene.h"
 
 namespace sg {
 
@@ -50,6 +51,19 @@ struct GltfNode {
   int mesh = -1;
   Mat4 matrix;
   std::vector<int> children;
+  int camera = -1, light = -1;
+};
+struct GltfCamera {
+  std::string name;
+  bool usable = false, parallel = false;
+  double view_angle = 0, height = 0;  ///< degrees; of a parallel one's picture
+};
+struct GltfLight {
+  std::string name;
+  bool usable = false;
+  FileLight::Shape shape = FileLight::Shape::point;
+  Vec3f color{1, 1, 1};
+  double intensity = 1, inner = 0, outer = 45;  ///< as of FileLight
 };
 struct GltfMaterial {
   std::string name;
@@ -70,6 +84,8 @@ struct GltfDocument {
   std::vector<GltfMesh> meshes;
   std::vector<GltfNode> nodes;
   std::vector<GltfMaterial> materials;
+  std::vector<GltfCamera> cameras;
+  std::vector<GltfLight> lights;
   std::vector<int> roots;  ///< nodes of the scene that is shown, else those without a parent
   uint64_t backed = 0;     ///< bytes of all buffers together
 };

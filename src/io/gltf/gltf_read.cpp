@@ -11,6 +11,7 @@
 #include "image/image.h"
 #include "io/formats.h"
 #include "io/gltf/gltf_document.h"
+#include "io/gltf/gltf_scene.h"
 
 namespace sg {
 
@@ -291,6 +292,7 @@ Data read_gltf(const std::string& path, const ReadOptions& options, Context& con
   if (r.parts.empty()) fail_data("no node of its scene has a mesh", path);
   if (std::any_of(doc.materials.begin(), doc.materials.end(), [](const GltfMaterial& m) { return m.textured; }))
     context.warn(path + ": its textures (pictures on the surface) are not drawn, only its plain colours");
+  note_scene(doc, r.parts[0].data);
   if (r.parts.size() == 1) return r.parts[0].data;
   r.number_names();
   auto all = std::make_shared<Collection>();

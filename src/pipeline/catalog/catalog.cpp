@@ -9,6 +9,7 @@
 #include "pipeline/offline/page_params.h"
 #include "pipeline/picture/picture.h"
 #include "scene/camera_params.h"
+#include "scene/graph/node_params.h"
 #include "scene/light/environment_params.h"
 #include "scene/light/light_params.h"
 #include "scene/show/show.h"
@@ -92,6 +93,7 @@ std::string_view list_of(EntryKind kind) {
     case EntryKind::writer: return "writers";
     case EntryKind::light: return "lights";
     case EntryKind::environment: return "environments";
+    case EntryKind::node: return "nodes";
     case EntryKind::read:
     case EntryKind::camera:
     case EntryKind::picture:
@@ -117,6 +119,13 @@ std::vector<CatalogEntry> catalog() {
   all.push_back(entry<PageParams>(EntryKind::page, "A picture that turns, as one HTML file (-o scene.html)."));
   for (const LightKind& k : light_kinds()) all.push_back(entry_of(EntryKind::light, k.name, k.sentence, k.make_params()));
   for (const EnvironmentKind& k : environment_kinds()) all.push_back(entry_of(EntryKind::environment, k.name, k.sentence, k.make_params()));
+  const auto add_node = [&](std::string_view name, std::string_view sentence, ParamSet params) {
+    all.push_back(entry_of(EntryKind::node, name, sentence, std::move(params)));
+  };
+  add_node("node", "A place in the scene of a pipeline file, with what is shown there (docs/scene.md).", make_param_set<NodeParams>());
+  add_node("instance", "One of several copies of a node: an entry of its 'instances'.", make_param_set<InstanceParams>());
+  add_node("point_instances", "Copies of a node at the points of a step: 'instances: {of: STEP}'.", make_param_set<PointInstancesParams>());
+  add_node("key", "Where a node is at a time: an entry of its 'keys'.", make_param_set<KeyParams>());
   return all;
 }
 

@@ -25,12 +25,14 @@ enum class EntryKind {
   page,
   light,        ///< a kind of light of a picture
   environment,  ///< a kind of what is around it
+  node,         ///< of a scene; its instances; its keys
 };
 constexpr auto enum_words(EntryKind) {
   using enum EntryKind;
   return std::array{Word{"source", source}, Word{"operation", operation}, Word{"show", show},     Word{"reader", reader},
                     Word{"writer", writer}, Word{"read", read},           Word{"camera", camera}, Word{"picture", picture},
-                    Word{"film", film},     Word{"page", page},           Word{"light", light},   Word{"environment", environment}};
+                    Word{"film", film},     Word{"page", page},           Word{"light", light},   Word{"environment", environment},
+                    Word{"node", node}};
 }
 
 struct CatalogEntry {
@@ -52,7 +54,7 @@ std::vector<CatalogEntry> catalog();
 /// of readers "times" (its files may hold several).
 std::string entry_json(const CatalogEntry& entry);
 /// {"sightglass":VERSION,"sources":[...],"operations":[...],"show":[...],"readers":[...],"writers":[...],"read":{...},"camera":{...},
-/// "picture":{...},"film":{...},"page":{...},"lights":[...],"environments":[...]}.
+/// "picture":{...},"film":{...},"page":{...},"lights":[...],"environments":[...],"nodes":[...]}.
 std::string catalog_json(const std::vector<CatalogEntry>& entries);
 
 }  // namespace sg

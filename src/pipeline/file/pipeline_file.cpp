@@ -10,6 +10,7 @@
 #include "base/file/file.h"
 #include "base/text/quoted_word.h"
 #include "base/text/text.h"
+#include "pipeline/file/scene_part.h"
 #include "pipeline/file/yaml_tree.h"
 #include "pipeline/graph/graph_state.h"
 
@@ -29,19 +30,22 @@ class FileParser {
   PipelineFile parse(const YamlNode& root) {
     PipelineFile file;
     if (root.kind != Kind::map) {
-      mistake(root.line, "a pipeline file must be a map with the keys sightglass, steps, show, picture");
+      mistake(root.line, "a pipeline file must be a map with the keys sightglass, steps, show, scene, picture");
       finish();
     }
-    static const std::vector<std::string> keys{"sightglass", "steps", "show", "picture"};
+    static const std::vector<std::string> keys{"sightglass", "steps", "show", "scene", "picture"};
     bool versioned = false;
+    const YamlNode* scene = nullptr;
     unique_keys(root, "");
     for (const auto& [key, value] : root.pairs) {
       if (key.text == "sightglass") versioned = true, check_version(value);
       else if (key.text == "steps") parse_steps(value, file);
-      else if (key.text == "show") parse_shows(value, file);
+      else if (key.text == "show") parse_shows(value, -1, file);
+      else if (key.text == "scene") scene = &value;
       else if (key.text == "picture") file.picture_line = key.line, parse_picture(value, file);
       else mistake(key.line, fmt::format("unknown key '{}'; {}", key.text, unknown_name_hint(key.text, keys)));
     }
+    if (scene) read_scene(*scene, file);  // its shows follow those beside it
     if (!versioned) mistake(1, "the key 'sightglass' is missing; begin the file with sightglass: 1");
     if (file.steps.empty() && mistakes_.empty()) mistake(1, "there are no steps; write steps: {name: {read: FILE}}");
     finish();
@@ -158,12 +162,12 @@ class FileParser {
     return names;
   }
 
-  void parse_shows(const YamlNode& shows, PipelineFile& file) {
+  void parse_shows(const YamlNode& shows, int node, PipelineFile& file) {
     if (shows.kind != Kind::list) return mistake(shows.line, "show: must be a list, e.g. [{surface: {opacity: 0.5}, of: bone}]");
-    if (shows.items.size() > most_shows) return mistake(shows.line, fmt::format("show: more than {} items", most_shows));
+    if (file.show.size() + shows.items.size() > most_shows) return mistake(shows.line, fmt::format("show: more than {} items", most_shows));
     for (const YamlNode& body : shows.items) {
       PipelineFile::Show show;
-      show.line = body.line;
+      show.line = body.line, show.node = node;
       if (body.kind == Kind::scalar) {
         show.kind = body.text;
       } else if (body.kind == Kind::map) {
@@ -184,6 +188,15 @@ class FileParser {
       check_known(show.kind, show.line, "show: unknown way to show", vocabulary_.show);
       file.show.push_back(std::move(show));
     }
+  }
+
+  void read_scene(const YamlNode& scene, PipelineFile& file) {
+    SceneParsing parsing;
+    parsing.mistake = [this](int line, const std::string& text) { mistake(line, text); };
+    parsing.words = [this](const YamlNode& map, const std::string& of) { return parse_words(map, of); };
+    parsing.shows = [this, &file](const YamlNode& shows, int node) { parse_shows(shows, node, file); };
+    parsing.unique = [this](const YamlNode& map, const std::string& of) { unique_keys(map, of); };
+    parse_scene(scene, parsing, file);
   }
 
   void check_known(const std::string& name, int line, const std::string& what, const std::vector<std::string>& known) {
@@ -257,101 +270,6 @@ PipelineFile parse_pipeline(std::string_view text, const std::string& origin, co
 PipelineFile read_pipeline(const std::string& path, const PipelineVocabulary& vocabulary) {
   const MappedFile file(path);
   return parse_pipeline(file.text(), path, vocabulary);
-}
-
-namespace {
-
-// "1,2,3" as [1, 2, 3] when the parts are plain numbers: reads back to the same text.
-std::string value_text(const std::string& value) {
-  if (value.find(',') == value.npos) return yaml_scalar(value);
-  std::string list;
-  size_t begin = 0;
-  while (begin <= value.size()) {
-    const size_t end = std::min(value.find(',', begin), value.size());
-    const std::string part = value.substr(begin, end - begin);
-    if (!parse_double(part) || trim(part) != part) return yaml_scalar(value);
-    list += (list.empty() ? "" : ", ") + part;
-    begin = end + 1;
-  }
-  return "[" + list + "]";
-}
-
-std::string pair_text(const std::string& word, size_t skip = 0) {
-  const size_t eq = word.find('=');
-  const std::string key = word.substr(skip, eq == word.npos ? word.npos : eq - skip);
-  if (key.empty()) fail_usage("a pipeline file cannot contain a word without a name", word);
-  return yaml_scalar(key) + (eq == word.npos ? ":" : ": " + value_text(word.substr(eq + 1)));
-}
-
-std::string key_of(const std::string& word) { return word.substr(0, word.find('=')); }
-
-// Of words with the same key the last counts, as in set_params.
-std::vector<std::string> last_words(const std::vector<std::string>& words) {
-  std::map<std::string, size_t> last;
-  for (size_t i = 0; i < words.size(); ++i) last[key_of(words[i])] = i;
-  std::vector<std::string> r;
-  for (size_t i = 0; i < words.size(); ++i)
-    if (last[key_of(words[i])] == i) r.push_back(words[i]);
-  return r;
-}
-
-std::string words_text(const std::vector<std::string>& all) {
-  std::string r;
-  for (const std::string& w : last_words(all)) r += (r.empty() ? "" : ", ") + pair_text(w);
-  return r.empty() ? "" : "{" + r + "}";
-}
-
-std::string picture_text(const std::vector<std::string>& all) {
-  const std::vector<std::string> words = last_words(all);
-  auto map_of = [](const std::string& word) {
-    const std::string key = key_of(word);
-    const size_t dot = key.find('.');
-    return dot == key.npos || dot == 0 || dot + 1 == key.size() || key.find('.', dot + 1) != key.npos ? std::string() : key.substr(0, dot);
-  };
-  std::string r;
-  std::vector<std::string> written;  // names that stand already; further words of such a map are written flat
-  for (const std::string& w : words)
-    if (map_of(w).empty()) written.push_back(key_of(w));
-  for (size_t i = 0; i < words.size();) {
-    r += r.empty() ? "" : ", ";
-    const std::string map = map_of(words[i]);
-    if (map.empty() || std::find(written.begin(), written.end(), map) != written.end()) {
-      r += pair_text(words[i++]);
-      continue;
-    }
-    written.push_back(map);
-    r += yaml_scalar(map) + ": {";
-    for (bool first = true; i < words.size() && map_of(words[i]) == map; ++i, first = false)
-      r += (first ? "" : ", ") + pair_text(words[i], map.size() + 1);
-    r += "}";
-  }
-  return r;
-}
-
-}  // namespace
-
-std::string emit_pipeline(const PipelineFile& file) {
-  std::string r = "sightglass: 1\nsteps:\n";
-  for (const PipelineFile::Step& s : file.steps) {
-    const bool only_path = s.reads() && s.words.size() == 1 && s.words[0].starts_with("path=");
-    const std::string words = only_path ? yaml_scalar(s.words[0].substr(5)) : words_text(s.words);
-    r += fmt::format("  {}: {{{}:{}{}", yaml_scalar(s.name), yaml_scalar(s.operation), words.empty() ? "" : " ", words);
-    if (s.from.size() == 1) r += ", from: " + yaml_scalar(s.from[0]);
-    if (s.from.size() > 1) {
-      r += ", from: [";
-      for (size_t i = 0; i < s.from.size(); ++i) r += (i ? ", " : "") + yaml_scalar(s.from[i]);
-      r += "]";
-    }
-    r += "}\n";
-  }
-  if (!file.show.empty()) r += "show:\n";
-  for (const PipelineFile::Show& s : file.show) {
-    const std::string words = words_text(s.words);
-    r += fmt::format("  - {{{}:{}{}{}}}\n", yaml_scalar(s.kind), words.empty() ? "" : " ", words,
-                     s.of.empty() ? "" : ", of: " + yaml_scalar(s.of));
-  }
-  if (!file.picture.empty()) r += "picture: {" + picture_text(file.picture) + "}\n";
-  return r;
 }
 
 std::vector<std::string> words_under(const std::vector<std::string>& words, std::string_view map) {

@@ -7,6 +7,8 @@
 //     bone: {contour: {values: [1150]}, from: head}     # `from` is the step before unless stated; a list for several inputs
 //   show:
 //     - {surface: {color: "0.9,0.85,0.8"}, of: bone}    # `of` is the last step unless stated
+//   scene:                                              # what is shown where: nodes with transforms (docs/scene.md)
+//     - {node: lid, axis: [1, 0, 0], angle: 40, show: [{surface: {}, of: bone}]}
 //   picture: {size: 1280x720, camera: {direction: [1, 0.5, 0.3]}, output: out.png}
 // The picture of a series: output: out_{n}.png or film.webm, times: "0:10:101" (default: all of the file), fps: 25.
 #pragma once
@@ -48,16 +50,33 @@ struct PipelineFile {
     std::vector<std::string> words;
     std::string of;  ///< "" = the last step
     int line = 0;
-    friend bool operator==(const Show& a, const Show& b) { return a.kind == b.kind && a.words == b.words && a.of == b.of; }
+    int node = -1;  ///< of the scene, where it is shown; -1: where the data lie
+    friend bool operator==(const Show& a, const Show& b) {
+      return a.kind == b.kind && a.words == b.words && a.of == b.of && a.node == b.node;
+    }
+  };
+  struct Node {
+    std::string name;
+    std::vector<std::string> words;                         ///< those of NodeParams
+    int parent = -1;                                        ///< of the scene, further up
+    std::vector<std::vector<std::string>> instances, keys;  ///< those of InstanceParams, KeyParams
+    std::string at;                                         ///< step whose points are places of instances; "" = none
+    std::vector<std::string> at_words;                      ///< those of PointInstancesParams
+    int line = 0;
+    friend bool operator==(const Node& a, const Node& b) {
+      return a.name == b.name && a.words == b.words && a.parent == b.parent && a.instances == b.instances && a.keys == b.keys &&
+             a.at == b.at && a.at_words == b.at_words;
+    }
   };
   std::vector<Step> steps;
   std::vector<Show> show;
+  std::vector<Node> scene;           ///< each after its parent
   std::vector<std::string> picture;  ///< words; those of a map inside have its name in front: "camera.direction=1,0.5,0.3"
   int picture_line = 0;
   std::string origin;  ///< file name, for messages and relative paths; "" = none
 
   friend bool operator==(const PipelineFile& a, const PipelineFile& b) {
-    return a.steps == b.steps && a.show == b.show && a.picture == b.picture;
+    return a.steps == b.steps && a.show == b.show && a.scene == b.scene && a.picture == b.picture;
   }
 };
 
@@ -87,6 +106,7 @@ struct PipelineGraph {
   std::vector<std::pair<std::string, NodeId>> nodes;  ///< of each step, in file order
   std::vector<NodeId> show;                           ///< of each show, in file order
   NodeId last = -1;                                   ///< of the last step
+  std::vector<NodeId> places = {};                    ///< of each node of the scene the points of its instances; -1: none
 };
 /// Data at hand. Equal words in `content` vouch for equal data, as those of Graph::add_data().
 struct StepResult {

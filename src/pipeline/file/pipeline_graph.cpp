@@ -26,16 +26,16 @@ class GraphBuilder {
     for (const PipelineFile::Step& step : file_.steps) all_names_.push_back(step.name);
     for (const PipelineFile::Step& step : file_.steps) add(step);
     for (const Mistake& m : built_.graph.mistakes()) mistake(line_of_[size_t(m.node)], m.text, m.kind);
-    for (const PipelineFile::Show& show : file_.show) {
-      NodeId node = built_.last;
-      if (!show.of.empty()) {
-        const auto at = nodes_.find(show.of);
-        if (at == nodes_.end())
-          mistake(show.line, fmt::format("show {}: there is no step '{}'; {}", show.kind, show.of, unknown_name_hint(show.of, all_names_)));
-        else node = at->second;
-      }
-      built_.show.push_back(node);
-    }
+    const auto step_named = [&](const std::string& name, int line, const std::string& who) {
+      const auto at = nodes_.find(name);
+      if (at != nodes_.end()) return at->second;
+      mistake(line, fmt::format("{}: there is no step '{}'; {}", who, name, unknown_name_hint(name, all_names_)));
+      return built_.last;
+    };
+    for (const PipelineFile::Show& show : file_.show)
+      built_.show.push_back(show.of.empty() ? built_.last : step_named(show.of, show.line, "show " + show.kind));
+    for (const PipelineFile::Node& n : file_.scene)
+      built_.places.push_back(n.at.empty() ? -1 : step_named(n.at, n.line, fmt::format("node '{}', instances", n.name)));
     if (file_.steps.empty()) mistake(0, "there are no steps");
     if (!mistakes_.empty()) {
       std::stable_sort(mistakes_.begin(), mistakes_.end(), [](const Mistake& a, const Mistake& b) { return a.node < b.node; });

@@ -18,6 +18,7 @@
 #include "pipeline/file/transfer_file.h"
 #include "pipeline/film/film_times.h"
 #include "pipeline/picture/picture_parts.h"
+#include "pipeline/picture/scene/picture_scene.h"
 #include "pipeline/picture/settle_choices.h"
 #include "scene/choose/shared_scale.h"
 #include "scene/show/parts.h"
@@ -134,7 +135,7 @@ void fix_frame(PipelineFile& first, const std::vector<PipelineFile>& some, const
   bool same = true;
   for (const PipelineFile& file : some) {
     Box3 box;
-    for (const Data& data : results_of(file, options.results, std::make_shared<Cache>(0), context))
+    for (const Data& data : placed(file, results_of(file, options.results, std::make_shared<Cache>(0), context), options.results, context))
       for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { box.add(d->bounds()); });
     same = same && (all.empty() || box == all);
     all.add(box);
@@ -151,7 +152,7 @@ std::vector<PipelineFile> spread(const PipelineFile& file, const FilmTimes& film
   std::vector<PipelineFile> some;
   for (size_t i = 0; i < most; ++i) {
     PipelineFile one = at_time(file, film, count == 1 ? 0 : i * (count - 1) / (most - 1));
-    if (some.empty() || some.back().steps != one.steps) some.push_back(std::move(one));
+    if (some.empty() || some.back().steps != one.steps || some.back().scene != one.scene) some.push_back(std::move(one));
   }
   return some;
 }
@@ -165,6 +166,7 @@ PipelineFile with_looks(const PipelineFile& plain, PipelineFile first, const Pic
   choose_looks(first, options, graph, looked, notes, context);
   // Without its time; the part of a volume in which something is seen is that of the first step alone.
   for (size_t i = 0; i < plain.steps.size(); ++i) first.steps[i].words = plain.steps[i].words;
+  first.scene = plain.scene;
   std::vector<std::string> picture = plain.picture;
   for (const std::string& word : first.picture) {
     const std::string_view key = std::string_view(word).substr(0, word.find('='));

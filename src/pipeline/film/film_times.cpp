@@ -48,7 +48,21 @@ bool write_time_in_steps(PipelineFile& file, double time) {
   for (PipelineFile::Step& s : file.steps) written = write_time(s.words, time) || written;
   return written;
 }
+// In the scene: 'angle: {t}', and nodes with keys.
+bool write_time_in_scene(PipelineFile& file, double time) {
+  bool written = false;
+  for (PipelineFile::Node& n : file.scene) {
+    written = write_time(n.words, time) || written;
+    for (auto& words : n.instances) written = write_time(words, time) || written;
+    if (n.keys.empty() || word_value(n.words, "time")) continue;
+    n.words.push_back("time=" + exact_number(time)), written = true;
+  }
+  return written;
+}
 bool asks_for_time(const PipelineFile& file) {
+  PipelineFile scene;
+  scene.scene = file.scene;
+  if (write_time_in_scene(scene, 0)) return true;
   const auto asks = [](const std::vector<std::string>& words) {
     return std::any_of(words.begin(), words.end(), [](const std::string& w) { return has_time_mark(w); });
   };
@@ -170,6 +184,7 @@ PipelineFile at_time(PipelineFile file, const FilmTimes& film, size_t n) {
   const bool in_texts = write_texts(file.picture, time, n, film.times.size());
   const bool in_picture = write_time(file.picture, time) || in_texts;
   if (film.turns) return file;
+  const bool in_scene = write_time_in_scene(file, time);
   if (write_time_in_steps(file, time)) return file;
   bool moment = false;
   for (PipelineFile::Step& s : file.steps)
@@ -194,7 +209,7 @@ PipelineFile at_time(PipelineFile file, const FilmTimes& film, size_t n) {
       moves = true;
     }
   }
-  if (!moves && !source.empty() && !in_picture)
+  if (!moves && !source.empty() && !in_picture && !in_scene)
     fail_usage(fmt::format("the source '{}' has no parameter 'time', or it is already set", source), "--times",
                "a series needs a source with a parameter 'time'");
   return file;

@@ -6,11 +6,13 @@
 #include "base/error.h"
 #include "base/text/text.h"
 #include "color/parse_color.h"
+#include "data/memory/memory_budget.h"
 #include "pipeline/film/film_params.h"
 #include "pipeline/offline/page_params.h"
 #include "pipeline/picture/picture_notes.h"
 #include "pipeline/picture/picture_parts.h"
 #include "pipeline/picture/prepare.h"
+#include "pipeline/picture/scene/shutter.h"
 #include "scene/show/show.h"
 
 namespace sg {
@@ -148,8 +150,13 @@ StatedPicture stated_in(const PipelineFile& file) {
 
 Picture make_picture(PipelineFile& file, const PictureOptions& options, Context& context) {
   Context computing(context, 0, 0.5), drawing(context, 0.5, 1);
-  const PreparedPicture prepared = prepare_picture(file, options, computing);
-  Picture picture = draw_prepared(prepared, prepared.stated, options, drawing);
+  PictureOptions shared = options;
+  // Moments find what does not move.
+  if (!shared.cache && stated_in(file).camera.shutter > 0) shared.cache = std::make_shared<Cache>(allowed_memory() / 2);
+  const PreparedPicture prepared = prepare_picture(file, shared, computing);
+  const std::vector<PipelineFile> moments = moments_of(file, prepared.stated.camera);
+  Picture picture =
+      moments.empty() ? draw_prepared(prepared, prepared.stated, options, drawing) : draw_moments(moments, prepared, shared, drawing);
   if (!in_panels(prepared.stated.picture) && !picture.image.pixels.empty()) {
     // The same picture on any machine.
     std::erase_if(file.picture, [](const std::string& w) { return w.starts_with("seconds="); });

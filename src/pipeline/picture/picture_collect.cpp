@@ -41,7 +41,7 @@ bool vanish(const StatedShow& lines, const ShownParts& shown, const std::vector<
 }  // namespace
 
 std::vector<Shown> collect(const PipelineFile& file, const std::vector<StatedShow>& shows, const std::vector<Data>& results,
-                           const std::vector<size_t>& panel_of, const PictureParams& stated, Context& context) {
+                           const std::vector<size_t>& panel_of, const PictureParams& stated, const Copies& copies, Context& context) {
   std::vector<Shown> panels(panel_of.empty() ? 1 : *std::max_element(panel_of.begin(), panel_of.end()) + 1);
   std::vector<Legend>& legends = panels[0].legends;
   std::vector<DatasetPtr> all;
@@ -88,6 +88,9 @@ std::vector<Shown> collect(const PipelineFile& file, const std::vector<StatedSho
       if (have == legends.end()) legends.push_back(legend);
       else if (legend.glyph && (!have->glyph || have->glyph->most < legend.glyph->most)) have->glyph = legend.glyph;
     }
+    for (size_t k = first; k < s.scene.items.size(); ++k)
+      if (auto* surface = std::get_if<SurfaceItem>(&s.scene.items[k]))
+        if (const auto copy = copies.find(surface->data.get()); copy != copies.end()) surface->copy_of = copy->second;
     s.scene.shows.resize(s.scene.items.size(), uint32_t(i + 1));
     if (!kind->is<VolumeShow>() || s.scene.items.size() == first) continue;
     if (const std::string& path = params.as<VolumeShow>().save; !path.empty())

@@ -300,18 +300,20 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const Graph
       shows.push_back(std::move(wanted));
       continue;
     }
+    const int node = wanted.node;
     const Data data = held.emplace_back(built.graph.evaluate(built.show[i], {}, context));
     Chosen& input = inputs.emplace_back(Chosen{file_name_of(origin_of(file, wanted.of)), {}, shows.size(), 0});
     for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { input.box.add(d->bounds()); });
     const Look look = choose_for(wanted, data, open == 1, file, shows, notes, context);
     input.end = shows.size();
+    for (size_t k = input.begin; k < input.end; ++k) shows[k].node = node;
     reasons.add(look.reason, input.name);
     if (first.shows.empty()) first = look;
   }
   for (const auto& [reason, names] : reasons.all()) notes.push_back(open > 1 ? fmt::format("{}: {}", names_text(names), reason) : reason);
   const StatedPicture stated = stated_in(file);
-  if (!in_panels(stated.picture)) see_through(inputs, shows, notes);
-  if (shows.size() == 1) {
+  if (!in_panels(stated.picture) && file.scene.empty()) see_through(inputs, shows, notes);
+  if (shows.size() == 1 && file.scene.empty()) {
     for (const std::string& word : first.picture) {
       const std::string_view key = std::string_view(word).substr(0, word.find('='));
       if (word_value(file.picture, key) || (key == "views" && !room_for_views(file, stated))) continue;

@@ -10,6 +10,7 @@
 
 #include "pipeline/picture/picture.h"
 #include "pipeline/picture/picture_sets.h"
+#include "pipeline/picture/scene/picture_scene.h"
 #include "render/annotate/annotate.h"
 #include "scene/camera_params.h"
 #include "scene/look/look.h"
@@ -133,9 +134,10 @@ struct Shown {
   std::string axis_titles[3], length_unit;
 };
 
-/// What each panel shows; `panel_of` tells the panel of each show. The legends of all are with the first one.
+/// What each panel shows; `panel_of` tells the panel of each show. The legends of all are with the first one. Surfaces of datasets in
+/// `copies` know what they are copies of.
 std::vector<Shown> collect(const PipelineFile& file, const std::vector<StatedShow>& shows, const std::vector<Data>& results,
-                           const std::vector<size_t>& panel_of, const PictureParams& stated, Context& context);
+                           const std::vector<size_t>& panel_of, const PictureParams& stated, const Copies& copies, Context& context);
 
 /// The edges of the box that do not lie in front of the data: those with a face turned away from the camera.
 LinesItem back_edges(const Box3& box, const Camera& camera);

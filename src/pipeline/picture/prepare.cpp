@@ -15,6 +15,8 @@
 #include "pipeline/file/transfer_file.h"
 #include "pipeline/picture/picture_cost.h"
 #include "pipeline/picture/picture_lights.h"
+#include "pipeline/picture/scene/picture_files.h"
+#include "pipeline/picture/scene/picture_scene.h"
 #include "pipeline/picture/settle_choices.h"
 #include "scene/choose/coloring.h"
 #include "scene/show/volume.h"
@@ -95,6 +97,9 @@ PreparedPicture prepare_picture(PipelineFile& file, const PictureOptions& option
   stated = stated_in(file);
   load_transfer_files(file);
   stated_shows(file);  // mistakes are reported before anything runs
+  stated_scene(file);
+  if (!file.scene.empty() && std::none_of(file.show.begin(), file.show.end(), [](const auto& s) { return s.node >= 0; }))
+    context.warn("no node of the scene shows anything: give one show: [{surface: {}, of: STEP}]");
   const auto cache = options.cache ? options.cache : std::make_shared<Cache>(0);
   std::vector<Data> held;
   std::optional<HeadPose> pose;  // of a CT that is contoured, or shown as a volume
@@ -123,8 +128,13 @@ PreparedPicture prepare_picture(PipelineFile& file, const PictureOptions& option
   const PipelineGraph built = build_graph(file, graph_options, options.results);
   std::vector<Target> targets;
   for (NodeId node : built.show) targets.push_back({node, {}});
+  for (const Target& t : place_targets(built)) targets.push_back(t);
   std::vector<Data> results = built.graph.evaluate(targets, context);
+  const std::vector<Data> places(results.begin() + ptrdiff_t(built.show.size()), results.end());
+  results.resize(built.show.size());
   leave_out_sets(file, shows, results, picture.notes, context);
+  Copies copies;
+  results = placed(file, places, std::move(results), &copies, context);
   held.clear();
   if (look.shows.empty()) note_colors(shows, results, picture.notes);
   for (size_t i = 0; i < results.size() && look.shows.empty() && !stated.camera.up; ++i)
@@ -141,7 +151,7 @@ PreparedPicture prepare_picture(PipelineFile& file, const PictureOptions& option
     context.log(level, text);
   };
   std::vector<Shown>& shown = picture.shown;
-  shown = collect(file, shows, results, panels_of(file, stated.picture), stated.picture, once);
+  shown = collect(file, shows, results, panels_of(file, stated.picture), stated.picture, copies, once);
   for (Shown& s : shown) {
     s.box = over_all(s.box, context);
     s.any_points = all_most(int(s.any_points), context.communicator) > 0;
@@ -165,9 +175,13 @@ PreparedPicture prepare_picture(PipelineFile& file, const PictureOptions& option
       if (!up.empty() && !stated.camera.up) picture.notes.push_back(up);
     }
     if (pose) picture.notes.push_back(face_unstated(*pose, look.camera));
-    face_cut(file, first, look.camera);
-    face_slab(file, first, shown[0].box, look.camera);
+    if (file.show[0].node < 0) {  // elsewhere the cut looks another way
+      face_cut(file, first, look.camera);
+      face_slab(file, first, shown[0].box, look.camera);
+    }
   }
+  take_from_files(file, shown[0].box, stated, picture.notes, context);
+  if (const std::string note = note_of_file_scene(results, file); !note.empty()) picture.notes.push_back(note);
   for (Shown& s : shown) s.box = with_room(s.box);  // after the choice of a view, which tells by the box what is flat
   picture.camera = look.camera;
   if (in_panels(stated.picture) && stated.picture.views.empty())

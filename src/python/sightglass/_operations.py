@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @lru_cache(maxsize=None)
 def catalog() -> dict[str, Any]:
-    """Sources, operations, ways to show, readers, writers, camera, picture, film, lights and environments with JSON Schemas of their parameters."""
+    """Sources, operations, ways to show, readers, writers, camera, picture, film, lights, environments and nodes of scenes with JSON Schemas of their parameters."""
     import json  # here and below: what only some programs need does not slow the start of all
 
     return json.loads(_core.catalog_json())

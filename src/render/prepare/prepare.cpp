@@ -210,7 +210,7 @@ class Preparation {
     PreparedItem p = start(PreparedItem::Kind::surface, s.data, s.opacity);
     bool any = false;
     p.triangles = triangulate(s.data, any);
-    p.material = s.material, p.made_of = s.made_of;
+    p.material = s.material, p.made_of = s.made_of, p.copy_of = s.copy_of;
     p.color = color_source(s.data, s.color_by, s.color, "surface");
     p.translucent = s.opacity < 1 || p.color.translucent;
     if (!s.flat) p.normals = normals(s, p.triangles);

@@ -82,6 +82,7 @@ struct PreparedItem {
   Material material;
   std::optional<SurfaceMaterial> made_of;
   bool translucent = false;
+  std::shared_ptr<const SurfaceCopy> copy_of;
   std::optional<SurfaceTexture> lic;
   Array lic_vectors;    ///< f32 x 3 packed, per point or cell
   float lic_least = 0;  ///< vectors whose largest component is not above this have no direction

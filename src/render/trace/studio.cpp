@@ -51,6 +51,9 @@ AnyLight traced(const PlacedLight& p, const Lighting& l, const Projection& proje
   const Vec3 at = distance > 0 ? p.about + Vec3(direction) * distance : p.about;
   const Vec3f middle = placement.traced(at), radiance = p.color * float(p.radiance);
   if (p.shape == Shape::point) return PointLight{middle, p.color * float(p.radiance * placement.scale * placement.scale)};
+  if (p.shape == Shape::spot)
+    return SpotLight{middle, Vec3f(normalize(p.target - at)), p.color * float(p.radiance * placement.scale * placement.scale),
+                     rise_of(2 * p.inner), rise_of(2 * p.outer)};
   if (p.shape == Shape::sphere) return SphereLight{middle, float(p.radius * placement.scale), radiance};
   const Vec3 normal = normalize(p.target - at);
   if (p.shape == Shape::disc) return DiscLight{middle, Vec3f(normal), float(p.radius * placement.scale), radiance};

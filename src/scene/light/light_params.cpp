@@ -86,6 +86,11 @@ void check(const LightParams& light, const ParamSet& params, const std::string& 
         if constexpr (requires { l.radius; })
           if (params.schema.stated("radius") && params.schema.stated("size"))
             fail_usage("its size is stated twice", owner, "give size, in diagonals of the data, or radius, in its coordinates");
+        if constexpr (requires { l.lux; })
+          if (params.schema.stated("lux") && params.schema.stated("brightness"))
+            fail_usage("its brightness is stated twice", owner, "give brightness or lux");
+        if constexpr (requires { l.inner; })
+          if (l.inner && *l.inner > l.angle) fail_usage("inner is above angle", owner, "it is the part of the cone at full strength");
         if constexpr (requires { l.width; }) {
           if (l.width.has_value() != l.height.has_value()) fail_usage("width and height go together", owner, "give both");
           if (params.schema.stated("width") && params.schema.stated("size"))
@@ -104,6 +109,23 @@ Vec3f light_color(const std::string& text) {
 }
 
 void describe(Schema& s, PointLightParams& p) { describe_place(s, p.place, false), describe_strength(s, p.strength); }
+void describe(Schema& s, SpotLightParams& p) {
+  describe_place(s, p.place, true), describe_strength(s, p.strength);
+  s("angle", p.angle, "Angle across its cone, beyond which it does not shine.").unit("deg").range(0, 180).positive();
+  s("inner", p.inner, "Angle across the cone in which it is at full strength; default: 0.7 of angle.").unit("deg").range(0, 180);
+}
+void describe(Schema& s, FileLightParams& p) {
+  s("names", p.names, "Those of these names; default: all.");
+  s("brightness", p.brightness,
+    "How bright a white surface at the middle of the data is that faces all of them; their ratios are those of the file.")
+      .range(0, 1e9)
+      .positive();
+  s("lux", p.lux,
+    "Instead of brightness: illuminance that makes a white surface white. glTF states candela and lux; pi takes its numbers as three.js "
+    "shows them.")
+      .range(0, 1e12)
+      .positive();
+}
 void describe(Schema& s, DirectionalLightParams& p) {
   describe_way(s, p.way);
   s("direction", p.direction, "Instead of these: direction towards the light in the data's coordinates.");
@@ -141,11 +163,13 @@ void describe(Schema& s, SunLightParams& p) {
 std::span<const LightKind> light_kinds() {
   static constexpr LightKind kinds[] = {
       light_kind<PointLightParams>("point", "Light from a point, with sharp shadows."),
+      light_kind<SpotLightParams>("spot", "Light from a point into a cone, with sharp shadows."),
       light_kind<DirectionalLightParams>("directional", "Light from far away: from one direction, or a disc in the sky."),
       light_kind<SphereLightParams>("sphere", "A ball that shines."),
       light_kind<DiscLightParams>("disc", "A round lamp that shines to the side of its target."),
       light_kind<RectangleLightParams>("rectangle", "A window or a soft box, which shines to the side of its target."),
       light_kind<SunLightParams>("sun", "The sun, in the colour that the air leaves it at its height."),
+      light_kind<FileLightParams>("file", "The lights that the file has which is shown (glTF)."),
   };
   return kinds;
 }

@@ -73,6 +73,12 @@ struct PointLightParams {
   LightPlace place;
   LightStrength strength;
 };
+struct SpotLightParams {
+  LightPlace place;
+  LightStrength strength;
+  double angle = 45;
+  std::optional<double> inner;
+};
 struct DirectionalLightParams {
   LightWay way;
   std::optional<Vec3> direction;
@@ -104,15 +110,24 @@ struct SunLightParams {
   double brightness = 1;
   double haze = 1;
 };
+/// The lights of a file that is shown: they are put in the place of this one when the picture is made (picture_file.h), and nothing shines
+/// before.
+struct FileLightParams {
+  std::vector<std::string> names;
+  double brightness = 1;
+  std::optional<double> lux;
+};
 void describe(Schema& s, PointLightParams& p);
+void describe(Schema& s, SpotLightParams& p);
 void describe(Schema& s, DirectionalLightParams& p);
 void describe(Schema& s, SphereLightParams& p);
 void describe(Schema& s, DiscLightParams& p);
 void describe(Schema& s, RectangleLightParams& p);
 void describe(Schema& s, SunLightParams& p);
+void describe(Schema& s, FileLightParams& p);
 
-using LightParams =
-    std::variant<PointLightParams, DirectionalLightParams, SphereLightParams, DiscLightParams, RectangleLightParams, SunLightParams>;
+using LightParams = std::variant<PointLightParams, SpotLightParams, DirectionalLightParams, SphereLightParams, DiscLightParams,
+                                 RectangleLightParams, SunLightParams, FileLightParams>;
 
 /// For all doors.
 struct LightKind {

@@ -54,7 +54,8 @@ void take_way(const LightWay& w, const Lighting& l, PlacedLight& p) {
 // Irradiance / radiance of what faces the light at that distance, which points are `radiance` / d^2 of.
 double irradiance_factor(const PlacedLight& l, double d) {
   switch (l.shape) {
-    case PlacedLight::Shape::point: return 1 / (d * d);
+    case PlacedLight::Shape::point:
+    case PlacedLight::Shape::spot: return 1 / (d * d);
     case PlacedLight::Shape::sphere: return d > l.radius ? pi * l.radius * l.radius / (d * d) : pi;
     case PlacedLight::Shape::disc: return pi * l.radius * l.radius / (d * d + l.radius * l.radius);
     case PlacedLight::Shape::rectangle: {
@@ -70,6 +71,11 @@ double irradiance_factor(const PlacedLight& l, double d) {
 double radiance_of_power(const PlacedLight& l, double power) {
   switch (l.shape) {
     case PlacedLight::Shape::point: return power / (4 * pi);
+    case PlacedLight::Shape::spot: {
+      // The integral of its share over the cone.
+      const double inner = 1 - std::cos(radians(l.inner)), outer = 1 - std::cos(radians(l.outer));
+      return power / (2 * pi * (inner + (outer - inner) / 3));
+    }
     case PlacedLight::Shape::sphere: return power / (4 * pi * pi * l.radius * l.radius);
     case PlacedLight::Shape::disc: return power / (pi * pi * l.radius * l.radius);
     case PlacedLight::Shape::rectangle: return power / (pi * l.width * l.height);
@@ -103,7 +109,8 @@ double diagonal_of(const Box3& box) {
   return d > 0 && std::isfinite(d) ? d : 1;
 }
 
-constexpr double shoulder = -50;  // degrees to the right of the viewer
+constexpr double usual_inner = 0.7;  // of the angle of a spot
+constexpr double shoulder = -50;     // degrees to the right of the viewer
 
 void take_sun(double elevation, std::optional<double> azimuth, const Lighting& l, PlacedLight& p) {
   p.shape = PlacedLight::Shape::sun, p.elevation = elevation, p.azimuth_follows = p.follows_camera = !azimuth;
@@ -121,6 +128,12 @@ std::vector<PlacedLight> place_lights(const Lighting& l, const Box3& box) {
                             p.shape = PlacedLight::Shape::point;
                             take_place(s.place, s.strength, l, box, diagonal, p);
                           },
+                          [&](const SpotLightParams& s) {
+                            p.shape = PlacedLight::Shape::spot, p.outer = s.angle / 2;
+                            p.inner = std::min(s.inner.value_or(usual_inner * s.angle), s.angle) / 2;
+                            take_place(s.place, s.strength, l, box, diagonal, p);
+                          },
+                          [&](const FileLightParams&) {},
                           [&](const DirectionalLightParams& s) {
                             p.shape = PlacedLight::Shape::directional;
                             if (s.direction) p.way = normalize(*s.direction), p.follows_camera = false;
@@ -145,7 +158,7 @@ std::vector<PlacedLight> place_lights(const Lighting& l, const Box3& box) {
                             p.brightness = s.brightness, p.haze = s.haze;
                           }},
                light);
-    placed.push_back(p);
+    if (!std::holds_alternative<FileLightParams>(light)) placed.push_back(p);
   }
   return placed;
 }

@@ -23,7 +23,7 @@ struct Lighting {
 
 /// A light that has found its place. World coordinates, but for `way` where it follows the camera.
 struct PlacedLight {
-  enum class Shape { point, directional, sphere, disc, rectangle, sun };
+  enum class Shape { point, spot, directional, sphere, disc, rectangle, sun };
   Shape shape = Shape::directional;
   Vec3 way{0, 0, 1};  ///< from `about` to the light; of distant ones a unit vector; in eye space (as of Light) with follows_camera
   bool follows_camera = true;
@@ -31,9 +31,10 @@ struct PlacedLight {
   Vec3 target;            ///< place that discs and rectangles face
   Vec3f color{1, 1, 1};   ///< linear
   double brightness = 1;  ///< of a white surface at `about` that faces it: irradiance / pi
-  double radiance = 1;    ///< of its surface, before its colour; of points power per solid angle
+  double radiance = 1;    ///< of its surface, before its colour; of points and spots power per solid angle
   double radius = 0, width = 0, height = 0;
   double angle = 0;                ///< degrees across, of distant ones
+  double inner = 0, outer = 0;     ///< of spots: degrees from the axis up to which it is at full strength, and at which it ends
   double elevation = 0, haze = 1;  ///< of the sun
   bool azimuth_follows = false;    ///< of the sun: it follows the camera about the vertical alone
 };

@@ -36,7 +36,7 @@ std::string joined(const std::vector<std::string>& words) {
 
 std::string command_text(const PipelineFile& file) {
   const auto reads = std::count_if(file.steps.begin(), file.steps.end(), [](const auto& s) { return s.reads(); });
-  if (reads != 1 || !file.steps[0].reads()) return "";
+  if (reads != 1 || !file.steps[0].reads() || !file.scene.empty()) return "";
   const PipelineFile::Step& input = file.steps[0];
   std::string command = "sightglass render " + quoted(word_value(input.words, "path").value_or(""));
   for (const std::string& w : input.words)

@@ -7,7 +7,7 @@
 namespace sg::serve {
 
 /// The pipeline as a command that makes the same picture: "sightglass render head.vti -f 'contour1: contour values=400' ...". "" where
-/// several files are read, or none: those stand in pipeline files.
+/// several files are read, or none, or where there is a scene: those stand in pipeline files.
 std::string command_text(const PipelineFile& file);
 
 }  // namespace sg::serve

@@ -120,6 +120,8 @@ class Editing {
     for (const PipelineFile::Step& s : file_.steps)
       if (std::find(s.from.begin(), s.from.end(), name) != s.from.end())
         return mistake(at, "", fmt::format("'{}' takes it; remove that first", s.name));
+    for (const PipelineFile::Node& n : file_.scene)
+      if (n.at == name) return mistake(at, "", fmt::format("node '{}' has its instances there; remove that first", n.name));
     std::erase_if(file_.show, [&](const auto& s) { return s.of == name; });
     std::erase_if(file_.steps, [&](const auto& s) { return s.name == name; });
   }

@@ -62,9 +62,10 @@ Found brightness(const std::string& light, Vec3 direction = {0, -1, 0}) {
 }  // namespace
 
 TEST_CASE("studio: a light of brightness 1 makes white what faces it in the middle of the data, whatever its kind and size") {
-  for (const char* light : {"point", "sphere", "sphere size=2 distance=1.5", "disc size=1.5", "rectangle",
-                            "rectangle size=3,0.2 distance=0.5", "directional", "directional angle=60", "sphere position=0,-40,9 radius=3",
-                            "sun elevation=15", "rectangle from=above", "disc position=0,0,5 radius=1"}) {
+  for (const char* light :
+       {"point", "spot", "spot position=0,-3,1 angle=60 inner=10", "sphere", "sphere size=2 distance=1.5", "disc size=1.5", "rectangle",
+        "rectangle size=3,0.2 distance=0.5", "directional", "directional angle=60", "sphere position=0,-40,9 radius=3", "sun elevation=15",
+        "rectangle from=above", "disc position=0,0,5 radius=1"}) {
     const Found f = brightness(light);
     CAPTURE(light);
     CHECK(std::abs(f.value - 1) <= 4 * f.error + 5e-3);

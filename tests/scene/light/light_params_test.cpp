@@ -58,6 +58,10 @@ TEST_CASE("lights: what cannot be right is refused, with what would be") {
   CHECK(test::contains(refusal("disc position=1,1,1 target=1,1,1"), "same place"));
   CHECK(test::contains(refusal("directional direction=0,0,0"), "0,0,0"));
   CHECK(test::contains(refusal("sun elevation=91"), "90"));
+  CHECK(test::contains(refusal("spot angle=181"), "180"));
+  CHECK(test::contains(refusal("spot angle=20 inner=30"), "inner is above angle"));
+  CHECK(test::contains(refusal("file brightness=2 lux=100"), "stated twice"));
+  CHECK(test::contains(refusal("file lux=0"), "above 0"));
   CHECK(test::contains(refusal("sun elevation=-1"), "from 0 to 90"));
   CHECK(test::contains(refusal("point elevation=100"), "90"));
   std::string many;
@@ -100,6 +104,9 @@ TEST_CASE("lights: sizes and distances are shares of the data, brightness is tha
   // 4 pi^2 from a point at a distance of 1 is white.
   CHECK(placed("point position=0,0,1 power=39.478417604357").brightness == Approx(1));
   CHECK(placed("disc position=0,0,5 radius=2 brightness=3").brightness == Approx(3));
+  // A spot at full strength in all of a half space gives half of what a point of that strength would.
+  CHECK(placed("spot position=0,0,3 power=100 angle=180 inner=180").radiance == Approx(100 / (2 * 3.14159265358979)));
+  CHECK(placed("spot position=0,0,5 brightness=3").brightness == Approx(3));
   // A large square seen from near fills a half space: irradiance pi L.
   CHECK(placed("rectangle position=0,0,1 width=1e5 height=1e5").radiance == Approx(1).epsilon(1e-4));
 }

@@ -25,6 +25,7 @@ const free: Record<string, string> = {
   "second shape size_by": "one of some words or a field, which are suggested",
   "x y z": "a column of a table; the fields are suggested",
   "lights environment": "kinds with words of their own",
+  "file": "the name of a camera in the file that is shown",
   "measurements": "what a window keeps for itself",
 };
 const known = new Set(Object.keys(free).flatMap((names) => names.split(" ")));

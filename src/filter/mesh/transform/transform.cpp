@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/space/affine.h"
 #include "data/lattice.h"
 #include "filter/mesh/transform/mirror_cells.h"
 #include "filter/mesh/transform/mirror_lattice.h"
@@ -18,29 +19,11 @@ namespace {
 
 constexpr size_t points_per_chunk = 1 << 14;
 
-struct Affine {
-  Mat3 linear;
-  Vec3 shift;
-  Vec3 operator()(Vec3 p) const { return linear * p + shift; }
-  bool diagonal() const {
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        if (i != j && linear.m[i][j] != 0) return false;
-    return true;
-  }
-};
-
-// Quarter turns get exact sines, so that a box turned by 90 degrees has straight numbers.
-void sine_cosine(double degrees, double& s, double& c) {
-  const double turn = std::remainder(degrees, 360.0), quarter = turn / 90.0;
-  if (quarter == std::round(quarter)) {
-    const int q = (int(quarter) + 4) % 4;
-    s = q == 1 ? 1 : q == 3 ? -1 : 0;
-    c = q == 0 ? 1 : q == 2 ? -1 : 0;
-    return;
-  }
-  const double a = turn * (3.14159265358979323846 / 180.0);
-  s = std::sin(a), c = std::cos(a);
+bool is_diagonal(const Mat3& a) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (i != j && a.m[i][j] != 0) return false;
+  return true;
 }
 
 Affine affine_of(const TransformParams& p) {
@@ -55,33 +38,18 @@ Affine affine_of(const TransformParams& p) {
       r.shift[int(i)] = p.matrix[4 * i + 3];
     }
   } else {
-    Mat3 turn;
-    if (p.angle != 0) {
-      if (!(length(p.axis) > 0)) fail_usage("the rotation axis is zero", "transform axis", "give a direction, e.g. axis=0,0,1");
-      const Vec3 u = normalize(p.axis);
-      double s, c;
-      sine_cosine(p.angle, s, c);
-      // Rodrigues: cos I + sin [u]x + (1 - cos) u u^T
-      const double cross_matrix[3][3] = {{0, -u.z, u.y}, {u.z, 0, -u.x}, {-u.y, u.x, 0}};
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) turn.m[i][j] = (i == j ? c : 0.0) + s * cross_matrix[i][j] + (1 - c) * u[i] * u[j];
-    }
+    const Mat3 turn = with_context("transform", [&] { return turn_about(p.axis, p.angle); });
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) r.linear.m[i][j] = turn.m[i][j] * p.scale[j];
     const Vec3 center = p.center.value_or(Vec3());
     r.shift = center - r.linear * center + p.translate;
   }
-  double largest = 0;
-  for (auto& row : r.linear.m)
-    for (double v : row) largest = std::max(largest, std::abs(v));
-  const double d = determinant(r.linear);
-  if (!std::isfinite(d) || !std::isfinite(r.shift.x + r.shift.y + r.shift.z) || !(std::abs(d) > 1e-12 * largest * largest * largest))
-    fail_usage("the transform flattens the mesh", "transform", "scale factors must not be 0, nor the matrix singular");
+  if (!is_invertible(r)) fail_usage("the transform flattens the mesh", "transform", "scale factors must not be 0, nor the matrix singular");
   return r;
 }
 
 // The double origin moves to where the old one goes, so the stored numbers stay small offsets.
-Points moved(const Points& in, const Affine& t) {
+Points moved_points(const Points& in, const Affine& t) {
   Points r;
   r.origin = t(in.origin);
   std::byte* out = nullptr;
@@ -152,7 +120,7 @@ struct Mover {
     return r;
   }
   Mesh operator()(const RectilinearGrid& g) const {
-    if (!t.diagonal()) {
+    if (!is_diagonal(t.linear)) {
       CurvilinearGrid c = moved_lattice(whole, [&](size_t, Vec3 p) { return t(p); });
       c.extent_start = g.extent_start;
       return c;
@@ -164,7 +132,7 @@ struct Mover {
     return r;
   }
   Mesh operator()(const AmrGrid& g) const {
-    if (!t.diagonal())
+    if (!is_diagonal(t.linear))
       fail_usage("an AMR grid cannot be rotated or sheared", "transform", "rotate the camera, or take faces, a slice or a contour first");
     AmrGrid r = g;
     r.origin = t(g.origin);
@@ -175,7 +143,7 @@ struct Mover {
   template <class M>
   Mesh operator()(const M& m) const {
     M r = m;
-    r.points = moved(m.points, t);
+    r.points = moved_points(m.points, t);
     return r;
   }
 };

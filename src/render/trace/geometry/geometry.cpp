@@ -59,29 +59,48 @@ Geometry Geometry::make(const PreparedScene& scene, const GeometryOptions& optio
       g.bounds_.hi[a] = std::max(g.bounds_.hi[a], o->box().hi[a]);
     }
   }
+  if (constexpr size_t few = 8; g.objects_.size() > few) {
+    std::vector<Box3f> boxes;
+    for (const auto& o : g.objects_) boxes.push_back(o->box());
+    g.tree_ = std::make_unique<WideBvh>(Bvh(boxes, {.most = wide, .least = 1, .of_node = 0.1f}, context).take());
+  }
   return g;
 }
 
+bool Geometry::ask(const Object& o, const Ray& ray, float& t_max, bool& found, Hit& hit) const {
+  const Ray inner = o.inward(ray);
+  Hit h;
+  h.t = t_max * float(o.ratio());
+  if (!o.nearest(inner, h)) return false;
+  h.t = h.t / float(o.ratio());
+  if (found && h.t == t_max && o.item > hit.object) return false;
+  hit = h, hit.object = o.item, t_max = h.t, found = true;
+  return true;
+}
+
 bool Geometry::nearest(const Ray& ray, Hit& hit) const {
-  const BoxRay boxes(ray);
   bool found = false;
   float t_max = ray.t_max;
-  for (const auto& o : objects_) {
-    if (!(boxes.enter(&o->box().lo.x, &o->box().hi.x, t_max) <= t_max)) continue;
-    const Ray inner = o->inward(ray);
-    Hit h;
-    h.t = t_max * float(o->ratio());
-    if (!o->nearest(inner, h)) continue;
-    h.t = h.t / float(o->ratio());
-    if (found && h.t == t_max) continue;  // the lower object's
-    hit = h, hit.object = o->item, t_max = h.t, found = true;
+  if (tree_) {
+    walk_leaves(*tree_, ray, t_max, true, [&](uint32_t first, uint32_t count) {
+      for (uint32_t i = first; i < first + count; ++i) ask(*objects_[tree_->order()[i]], ray, t_max, found, hit);
+      return false;
+    });
+    return found;
   }
+  const BoxRay boxes(ray);
+  for (const auto& o : objects_)
+    if (boxes.enter(&o->box().lo.x, &o->box().hi.x, t_max) <= t_max) ask(*o, ray, t_max, found, hit);
   return found;
 }
 
 uint32_t Geometry::nearest(const Ray* rays, int count, Hit* hits) const {
   if (count < 1 || count > packet_rays) fail_internal("a packet holds 1 to 16 rays");
   uint32_t found = 0;
+  if (tree_) {
+    for (int i = 0; i < count; ++i) found |= uint32_t(nearest(rays[i], hits[i])) << i;
+    return found;
+  }
   Ray inner[packet_rays];
   Hit h[packet_rays];
   float t_max[packet_rays];
@@ -100,6 +119,17 @@ uint32_t Geometry::nearest(const Ray* rays, int count, Hit* hits) const {
 }
 
 bool Geometry::blocked(const Ray& ray) const {
+  if (tree_) {
+    bool stopped = false;
+    walk_leaves(*tree_, ray, ray.t_max, false, [&](uint32_t first, uint32_t count) {
+      for (uint32_t i = first; i < first + count && !stopped; ++i) {
+        const Object& o = *objects_[tree_->order()[i]];
+        stopped = o.blocked(o.inward(ray));
+      }
+      return stopped;
+    });
+    return stopped;
+  }
   const BoxRay boxes(ray);
   for (const auto& o : objects_)
     if (boxes.enter(&o->box().lo.x, &o->box().hi.x, ray.t_max) <= ray.t_max && o->blocked(o->inward(ray))) return true;
@@ -107,8 +137,10 @@ bool Geometry::blocked(const Ray& ray) const {
 }
 
 SurfacePoint Geometry::at(const Ray& ray, const Hit& hit) const {
-  for (const auto& o : objects_) {
-    if (o->item != hit.object) continue;
+  const auto object =
+      std::lower_bound(objects_.begin(), objects_.end(), hit.object, [](const auto& o, uint32_t item) { return o->item < item; });
+  if (object != objects_.end() && (*object)->item == hit.object) {
+    const auto& o = *object;
     Hit h = hit;
     h.t = hit.t * float(o->ratio());
     const Object::Place p = o->at(o->inward(ray), h);

@@ -9,6 +9,7 @@
 #include "render/prepare/prepare.h"
 #include "render/trace/geometry/ray.h"
 #include "render/trace/geometry/surface_point.h"
+#include "render/trace/geometry/wide_bvh.h"
 
 namespace sg::trace {
 
@@ -45,7 +46,11 @@ class Geometry {
   size_t bytes() const;
 
  private:
-  std::vector<std::shared_ptr<Object>> objects_;
+  /// Object `o` asked for what is nearer than t_max, or as near and of a lower number.
+  bool ask(const Object& o, const Ray& ray, float& t_max, bool& found, Hit& hit) const;
+
+  std::vector<std::shared_ptr<Object>> objects_;  // in the order of their numbers
+  std::unique_ptr<WideBvh> tree_;                 // of their boxes, where there are many
   Placement placement_;
   Box3f bounds_;
 };

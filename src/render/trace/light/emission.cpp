@@ -118,6 +118,15 @@ std::optional<EmittedRay> Emission::sample(float choice, Vec2f u, Vec2f v) const
                                 e.first = 1, e.second = uniform_sphere_pdf(), e.weight = l.intensity / e.second, e.t_max = infinite_way;
                                 return e;
                               },
+                              [&](const SpotLight& l) -> std::optional<EmittedRay> {
+                                EmittedRay e{};
+                                e.direction = normalize(LocalFrame::about(l.axis).to_world(uniform_cone(v, l.outer)));
+                                const float share = l.share(e.direction);
+                                if (!(share > 0)) return {};
+                                e.position = e.leaves = l.position, e.first = 1, e.second = uniform_cone_pdf(l.outer);
+                                e.weight = l.intensity * (share / e.second), e.t_max = infinite_way;
+                                return e;
+                              },
                               [&](const DistantLight& l) -> std::optional<EmittedRay> {
                                 if (l.rise == 0) return from_infinity(i, l.direction, l.irradiance, 1, u);
                                 const Vec3f towards = normalize(LocalFrame::about(l.direction).to_world(uniform_cone(v, l.rise)));
@@ -160,6 +169,9 @@ Emission::Densities Emission::pdf(uint32_t light, Vec3f normal, Vec3f direction)
   return std::visit(Overloaded{[&](const PointLight&) {
                                  return Densities{chance, uniform_sphere_pdf()};
                                },
+                               [&](const SpotLight& l) {
+                                 return Densities{chance, l.share(direction) > 0 ? uniform_cone_pdf(l.outer) : 0};
+                               },
                                [&](const DistantLight& l) {
                                  return Densities{l.rise == 0 ? chance : chance * uniform_cone_pdf(l.rise), disc};
                                },
@@ -173,9 +185,9 @@ Emission::Densities Emission::pdf(uint32_t light, Vec3f normal, Vec3f direction)
 Vec3f Emission::normal(uint32_t light, Vec3f position) const {
   if (light == lights_.count()) return {};
   return std::visit(
-      Overloaded{[](const PointLight&) { return Vec3f(); }, [](const DistantLight&) { return Vec3f(); },
-                 [&](const SphereLight& l) { return normalize(position - l.middle); }, [](const DiscLight& l) { return l.normal; },
-                 [](const RectangleLight& l) { return normalize(cross(l.u, l.v)); },
+      Overloaded{[](const PointLight&) { return Vec3f(); }, [](const SpotLight&) { return Vec3f(); },
+                 [](const DistantLight&) { return Vec3f(); }, [&](const SphereLight& l) { return normalize(position - l.middle); },
+                 [](const DiscLight& l) { return l.normal; }, [](const RectangleLight& l) { return normalize(cross(l.u, l.v)); },
                  [](const TriangleLight& l) { return normalize(cross(l.b - l.a, l.c - l.a)); }},
       lights_.light(light));
 }
@@ -188,7 +200,7 @@ bool Emission::can_be_met(uint32_t light) const {
   if (light == lights_.count()) return true;
   const AnyLight& l = lights_.light(light);
   const auto* distant = std::get_if<DistantLight>(&l);
-  return distant ? distant->rise > 0 : !std::holds_alternative<PointLight>(l);
+  return distant ? distant->rise > 0 : !std::holds_alternative<PointLight>(l) && !std::holds_alternative<SpotLight>(l);
 }
 
 }  // namespace sg::trace

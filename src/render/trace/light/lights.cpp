@@ -20,6 +20,7 @@ constexpr float infinite = std::numeric_limits<float>::infinity();
 float power(const AnyLight& light, float reach) {
   const float disc = pi * reach * reach;
   return std::visit(Overloaded{[&](const PointLight& l) { return 4 * pi * luminance(l.intensity); },
+                               [&](const SpotLight& l) { return 2 * pi * (l.inner + (l.outer - l.inner) / 3) * luminance(l.intensity); },
                                [&](const DistantLight& l) { return disc * luminance(l.irradiance); },
                                [&](const SphereLight& l) { return 4 * pi * l.radius * l.radius * pi * luminance(l.radiance); },
                                [&](const DiscLight& l) { return pi * l.radius * l.radius * pi * luminance(l.radiance); },
@@ -48,6 +49,14 @@ std::optional<LightSample> sample_one(const PointLight& l, Vec3f from, Vec2f) {
   const float d2 = dot(way, way), d = std::sqrt(d2);
   if (!(d > 0)) return {};
   return sharp(way / d, d, l.intensity / d2);
+}
+std::optional<LightSample> sample_one(const SpotLight& l, Vec3f from, Vec2f) {
+  const Vec3f way = l.position - from;
+  const float d2 = dot(way, way), d = std::sqrt(d2);
+  if (!(d > 0)) return {};
+  const float share = l.share(-way / d);
+  if (!(share > 0)) return {};
+  return sharp(way / d, d, l.intensity * (share / d2));
 }
 std::optional<LightSample> sample_one(const DistantLight& l, Vec3f, Vec2f u) {
   if (l.rise == 0) return sharp(l.direction, infinite, l.irradiance);
@@ -144,11 +153,13 @@ std::optional<Seen> seen_one(const DistantLight& l, const Ray& r, float) {
   if (l.rise == 0 || r.t_max != infinite || !(1 - dot(r.direction, l.direction) < l.rise)) return {};
   return Seen{l.irradiance / (pi * l.rise * (2 - l.rise)), uniform_cone_pdf(l.rise), infinite};
 }
-std::optional<Seen> seen_one(const PointLight&, const Ray&, float) { return {}; }     // without a size
+std::optional<Seen> seen_one(const PointLight&, const Ray&, float) { return {}; }  // without a size
+std::optional<Seen> seen_one(const SpotLight&, const Ray&, float) { return {}; }
 std::optional<Seen> seen_one(const TriangleLight&, const Ray&, float) { return {}; }  // an item
 
 /// The density of sample_one(); of deltas 1.
 float pdf_one(const PointLight&, Vec3f, Vec3f, float) { return 1; }
+float pdf_one(const SpotLight&, Vec3f, Vec3f, float) { return 1; }
 float pdf_one(const DistantLight& l, Vec3f, Vec3f, float) { return l.rise == 0 ? 1 : uniform_cone_pdf(l.rise); }
 float pdf_one(const SphereLight& l, Vec3f from, Vec3f, float) { return pdf_seen(l, from); }
 float pdf_flat(Vec3f normal, float area, Vec3f direction, float distance) {
@@ -176,7 +187,7 @@ Lights::Lights(std::vector<AnyLight> lights, Environment environment, float reac
     if (!(p > 0 && std::isfinite(p)))
       fail_usage("a light has no size or no power", "lights", "give every light a size and a brightness above 0");
     if (const auto* t = std::get_if<TriangleLight>(&l)) triangles_.emplace_back(key_of(t->object, t->primitive), uint32_t(powers.size()));
-    else if (!std::holds_alternative<PointLight>(l)) met_.push_back(uint32_t(powers.size()));
+    else if (!std::holds_alternative<PointLight>(l) && !std::holds_alternative<SpotLight>(l)) met_.push_back(uint32_t(powers.size()));
     powers.push_back(p);
   }
   std::sort(triangles_.begin(), triangles_.end());

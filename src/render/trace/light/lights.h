@@ -15,6 +15,19 @@ namespace sg::trace {
 struct PointLight {
   Vec3f position, intensity;  ///< power per solid angle
 };
+/// A point that shines into a cone: at full strength near its axis, then smoothly (the square of the cosine's share of the way) to nothing.
+struct SpotLight {
+  Vec3f position, axis;  ///< axis: unit, where it shines to
+  Vec3f intensity;       ///< power per solid angle on the axis
+  float inner, outer;    ///< 1 - cos of the angles from the axis up to which it is at full strength, and at which it ends
+
+  float share(Vec3f direction) const {
+    const float rise = 1 - dot(direction, axis);
+    if (rise <= inner) return 1;
+    const float s = rise < outer ? (outer - rise) / (outer - inner) : 0;
+    return s * s;
+  }
+};
 /// As far away as the sun: a disc in the sky, or a point of it.
 struct DistantLight {
   Vec3f direction;   ///< towards it, unit
@@ -41,7 +54,7 @@ struct TriangleLight {
   Vec3f radiance;
   uint32_t object = 0, primitive = 0;  ///< as in Hit
 };
-using AnyLight = std::variant<PointLight, DistantLight, SphereLight, DiscLight, RectangleLight, TriangleLight>;
+using AnyLight = std::variant<PointLight, SpotLight, DistantLight, SphereLight, DiscLight, RectangleLight, TriangleLight>;
 
 /// One light seen from a point.
 struct LightSample {

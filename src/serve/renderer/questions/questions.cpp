@@ -11,6 +11,7 @@
 #include "base/text/utf8.h"
 #include "data/cells/point_positions.h"
 #include "filter/probe/probe.h"
+#include "pipeline/picture/scene/picture_scene.h"
 #include "scene/choose/histogram.h"
 #include "serve/renderer/questions/measures.h"
 #include "serve/renderer/questions/place_values.h"
@@ -134,14 +135,19 @@ Json::Members probe_picture(const DrawnPlanes& drawn, double x, double y, const 
   std::optional<size_t> cell;
   if (show > 0 && show <= file.show.size()) {
     DatasetPtr nearest;
+    Vec3 local = at;  // in the data's own coordinates, which a node of the scene has moved
+    const std::vector<Affine> places = places_of_show(file, show - 1, cache, context);
     for_each_dataset(result_of(file, shown_step(file, show - 1), cache, context), [&](const std::string&, const DatasetPtr& d) {
       Box3 b = d->bounds();
       const double hair = 1e-3 * b.diagonal();
-      bool inside = !b.empty();
-      for (int a = 0; a < 3; ++a) inside = inside && at[a] >= b.lo[a] - hair && at[a] <= b.hi[a] + hair;
-      if (inside && !nearest) nearest = d;
+      for (const Affine& place : places) {
+        const Vec3 there = inverse(place)(at);
+        bool inside = !b.empty();
+        for (int a = 0; a < 3; ++a) inside = inside && there[a] >= b.lo[a] - hair && there[a] <= b.hi[a] + hair;
+        if (inside && !nearest) nearest = d, local = there;
+      }
     });
-    if (nearest) cell = probed_cell(nearest, at, context), values = values_at(nearest, at, cell, context);
+    if (nearest) cell = probed_cell(nearest, local, context), values = values_at(nearest, local, cell, context);
   }
   answer.emplace_back("values", Json(std::move(values)));
   answer.emplace_back("cell", cell ? Json(uint64_t(*cell)) : Json());

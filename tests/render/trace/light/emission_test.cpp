@@ -40,6 +40,7 @@ std::vector<KindOfLight> kinds_of_light() {
   const double reach2 = 3 * 0.2 * 0.2 * 1.0001 * 1.0001;
   const Vec3f two{2, 2, 2};
   return {{PointLight{{0, 0, 2}, two}, 8 * pi_e},
+          {SpotLight{{0, 0, 2}, {0, 0.6f, -0.8f}, two, 0.1f, 0.4f}, 2 * 2 * pi_e * (0.1 + 0.3 / 3)},
           {DistantLight{{0, 0.6f, 0.8f}, two, 0}, 2 * pi_e * reach2},
           {SphereLight{{0.3f, 0, 1.5f}, 0.7f, two}, 2 * pi_e * 4 * pi_e * 0.49},
           {DiscLight{{0, 0, 1}, {0, 0, -1}, 0.5f, two}, 2 * pi_e * pi_e * 0.25},

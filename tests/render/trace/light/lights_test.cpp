@@ -59,6 +59,7 @@ void check_irradiance(const AnyLight& light, Vec3f from, Vec3f normal, double ex
 }
 
 const std::vector<AnyLight> each_kind{PointLight{{0, 0, 2}, {3, 3, 3}},
+                                      SpotLight{{0, 0, 2}, {0, 0.6f, -0.8f}, {3, 3, 3}, 0.1f, 0.4f},
                                       DistantLight{{0, 0.6f, 0.8f}, {2, 2, 2}, 0.05f},
                                       SphereLight{{0.3f, 0, 1.5f}, 0.7f, {2, 2, 2}},
                                       DiscLight{{0, 0, 1}, {0, 0, -1}, 0.5f, {4, 4, 4}},
@@ -70,6 +71,10 @@ const std::vector<AnyLight> each_kind{PointLight{{0, 0, 2}, {3, 3, 3}},
 TEST_CASE("lights: the irradiance of every kind is that of its closed form") {
   const Vec3f up{0, 0, 1}, tilted = normalize(Vec3f{0.3f, -0.2f, 1});
   check_irradiance(PointLight{{0, 0, 2}, {3, 3, 3}}, {0, 0, 0}, up, 3.0 / 4);
+  // A spot: its axis as a point; between its angles the square of what the cosine has left; beyond them nothing.
+  check_irradiance(SpotLight{{0, 0, 2}, {0, 0, -1}, {3, 3, 3}, 0.1f, 0.4f}, {0, 0, 0}, up, 3.0 / 4);
+  check_irradiance(SpotLight{{0, 0, 2}, {0, 0.6f, -0.8f}, {3, 3, 3}, 0.1f, 0.4f}, {0, 0, 0}, up, 3.0 / 4 * 4 / 9);
+  CHECK(irradiance(Lights({SpotLight{{0, 0, 2}, {0, 0.6f, -0.8f}, {3, 3, 3}, 0.1f, 0.15f}}, {}, 1), {0, 0, 0}, up, 100).mean == 0);
   // A disc in the sky, seen straight on and tilted: its irradiance times the cosine of its middle.
   check_irradiance(DistantLight{{0, 0, 1}, {2, 2, 2}, 0.1f}, {0, 0, 0}, up, 2);
   check_irradiance(DistantLight{{0, 0.6f, 0.8f}, {2, 2, 2}, 0.1f}, {0, 0, 0}, up, 1.6);
@@ -100,7 +105,8 @@ TEST_CASE("lights: those with one side are dark from the other") {
 TEST_CASE("lights: what a ray meets by chance is what is asked for, between its ends") {
   for (const AnyLight& light : each_kind) {
     const Lights lights({light}, {}, 1);
-    const bool is_met = !std::holds_alternative<PointLight>(light) && !std::holds_alternative<TriangleLight>(light);
+    const bool is_met = !std::holds_alternative<PointLight>(light) && !std::holds_alternative<SpotLight>(light) &&
+                        !std::holds_alternative<TriangleLight>(light);
     CAPTURE(light.index());
     for (uint64_t i = 0; i < 200; ++i) {
       const Vec2f u{float(random_unit(1, i)) * 0.98f + 0.01f, float(random_unit(2, i)) * 0.98f + 0.01f};

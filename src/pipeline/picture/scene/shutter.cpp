@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/picture/scene/shutter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/text/text.h"
+#include "scene/graph/node_params.h"
+
+namespace sg {
+
+namespace {
+
+double time_of_node(const PipelineFile::Node& n) {
+  if (const auto stated = word_value(n.words, "time"))
+    if (const auto time = parse_double(*stated)) return *time;
+  KeyParams first;
+  Schema schema = schema_of(first);
+  set_params(schema, n.keys.front(), "node keys");
+  return first.time;
+}
+
+bool has_alpha(const Image& image) { return image.channels == 2 || image.channels == 4; }
+
+}  // namespace
+
+std::vector<PipelineFile> moments_of(const PipelineFile& file, const CameraParams& camera) {
+  std::vector<PipelineFile> moments;
+  const bool moves = std::any_of(file.scene.begin(), file.scene.end(), [](const auto& n) { return !n.keys.empty(); });
+  if (!(camera.shutter > 0) || !moves) return moments;
+  for (int k = 0; k < camera.moments; ++k) {
+    PipelineFile& one = moments.emplace_back(file);
+    const double off = camera.shutter * ((k + 0.5) / camera.moments - 0.5);
+    for (PipelineFile::Node& n : one.scene)
+      if (!n.keys.empty()) n.words.push_back("time=" + exact_number(time_of_node(n) + off));  // the last one counts
+  }
+  return moments;
+}
+
+Picture draw_moments(const std::vector<PipelineFile>& moments, const PreparedPicture& prepared, const PictureOptions& options,
+                     Context& context) {
+  Picture picture;
+  MeanImage mean;
+  PictureOptions each = options;
+  each.on_draft = nullptr;
+  PreparedPicture moment = prepared;
+  for (size_t k = 0; k < moments.size(); ++k) {
+    Context part(context, double(k) / double(moments.size()), double(k + 1) / double(moments.size()));
+    if (k > 0) part.on_log = nullptr;  // all say the same
+    PipelineFile file = moments[k];
+    const PreparedPicture there = prepare_picture(file, each, part);
+    for (size_t i = 0; i < moment.shown.size() && i < there.shown.size(); ++i) moment.shown[i].scene = there.shown[i].scene;
+    picture = draw_prepared(moment, moment.stated, each, part);
+    if (picture.image.pixels.empty()) return picture;
+    mean.add(picture.image);
+  }
+  picture.image = mean.mean();
+  return picture;
+}
+
+void MeanImage::add(const Image& image) {
+  if (count_ == 0) like_ = image, sums_.assign(size_t(image.width) * size_t(image.height) * 4, 0);
+  if (image.width != like_.width || image.height != like_.height || image.channels != like_.channels)
+    fail_internal("moments of different sizes");
+  ++count_;
+  const int colors = has_alpha(image) ? image.channels - 1 : image.channels;
+  const size_t pixels = size_t(image.width) * size_t(image.height);
+  double linear[256];
+  for (int v = 0; v < 256; ++v) linear[v] = double(srgb_decode(float(v) / 255));
+  for (size_t i = 0; i < pixels; ++i) {
+    const uint8_t* p = &image.pixels[i * size_t(image.channels)];
+    const double alpha = has_alpha(image) ? p[colors] / 255.0 : 1;
+    for (int c = 0; c < colors; ++c) sums_[4 * i + size_t(c)] += linear[p[c]] * alpha;
+    sums_[4 * i + 3] += alpha;
+  }
+}
+
+Image MeanImage::mean() const {
+  Image r = like_;
+  const int colors = has_alpha(r) ? r.channels - 1 : r.channels;
+  const auto byte = [](double v) { return uint8_t(std::clamp(v * 255 + 0.5, 0.0, 255.0)); };
+  for (size_t i = 0; i < size_t(r.width) * size_t(r.height); ++i) {
+    uint8_t* p = &r.pixels[i * size_t(r.channels)];
+    const double alpha = sums_[4 * i + 3];
+    for (int c = 0; c < colors; ++c) p[c] = alpha > 0 ? byte(double(srgb_encode(float(sums_[4 * i + size_t(c)] / alpha)))) : 0;
+    if (has_alpha(r)) p[colors] = byte(alpha / double(count_));
+  }
+  return r;
+}
+
+}  // namespace sg

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/picture/scene/shutter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/picture/scene/picture_scene.h"
+#include "support/test.h"
+
+using namespace sg;
+
+namespace {
+
+PipelineFile moving(const std::string& camera) {
+  return parse_pipeline(
+      "sightglass: 1\nsteps:\n  grid: {sphere: {size: 24, radius: 0.5}}\n  ball: {contour: {values: [0]}, from: grid}\n"
+      "scene:\n  - {node: a, keys: [{time: 0}, {time: 1, translate: [4, 0, 0]}], time: 0.5, show: [{surface: {color: black, lit: false}, "
+      "of: ball}]}\n"
+      "picture: {size: 96x96, axes: false, triad: false, frame: [-1, 5, -3, 3, -1, 1], camera: {view: front, projection: parallel" +
+          camera + "}}",
+      "m.yaml", picture_vocabulary());
+}
+Image picture_of(const std::string& camera) {
+  PipelineFile file = moving(camera);
+  Context context;
+  return make_picture(file, {}, context).image;
+}
+
+}  // namespace
+
+TEST_CASE("shutter: moments lie evenly in the time that it is open, about that of the picture") {
+  CameraParams camera;
+  CHECK(moments_of(moving(""), camera).empty());
+  camera.shutter = 0.4, camera.moments = 4;
+  const auto moments = moments_of(moving(""), camera);
+  REQUIRE(moments.size() == 4);
+  const double wanted[] = {0.35, 0.45, 0.55, 0.65};
+  for (size_t k = 0; k < 4; ++k) CHECK(stated_scene(moments[k])[0].place.shift.x == doctest::Approx(4 * wanted[k]));
+  PipelineFile still = moving("");
+  still.scene[0].keys.clear(), still.scene[0].words.clear();
+  CHECK(moments_of(still, camera).empty());
+}
+
+TEST_CASE("shutter: a ball that moves by less than itself is dark in its middle, and as much darkness is seen in all") {
+  const Image sharp = picture_of(""), blurred = picture_of(", shutter: 0.2, moments: 32"),
+              still = picture_of(", shutter: 1e-9, moments: 2");
+  CHECK(still.pixels == sharp.pixels);  // the mean of equal pictures
+  const auto darkness = [](const Image& image, int y, int x) { return 1 - double(srgb_decode(float(image.at(x, y)[0]) / 255)); };
+  double sums[2] = {0, 0}, widths[2] = {0, 0};
+  const Image* images[2] = {&sharp, &blurred};
+  for (int i = 0; i < 2; ++i)
+    for (int y = 0; y < 96; ++y)
+      for (int x = 0; x < 96; ++x) {
+        const double d = darkness(*images[i], y, x);
+        sums[i] += d;
+        if (y == 48) widths[i] += d > 0.02;
+      }
+  CHECK(sums[1] == doctest::Approx(sums[0]).epsilon(0.02));
+  CHECK(darkness(blurred, 48, 48) == doctest::Approx(1));  // covered at every moment: it moves by 0.8 of 1
+  // A disc of 1 that moves by 0.8 covers 1.8.
+  CHECK(widths[1] / widths[0] == doctest::Approx(1.8).epsilon(0.1));
+}
+
+TEST_CASE("shutter: the mean is that of light, not of its codes, and transparent pixels count by their alpha") {
+  Image black(1, 1, 4), white(1, 1, 4);
+  white.pixels = {255, 255, 255, 255}, black.pixels = {0, 0, 0, 255};
+  MeanImage mean;
+  mean.add(black), mean.add(white);
+  CHECK(mean.mean().pixels == std::vector<uint8_t>{188, 188, 188, 255});
+  Image nothing(1, 1, 4);
+  nothing.pixels = {0, 0, 0, 0};
+  MeanImage half;
+  half.add(white), half.add(nothing);
+  CHECK(half.mean().pixels == std::vector<uint8_t>{255, 255, 255, 128});
+}
