@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scene: what is to be seen. Plain data; renderers read it.
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -27,6 +28,8 @@ struct FieldColor {
   bool direct = false;
 };
 
+struct SurfacePictures;
+
 /// Polygons and strips of a SurfaceMesh.
 struct SurfaceItem {
   DatasetPtr data;
@@ -42,8 +45,9 @@ struct SurfaceItem {
   /// A SurfaceMesh whose lines are drawn instead (of curved cells: see Skin), or where it has polygons their edges; null = the edges of
   /// the polygons drawn.
   DatasetPtr edge_lines;
-  std::optional<Vec3f> edge_color;    ///< sRGB; empty = that of the surface under it, darker, or lighter on a dark surface
-  std::optional<SurfaceTexture> lic;  ///< directions of a vector field as a texture
+  std::optional<Vec3f> edge_color;                  ///< sRGB; empty = that of the surface under it, darker, or lighter on a dark surface
+  std::optional<SurfaceTexture> lic;                ///< directions of a vector field as a texture
+  std::shared_ptr<const SurfacePictures> pictures;  ///< what its colour and material are multiplied with; null = nothing
 };
 
 /// Lines of a SurfaceMesh; constant width on the picture.

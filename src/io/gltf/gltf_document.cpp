@@ -10,6 +10,7 @@
 #include "base/text/json.h"
 #include "base/text/text.h"
 #include "io/gltf/gltf_bytes.h"
+#include "io/gltf/gltf_materials.h"
 
 namespace sg {
 
@@ -220,7 +221,6 @@ struct Parser {
       double c[4];
       if (numbers(o["pbrMetallicRoughness"], "baseColorFactor", c, where))
         for (int i = 0; i < 4; ++i) m.base_color[i] = float(c[i]);
-      m.textured = !o["pbrMetallicRoughness"]["baseColorTexture"].is_null();
       d.materials.push_back(m);
     });
     add_roots(d);
@@ -259,7 +259,14 @@ GltfDocument read_gltf_document(const std::string& path, Context& context) {
   if (!version.starts_with("2")) fail_data(fmt::format("is glTF {}", version), path, "version 2.0 is supported");
   const Parser parser{path, root};
   parser.check_extensions(context);
-  return parser.document(chunks.binary, file);
+  GltfDocument document = parser.document(chunks.binary, file);
+  if (!document.materials.empty()) {
+    auto table = std::make_shared<MaterialTable>();
+    int64_t number = 0;
+    for (MaterialLook& look : gltf_looks(root, document, context)) table->looks[++number] = std::move(look);
+    document.looks = std::move(table);
+  }
+  return document;
 }
 
 }  // namespace sg

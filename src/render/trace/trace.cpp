@@ -128,6 +128,7 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
   }
   const auto across = size_t(projection.width + side - 1) / side, down = size_t(projection.height + side - 1) / side;
   std::vector<SquareReport> squares(across * down);
+  const bool pictures = std::any_of(prepared->items.begin(), prepared->items.end(), [](const auto& item) { return item.pictures; });
   SharedProgress progress(context, squares.size(), "following light");
   parallel_for(
       across * down, 1,
@@ -149,8 +150,10 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
               for (uint32_t k = n; k < to; ++k) {
                 sampler.start(uint32_t(x), uint32_t(y), k);
                 const Vec2f in_pixel = sampler.next2(), on_lens = camera.has_lens() ? concentric_disc(sampler.next2()) : Vec2f();
-                const Ray ray = camera.ray({float(x) + in_pixel.x, float(y) + in_pixel.y}, on_lens);
-                sums[p].add(integrator->along(world, ray, sampler), backdrop.seen ? backdrop.radiance(ray.direction) : around[p / w]);
+                const Vec2f at{float(x) + in_pixel.x, float(y) + in_pixel.y};
+                const Ray ray = camera.ray(at, on_lens);
+                sums[p].add(integrator->along(world, ray, sampler, pictures ? camera.footprint(at) : RayFootprint()),
+                            backdrop.seen ? backdrop.radiance(ray.direction) : around[p / w]);
               }
             }
             n = to;

@@ -13,11 +13,12 @@ class OcclusionIntegrator : public Integrator {
  public:
   explicit OcclusionIntegrator(float reach) : reach_(reach) {}
 
-  Estimate along(const World& world, const Ray& first, Sampler& sampler) const override {
+  Estimate along(const World& world, const Ray& first, Sampler& sampler, const RayFootprint& whole) const override {
     const Media::Borrowed media = world.borrow_media();
     Estimate out;
     float share = 1;  // that has not met anything
     Ray ray = first;
+    RayFootprint footprint = whole;
     for (Hit hit; share > 0; hit = Hit()) {
       const bool met = world.geometry().nearest(ray, hit);
       if (media) {
@@ -37,7 +38,7 @@ class OcclusionIntegrator : public Integrator {
       }
       if (!met) break;
       const SurfacePoint point = world.geometry().at(ray, hit);
-      const Vec4f color = surface_color(world.scene().items[hit.object], hit);
+      const Vec4f color = surface_color(world.scene().items[hit.object], ray, hit, footprint, world.geometry().placement().scale);
       const bool below = dot(point.face_normal, ray.direction) > 0;
       const Vec3f normal = below ? -point.shading_normal : point.shading_normal;
       const Vec3f direction = normalize(LocalFrame::about(normal).to_world(cosine_hemisphere(sampler.next2())));
@@ -47,7 +48,7 @@ class OcclusionIntegrator : public Integrator {
           dot(direction, point.face_normal) * side > 0 && !world.geometry().blocked({leave(point, direction), direction, reach_});
       if (open) out.radiance += Vec3f(color.x, color.y, color.z) * (share * color.w);
       share *= 1 - color.w;
-      ray = {leave(point, ray.direction), ray.direction};
+      ray = {leave(point, ray.direction), ray.direction}, footprint = footprint.after(hit.t);
     }
     out.passed = share;
     return out;

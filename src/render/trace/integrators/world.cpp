@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "render/prepare/picture_set.h"
 #include "render/trace/integrators/surface_color.h"
 
 namespace sg::trace {
@@ -14,6 +15,7 @@ std::vector<AnyLight> with_emitters(const PreparedScene& scene, const std::vecto
                                     const Placement& placement, std::vector<AnyLight> lights) {
   for (size_t i = 0; i < scene.items.size(); ++i) {
     const raster::PreparedItem& item = scene.items[i];
+    if (item.pictures && item.pictures->emission) continue;  // no even light: it is met by chance alone
     if (!materials[i]->emits() || item.kind != raster::PreparedItem::Kind::surface || item.glyphs) continue;
     const auto corner = [&](uint32_t point) {
       const float* x = item.triangles.xyz() + 3 * size_t(point);
@@ -50,19 +52,37 @@ World::World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_
       media_(std::move(media)) {
   for (const raster::PreparedItem& item : scene_->items)
     translucent_ = translucent_ || item.translucent || item.opacity < 1 || item.color.translucent;
+  for (const raster::PreparedItem& item : scene_->items) {
+    const auto* picture =
+        item.pictures && item.made_of && item.pictures->metallic_roughness ? &*item.pictures->metallic_roughness : nullptr;
+    palettes_.push_back(picture ? std::make_unique<const MaterialPalette>(*item.made_of, *picture->texture) : nullptr);
+  }
   for (const auto& m : materials_) translucent_ = translucent_ || m->passes_straight();
 }
 
-Vertex World::at(const Ray& ray, const Hit& hit) const {
+Vertex World::at(const Ray& ray, const Hit& hit, const RayFootprint& footprint) const {
   Vertex v;
   v.point = geometry_.at(ray, hit);
   v.material = materials_[hit.object].get();
-  const Vec4f color = surface_color(scene_->items[hit.object], hit);
+  const raster::PreparedItem& item = scene_->items[hit.object];
+  const double scale = geometry_.placement().scale;
+  const Vec4f color = surface_color(item, ray, hit, footprint, scale);
+  Vec3f emission_texel{1, 1, 1};
+  if (item.pictures) {
+    if (const auto& palette = palettes_[hit.object]) {
+      const Vec4f t = surface_picture(*item.pictures->metallic_roughness, item, ray, hit, footprint, scale);
+      if (t.w > 0) v.material = &palette->at(t.y / t.w, t.z / t.w);
+    }
+    if (item.pictures->emission) {
+      const Vec4f t = surface_picture(*item.pictures->emission, item, ray, hit, footprint, scale);
+      emission_texel = {t.x, t.y, t.z};
+    }
+  }
   // At a silhouette the shading normal may look away from a viewer who sees the face.
   const bool above = dot(ray.direction, v.point.face_normal) < 0, shaded_above = dot(ray.direction, v.point.shading_normal) < 0;
   v.frame = LocalFrame::about(above == shaded_above ? v.point.shading_normal : v.point.face_normal, v.point.tangent);
   v.bsdf = make_bsdf(*v.material, {color.x, color.y, color.z}, color.w);
-  v.emission = v.material->emission();
+  v.emission = v.material->emission() * emission_texel;
   return v;
 }
 

@@ -7,8 +7,10 @@
 #include "base/context.h"
 #include "render/prepare/prepared.h"
 #include "render/trace/geometry/geometry.h"
+#include "render/trace/integrators/ray_footprint.h"
 #include "render/trace/light/lights.h"
 #include "render/trace/material/bsdf.h"
+#include "render/trace/material/material_palette.h"
 #include "render/trace/media/media.h"
 #include "render/trace/sampling/local_frame.h"
 
@@ -36,7 +38,7 @@ class World {
   Media::Borrowed borrow_media() const { return media_ ? media_->borrow() : Media::Borrowed(); }
   bool has_media() const { return media_ && media_->any(); }
   bool empty() const { return geometry_.bounds().empty() && !has_media(); }
-  Vertex at(const Ray& ray, const Hit& hit) const;
+  Vertex at(const Ray& ray, const Hit& hit, const RayFootprint& footprint = {}) const;
   /// Whether an item lets some light pass straight on, so that shadows have shades.
   bool translucent() const { return translucent_; }
   /// Share of light that surfaces let pass along the ray up to t_max: 0 behind anything opaque.
@@ -46,6 +48,7 @@ class World {
   PreparedScenePtr scene_;
   Geometry geometry_;
   std::vector<std::shared_ptr<const Material>> materials_;
+  std::vector<std::unique_ptr<const MaterialPalette>> palettes_;  ///< of items; null where a material is the same all over
   Lights lights_;
   std::shared_ptr<const Media> media_;
   bool translucent_ = false;
