@@ -125,7 +125,6 @@ TEST_CASE("pictures: a checkered plane to the horizon is what its pixels see of 
       if (depth > 100) far = std::max({far, std::abs(a - 0.5), std::abs(b - 0.5)});
     }
   REQUIRE(n > 3000);
-  MESSAGE("off ", std::sqrt(off / n), ", along paths ", std::sqrt(off_paths / n), ", contrast ", std::sqrt(sharp / n));
   CHECK(std::sqrt(off / n) < 0.06);
   CHECK(std::sqrt(off_paths / n) < 0.06);
   CHECK(std::sqrt(sharp / n) > 0.3);
