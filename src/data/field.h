@@ -32,6 +32,8 @@ struct FieldLook {
   friend bool operator==(const FieldLook&, const FieldLook&) = default;
 };
 
+struct MaterialTable;
+
 struct Field {
   std::string name;
   Association association = Association::point;
@@ -39,11 +41,12 @@ struct Field {
   std::string unit;
   Role role = Role::none;
   FieldLook look = {};
+  std::shared_ptr<const MaterialTable> materials = nullptr;  ///< labels of cells: how the numbered materials look (material_table.h)
 
   int components() const { return array.components(); }
   /// The same field with other numbers, as operations carry it; also on another association.
-  Field with(Array numbers) const { return {name, association, std::move(numbers), unit, role, look}; }
-  Field with(Array numbers, Association on) const { return {name, on, std::move(numbers), unit, role, look}; }
+  Field with(Array numbers) const { return {name, association, std::move(numbers), unit, role, look, materials}; }
+  Field with(Array numbers, Association on) const { return {name, on, std::move(numbers), unit, role, look, materials}; }
 };
 
 /// The fields of a dataset in file order. Names are unique per association.

@@ -29,6 +29,8 @@ struct FieldColor {
   bool direct = false;
 };
 
+struct SurfacePictures;
+
 /// Polygons and strips of a SurfaceMesh.
 struct SurfaceItem {
   DatasetPtr data;
@@ -44,9 +46,10 @@ struct SurfaceItem {
   /// A SurfaceMesh whose lines are drawn instead (of curved cells: see Skin), or where it has polygons their edges; null = the edges of
   /// the polygons drawn.
   DatasetPtr edge_lines;
-  std::optional<Vec3f> edge_color;             ///< sRGB; empty = that of the surface under it, darker, or lighter on a dark surface
-  std::optional<SurfaceTexture> lic;           ///< directions of a vector field as a texture
-  std::shared_ptr<const SurfaceCopy> copy_of;  ///< what `data` is a moved copy of; null = of nothing that is drawn elsewhere
+  std::optional<Vec3f> edge_color;                  ///< sRGB; empty = that of the surface under it, darker, or lighter on a dark surface
+  std::optional<SurfaceTexture> lic;                ///< directions of a vector field as a texture
+  std::shared_ptr<const SurfaceCopy> copy_of;       ///< what `data` is a moved copy of; null = of nothing that is drawn elsewhere
+  std::shared_ptr<const SurfacePictures> pictures;  ///< what its colour and material are multiplied with; null = nothing
 };
 
 /// Lines of a SurfaceMesh; constant width on the picture.

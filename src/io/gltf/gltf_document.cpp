@@ -10,6 +10,7 @@
 #include "base/text/json.h"
 #include "base/text/text.h"
 #include "io/gltf/gltf_bytes.h"
+#include "io/gltf/gltf_materials.h"
 #include "io/gltf/gltf_scene.h"
 
 namespace sg {
@@ -221,7 +222,6 @@ struct Parser {
       double c[4];
       if (numbers(o["pbrMetallicRoughness"], "baseColorFactor", c, where))
         for (int i = 0; i < 4; ++i) m.base_color[i] = float(c[i]);
-      m.textured = !o["pbrMetallicRoughness"]["baseColorTexture"].is_null();
       d.materials.push_back(m);
     });
     add_roots(d);
@@ -262,6 +262,12 @@ GltfDocument read_gltf_document(const std::string& path, Context& context) {
   parser.check_extensions(context);
   GltfDocument document = parser.document(chunks.binary, file);
   take_cameras_and_lights(root, document, context);
+  if (!document.materials.empty()) {
+    auto table = std::make_shared<MaterialTable>();
+    int64_t number = 0;
+    for (MaterialLook& look : gltf_looks(root, document, context)) table->looks[++number] = std::move(look);
+    document.looks = std::move(table);
+  }
   return document;
 }
 

@@ -12,6 +12,7 @@
 #include "base/context.h"
 #include "base/vec.h"
 #include "data/array.h"
+#include "data/fields/material_table.h"
 #include "io/scene/file_scene.h"
 
 namespace sg {
@@ -68,7 +69,6 @@ struct GltfLight {
 struct GltfMaterial {
   std::string name;
   float base_color[4] = {1, 1, 1, 1};  ///< linear RGB and alpha
-  bool textured = false;               ///< its base colour is a picture's
 };
 
 struct GltfBuffer {
@@ -86,8 +86,9 @@ struct GltfDocument {
   std::vector<GltfMaterial> materials;
   std::vector<GltfCamera> cameras;
   std::vector<GltfLight> lights;
-  std::vector<int> roots;  ///< nodes of the scene that is shown, else those without a parent
-  uint64_t backed = 0;     ///< bytes of all buffers together
+  std::shared_ptr<const MaterialTable> looks;  ///< by the material's place in the list, from 1 on; null without materials
+  std::vector<int> roots;                      ///< nodes of the scene that is shown, else those without a parent
+  uint64_t backed = 0;                         ///< bytes of all buffers together
 };
 
 /// Reads .gltf or .glb. Throws Error(data) for what is broken, or needs an extension that is not known.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // glTF 2.0: every primitive of every mesh that a node of the scene places becomes a surface, its points and normals moved by the
-// node. One primitive gives a surface, several a Collection of them. Textures, animations and skins are left out.
+// node. One primitive gives a surface, several a Collection of them. Materials hang on the field of their numbers. Animations and skins are
+// left out.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -202,7 +203,7 @@ struct Reader {
     int32_t* out = nullptr;
     Array ids = Array::make<int32_t>(cells, 1, &out);
     std::fill_n(out, cells, int32_t(material + 1));
-    parts.fields.add({"MaterialIds", Association::cell, std::move(ids), "", Role::labels});
+    parts.fields.add({"MaterialIds", Association::cell, std::move(ids), "", Role::labels, {}, doc.looks});
     // All names in each part, as long as they are few: what selects by name or makes a legend knows those of the other parts, too.
     LabelNames names("MaterialIds");
     const auto add = [&](int m) {
@@ -290,8 +291,6 @@ Data read_gltf(const std::string& path, const ReadOptions& options, Context& con
   else
     for (size_t k = 0; k < doc.meshes.size(); ++k) r.add_mesh(int(k), Mat4(), "");
   if (r.parts.empty()) fail_data("no node of its scene has a mesh", path);
-  if (std::any_of(doc.materials.begin(), doc.materials.end(), [](const GltfMaterial& m) { return m.textured; }))
-    context.warn(path + ": its textures (pictures on the surface) are not drawn, only its plain colours");
   note_scene(doc, r.parts[0].data);
   if (r.parts.size() == 1) return r.parts[0].data;
   r.number_names();

@@ -269,13 +269,28 @@ int32_t material_number(const Labels& l, int32_t material, bool cells_without) {
   return material + 1;
 }
 
-// The diffuse colour of each material's cells; light grey where it has none. Empty when no material has one.
-Array material_colors(const Labels& l, const int32_t* numbers, size_t cells, bool without, const std::string& path, Context& context) {
-  const auto known = read_material_colors(path, l.libraries, context);
-  std::map<int32_t, Vec3f> of_number;
+// What the libraries say of the materials, by their numbers.
+std::map<int32_t, ObjMaterial> known_materials(const Labels& l, bool without, const std::string& path, Context& context) {
+  const auto known = read_obj_materials(path, l.libraries, context);
+  std::map<int32_t, ObjMaterial> of_number;
   for (size_t m = 0; m < l.materials.size(); ++m)
     if (const auto found = known.find(std::string(l.materials[m])); found != known.end())
       of_number[material_number(l, int32_t(m), without)] = found->second;
+  return of_number;
+}
+
+std::shared_ptr<const MaterialTable> table_of(const std::map<int32_t, ObjMaterial>& materials) {
+  if (materials.empty()) return nullptr;
+  auto table = std::make_shared<MaterialTable>();
+  for (const auto& [number, m] : materials) table->looks[number] = m.look;
+  return table;
+}
+
+// The diffuse colour of each material's cells; light grey where it has none. Empty when no material has one.
+Array material_colors(const std::map<int32_t, ObjMaterial>& materials, const int32_t* numbers, size_t cells) {
+  std::map<int32_t, Vec3f> of_number;
+  for (const auto& [number, m] : materials)
+    if (m.diffuse) of_number[number] = *m.diffuse;
   if (of_number.empty()) return {};
   uint8_t* out = nullptr;
   Array colors = Array::make<uint8_t>(cells, 3, &out);
@@ -312,10 +327,11 @@ void add_labels(const ObjFile& o, const std::string& path, bool with_colors, Dat
     }
   });
   if (material) {
-    if (with_colors && !l.libraries.empty())
-      if (Array colors = material_colors(l, material, total, without, path, context); !colors.empty())
+    const auto known = known_materials(l, without, path, context);
+    if (with_colors)
+      if (Array colors = material_colors(known, material, total); !colors.empty())
         parts.fields.add({"MaterialColors", Association::cell, std::move(colors), "", Role::colors});
-    parts.fields.add({"MaterialIds", Association::cell, std::move(materials), "", Role::labels});
+    parts.fields.add({"MaterialIds", Association::cell, std::move(materials), "", Role::labels, {}, table_of(known)});
     std::string names;
     LabelNames labels("MaterialIds");  // for legends
     for (size_t m = 0; m < l.materials.size(); ++m) {

@@ -6,10 +6,10 @@
 #include <map>
 
 #include "base/file/file.h"
-#include "base/schema/file_params.h"
 #include "base/text/text.h"
 #include "io/file_series.h"
 #include "io/options.h"
+#include "pipeline/file/file_words.h"
 #include "pipeline/file/pipeline_file.h"
 #include "pipeline/graph/graph_state.h"
 
@@ -106,16 +106,8 @@ class GraphBuilder {
 
   // Parameters that name files (unit "file") are relative to the pipeline file, as those of read are.
   std::vector<std::string> with_paths(const PipelineFile::Step& step) const {
-    std::vector<std::string> words = step.words;
     const Operation* op = known_operation(step.operation, options_.operations);
-    if (!op) return words;
-    const ParamSet params = op->make_params();
-    for (std::string& word : words) {
-      const size_t sign = word.find('=');
-      const ParamDecl* d = sign == word.npos ? nullptr : params.schema.find(word.substr(0, sign));
-      if (d && names_file(*d) && sign + 1 < word.size()) word = word.substr(0, sign + 1) + path_beside(file_.origin, word.substr(sign + 1));
-    }
-    return words;
+    return op ? words_beside(step.words, op->make_params().schema, file_.origin) : step.words;
   }
 
   bool wants_input(const std::string& operation) const {

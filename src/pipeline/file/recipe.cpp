@@ -12,11 +12,13 @@
 #include "base/text/text.h"
 #include "io/file_series.h"
 #include "io/lent_series.h"
+#include "pipeline/file/file_words.h"
 #include "pipeline/file/yaml_tree.h"
 #include "pipeline/film/film_params.h"
 #include "pipeline/graph/key.h"
 #include "pipeline/picture/picture.h"
 #include "scene/light/environment_params.h"
+#include "scene/show/show.h"
 
 namespace sg {
 
@@ -116,7 +118,15 @@ void attach_recipe(Image& image, const PipelineFile& file, const std::string& pi
     inputs += line_text(content_hash(path), relative);
   }
   std::erase_if(recipe.picture, [](const std::string& w) { return w.starts_with("output="); });
-  for (auto& show : recipe.show) std::erase_if(show.words, [](const std::string& w) { return w.starts_with("save="); });
+  for (auto& show : recipe.show) {
+    std::erase_if(show.words, [](const std::string& w) { return w.starts_with("save="); });
+    if (show.kind == auto_show) continue;
+    show.words = map_file_words(show.words, find_show(show.kind).make_params().schema, [&](const std::string& name) {
+      const std::string path = path_beside(file.origin, name), relative = relative_to_folder(path, folder);
+      inputs += line_text(content_hash(path), relative);
+      return relative;
+    });
+  }
   image.text.emplace_back("Software", "Sightglass " SG_VERSION);
   image.text.emplace_back("sightglass", emit_pipeline(recipe));
   if (!inputs.empty()) image.text.emplace_back("sightglass-inputs", inputs);
@@ -150,6 +160,10 @@ PipelineFile recipe_in(const Image& image, const std::string& picture_path, std:
     if (step.reads()) read.insert(word_value(step.words, "path").value_or(""));
   if (const auto words = word_value(file.picture, "environment"); words && !environment_file(*words).empty())
     read.insert(environment_file(*words));
+  for (const auto& show : file.show)
+    if (show.kind != auto_show)
+      map_file_words(show.words, find_show(show.kind).make_params().schema,
+                     [&](const std::string& name) { return *read.insert(name).first; });
   if (const std::string* inputs = text_in(image, "sightglass-inputs"))
     for (std::string_view line : split(*inputs, '\n')) {
       const size_t a = line.find(' '), b = a == line.npos ? line.npos : line.find(' ', a + 1);

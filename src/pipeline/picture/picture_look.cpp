@@ -10,6 +10,7 @@
 #include "data/lattice.h"
 #include "io/lent_series.h"
 #include "pipeline/picture/picture_parts.h"
+#include "scene/choose/own_materials.h"
 #include "scene/choose/scale.h"
 #include "scene/choose/shown_range.h"
 #include "scene/choose/telling_field.h"
@@ -88,7 +89,7 @@ namespace {
 std::string field_telling_parts(const Data& data, const Context& context) {
   std::vector<DatasetPtr> parts;
   for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { parts.push_back(d); });
-  if (parts.size() < 2) return "";
+  if (parts.size() < 2 || std::any_of(parts.begin(), parts.end(), [](const DatasetPtr& d) { return has_own_materials(*d); })) return "";
   for (const Field& of_first : parts[0]->fields()) {
     std::vector<FieldOf> fields;
     for (const DatasetPtr& d : parts)

@@ -11,6 +11,7 @@
 #include "base/file/file.h"
 #include "base/text/time_text.h"
 #include "data/ranks/over_all.h"
+#include "pipeline/file/file_words.h"
 #include "pipeline/file/read_part.h"
 #include "pipeline/file/transfer_file.h"
 #include "pipeline/picture/picture_cost.h"
@@ -33,7 +34,7 @@ std::vector<StatedShow> stated_shows(const PipelineFile& file) {
     if (s.kind == auto_show) continue;
     try {
       const ShowKind& kind = find_show(s.kind);
-      shows.push_back({&kind, show_params(kind, s.words)});
+      shows.push_back({&kind, show_params(kind, words_beside(s.words, kind.make_params().schema, file.origin))});
     } catch (const Error& e) {
       problems += (problems.empty() ? "" : "; ") + std::string(s.line > 0 ? fmt::format("{}:{}: ", file.origin, s.line) : "") + e.what();
     }

@@ -12,6 +12,7 @@
 #include "filter/mesh/faces/faces.h"
 #include "filter/mesh/surface.h"
 #include "render/prepare/glyph_set.h"
+#include "render/prepare/picture_set.h"
 
 namespace sg {
 
@@ -212,7 +213,8 @@ class Preparation {
     p.triangles = triangulate(s.data, any);
     p.material = s.material, p.made_of = s.made_of, p.copy_of = s.copy_of;
     p.color = color_source(s.data, s.color_by, s.color, "surface");
-    p.translucent = s.opacity < 1 || p.color.translucent;
+    if (s.pictures) p.pictures = place_pictures(*s.pictures, s.data);
+    p.translucent = s.opacity < 1 || p.color.translucent || (p.pictures && p.pictures->translucent());
     if (!s.flat) p.normals = normals(s, p.triangles);
     if (s.lic && s.lic->strength > 0) take_texture(*s.lic, p);
     const Array positions = p.triangles.positions;

@@ -68,6 +68,7 @@ struct ColorSource {
 };
 
 struct GlyphSet;
+struct PictureSet;
 
 struct PreparedItem {
   enum class Kind { surface, lines, points } kind = Kind::surface;
@@ -84,8 +85,9 @@ struct PreparedItem {
   bool translucent = false;
   std::shared_ptr<const SurfaceCopy> copy_of;
   std::optional<SurfaceTexture> lic;
-  Array lic_vectors;    ///< f32 x 3 packed, per point or cell
-  float lic_least = 0;  ///< vectors whose largest component is not above this have no direction
+  Array lic_vectors;                           ///< f32 x 3 packed, per point or cell
+  float lic_least = 0;                         ///< vectors whose largest component is not above this have no direction
+  std::shared_ptr<const PictureSet> pictures;  ///< picture_set.h; null: none
   // lines
   std::shared_ptr<const SegmentSet> segments;
   double width = 1;     ///< pixels; also the points' size

@@ -12,6 +12,7 @@
 #include "render/raster/glyphs/glyphs.h"
 #include "render/raster/lic/textures.h"
 #include "render/raster/marks/marks.h"
+#include "render/raster/pictures.h"
 #include "render/raster/triangles/bins.h"
 #include "render/raster/triangles/key_plane.h"
 #include "render/shade/shade.h"
@@ -191,6 +192,7 @@ class Drawing {
     if (item.glyphs) shade_glyphs(item, views_[number], float(pixel_scale_), lights_, batch);
     else if (item.discs) shade_discs(item, views_[number], lights_, keys_.data(), batch);
     else shade(job(), batch);
+    if (item.pictures) draw_pictures(item, views_[number], pixel_scale_, batch);
     if (item.lic) apply_texture(*textures_, item, number, projection_, batch);
   }
 

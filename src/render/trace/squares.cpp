@@ -63,8 +63,10 @@ class Drawing {
         for (uint32_t k = n; k < end; ++k) {
           sampler.start(uint32_t(x), uint32_t(y), k);
           const Vec2f in_pixel = sampler.next2(), on_lens = picture_.camera.has_lens() ? concentric_disc(sampler.next2()) : Vec2f();
-          const Ray ray = picture_.camera.ray({float(x) + in_pixel.x, float(y) + in_pixel.y}, on_lens);
-          sums[p].add(integrator_.along(picture_.world, ray, sampler),
+          const Vec2f in_picture{float(x) + in_pixel.x, float(y) + in_pixel.y};
+          const Ray ray = picture_.camera.ray(in_picture, on_lens);
+          const RayFootprint footprint = picture_.world.has_pictures() ? picture_.camera.footprint(in_picture) : RayFootprint();
+          sums[p].add(integrator_.along(picture_.world, ray, sampler, footprint),
                       picture_.backdrop.seen ? picture_.backdrop.radiance(ray.direction) : picture_.around[size_t(y)]);
         }
       }

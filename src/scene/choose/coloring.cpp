@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "scene/choose/own_materials.h"
 #include "scene/choose/telling_field.h"
 
 namespace sg {
@@ -39,7 +40,9 @@ void describe(Schema& s, ColoringParams& p) {
       .range(0.05, 1);
 }
 
-const Field* automatic_field(const Dataset& d) {
+namespace {
+
+const Field* automatic_field(const Dataset& d, bool by_materials) {
   // A field that is the same everywhere (a contour's own field) says nothing in colour.
   const auto varies = [&](const Field& f) {
     const Range r = d.range(f);
@@ -52,6 +55,7 @@ const Field* automatic_field(const Dataset& d) {
     if (f.look.bands) return &f;
   const Field* scalars = d.fields().with_role(Role::scalars);
   if (scalars && scalars->components() == 1 && telling(d, *scalars) == Telling::values) return scalars;
+  if (by_materials && has_own_materials(d)) return nullptr;
   if (const Field* f = d.fields().with_role(Role::colors)) return f;
   for (const Telling wanted : {Telling::values, Telling::divisions, Telling::numbering}) {
     if (scalars && scalars->components() == 1 && telling(d, *scalars) == wanted) return scalars;
@@ -62,6 +66,11 @@ const Field* automatic_field(const Dataset& d) {
   }
   return nullptr;
 }
+
+}  // namespace
+
+const Field* automatic_field(const Dataset& d) { return automatic_field(d, true); }
+const Field* automatic_field_without_materials(const Dataset& d) { return automatic_field(d, false); }
 
 const Field* wanted_field(const Dataset& d, const ColoringParams& p) {
   if (!p.color.empty() || p.field.none()) return nullptr;

@@ -49,8 +49,10 @@ void describe(Schema& s, ColoringParams& p);
 
 /// The field that colours a dataset when none is named: the result of the last operation when it varies, the bands of filled contours, its
 /// scalars when they tell values, else its own colours, else the first field that tells most (telling_field.h), points before cells,
-/// scalars before vectors. Null when no field varies.
+/// scalars before vectors. Null when no field varies, and where the data has materials of its own (own_materials.h) and no values.
 const Field* automatic_field(const Dataset& data);
+/// The same where those materials do not count.
+const Field* automatic_field_without_materials(const Dataset& data);
 
 /// The field that `params` names, else the automatic one; null for one colour and when there is none. Throws Error(usage).
 const Field* wanted_field(const Dataset& data, const ColoringParams& params);

@@ -15,6 +15,7 @@
 #include "filter/mesh/surface.h"
 #include "io/y_up.h"
 #include "scene/choose/histogram.h"
+#include "scene/choose/own_materials.h"
 #include "scene/choose/scale.h"
 #include "scene/choose/shown_range.h"
 #include "scene/choose/signed_distance.h"
@@ -39,6 +40,7 @@ namespace {
 std::string field_reason(const Dataset& d, const std::string& field) {
   const Field* f = field.empty() ? automatic_field(d) : d.fields().find(field);
   if (!f && d.fields().empty()) return "one colour (there is no field)";
+  if (!f && has_own_materials(d)) return "its own materials (own_materials=false colours by its fields)";
   if (!f) {
     const auto is_id = [&](const Field& any) { return any.association != Association::whole && telling(d, any) == Telling::ids; };
     const bool ids = std::any_of(d.fields().begin(), d.fields().end(), is_id);

@@ -26,8 +26,6 @@ constexpr MissingName missing[] = {
     {"shrink shrinkpolydata", "shrinks each cell about its centre", "--show 'surface edges=true' (tells cells apart)"},
     {"explode explodedview explodedataset separatecells", "moves parts away from each other",
      "-f 'extract part=...', then -f 'transform translate=...'"},
-    {"texturemap texturemaptoplane texturemaptosphere texturemaptocylinder texturecoordinates tcoords uvmap", "makes texture coordinates",
-     "--show 'surface texture=...' (a field that darkens the colours)"},
     {"rotationalextrusion extruderotate revolve sweep", "turns a profile into a solid of revolution",
      "-f extrude (along a straight line); -f tubes (around lines)"},
     {"computeimplicitdistance implicitdistance distancepolydata signeddistance hausdorff hausdorffdistance", "gives distances to a surface",

@@ -47,6 +47,8 @@ constexpr OtherName names[] = {
     {"subset extractsubset voi subvolume extractvoi extractgrid", "-f crop"},
     {"calculator arraycalculator pythoncalculator programmable expression formula math", "-f 'calc expr=...'"},
     {"height", "-f elevation"},
+    {"texturemap texturemaptoplane texturemaptosphere texturemaptocylinder texturecoordinates tcoords uvmap uv", "-f texture_coordinates"},
+    {"texture decal", "--show 'surface picture=FILE.png'"},
     {"linearextrusion extrusion", "-f 'extrude direction=0,0,1'"},
     {"warpbyvector warpbyscalar warpvector warpscalar deform displace displacement terrain relief", "-f warp"},
     {"reflect reflection symmetry axisalignedreflection", "-f 'mirror axis=x'"},

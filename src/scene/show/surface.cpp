@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/show/surface.h"
 
+#include <fmt/core.h>
+
+#include "base/error.h"
 #include "color/parse_color.h"
 #include "data/cells/plane_normal.h"
 #include "data/field_ops.h"
@@ -9,7 +12,9 @@
 #include "filter/mesh/faces/faces.h"
 #include "filter/mesh/surface.h"
 #include "image/image.h"
+#include "scene/choose/own_materials.h"
 #include "scene/show/field_color.h"
+#include "scene/show/own_look.h"
 #include "scene/show/texture_color.h"
 
 namespace sg {
@@ -28,6 +33,24 @@ void describe(Schema& s, SurfaceShow& p) {
     "stated. sightglass lookdev shows all. Default: plastic of the data's colours.");
   s("texture", p.texture, "Point field in [0, 1] that darkens and brightens the colours; default: 'lic' or 'spot noise'; 'none' for none.")
       .takes(fields::point_scalars);
+  describe(s, p.isolines);
+  describe(s, p.picture);
+  s("own_materials", p.own_materials,
+    "Draw with the materials and pictures that come with the data (glTF, OBJ), where neither a field nor a colour is stated.");
+}
+
+void check(const SurfaceShow& p) {
+  check(p.picture);
+  if (!p.picture.any()) return;
+  if (p.style != SurfaceStyle::solid) fail_usage("edges and points show no picture", "style", "style=solid does");
+  if (!p.coloring.field.empty() && !p.coloring.field.none())
+    fail_usage(fmt::format("both a picture and the field '{}' are to colour the surface", p.coloring.field.name), "picture",
+               "leave one out; texture=FIELD darkens colours by a field");
+}
+
+const Field* automatic_field(const SurfaceShow& p, const Dataset& d) {
+  if (p.picture.any()) return nullptr;
+  return p.own_materials ? automatic_field(d) : automatic_field_without_materials(d);
 }
 
 namespace {
@@ -95,13 +118,34 @@ std::optional<Legend> add_sparse(Scene& scene, const DatasetPtr& input, const Su
   return legend;
 }
 
+// The colours of points that a file multiplies with its materials.
+std::optional<FieldColor> own_colors(const Dataset& d) {
+  for (const Field& f : d.fields())
+    if (f.association == Association::point && is_direct_color(f)) return FieldColor{f.name, f.association, -1, {}, true};
+  return {};
+}
+
+// The field by name where it is not the one that every way to show would take.
+ColoringParams coloring_of(const SurfaceShow& p, const Dataset& d) {
+  ColoringParams c = p.coloring;
+  if (p.own_materials || !c.field.empty() || !c.color.empty()) return c;
+  const Field* f = automatic_field(p, d);
+  c.field.name = f ? f->name : "none";
+  return c;
+}
+
 }  // namespace
 
 std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceShow& p, Context& context) {
   if (p.style != SurfaceStyle::solid) return add_sparse(scene, input, p, context);
+  check(p);
+  const bool unstated = p.coloring.field.empty() && p.coloring.color.empty() && !p.coloring.states_map() && !p.material && !p.picture.any();
+  const bool own_look = unstated && p.own_materials && !automatic_field(*input) && has_own_materials(*input);
   SurfaceItem item;
   // Ranges come from the whole input, so that a surface and its volume share colours.
-  if (!p.material || !p.coloring.field.empty()) item.color_by = field_color(*input, p.coloring, context);
+  if (own_look) item.color_by = own_colors(*input);
+  else if ((!p.material && !p.picture.any()) || !p.coloring.field.empty())
+    item.color_by = field_color(*input, coloring_of(p, *input), context);
   if (p.edges) {
     // Of a clipped mesh the pieces of a cell keep its own number, by which the edges between them are left out.
     Skin skin = faces_and_edges(input, {.original_cell = false}, context);
@@ -118,7 +162,9 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceSh
     const Vec3f own(item.made_of->base_color);
     item.color = {srgb_encode(own.x), srgb_encode(own.y), srgb_encode(own.z)};
   }
+  if (p.picture.any() && !p.material) item.color = {1, 1, 1};
   if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
+  item.pictures = pictures_of(*item.data, p.picture);
   item.opacity = p.opacity;
   item.edges = p.edges;
   item.flat = p.flat;
@@ -152,8 +198,18 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceSh
     scene.items.emplace_back(std::move(points));
   }
   const bool any_surface = mesh.polygons.size() + mesh.strips.size() > 0;
+  const std::optional<FieldColor> lines_by = item.color_by;
   apply_texture(item, texture_field(*input, p.texture, item.color_by));  // gives the item other data: `mesh` may be gone
-  if (any_surface) scene.items.emplace_back(std::move(item));
+  if (!any_surface) return legend;
+  const auto isolines = isolines_of(*item.data, p.isolines, lines_by);
+  for (SurfaceItem& each : own_look ? items_of_materials(item, context) : std::vector{item}) {
+    if (isolines) {
+      auto drawn = each.pictures ? std::make_shared<SurfacePictures>(*each.pictures) : std::make_shared<SurfacePictures>();
+      drawn->isolines = isolines;
+      each.pictures = drawn;
+    }
+    scene.items.emplace_back(std::move(each));
+  }
   return legend;
 }
 

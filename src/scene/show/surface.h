@@ -4,7 +4,9 @@
 #include "color/legend_content.h"
 #include "scene/choose/coloring.h"
 #include "scene/scene.h"
+#include "scene/show/isoline_words.h"
 #include "scene/show/lic.h"
+#include "scene/show/picture.h"
 
 namespace sg {
 
@@ -23,9 +25,16 @@ struct SurfaceShow {
   double feature_angle = 40;
   LicShow lic;
   FieldName texture;
+  PictureShow picture;
+  IsolineShow isolines;
   std::optional<MaterialPreset> material;
+  bool own_materials = true;
 };
 void describe(Schema& s, SurfaceShow& p);
+/// Throws Error(usage) for what no data could make right.
+void check(const SurfaceShow& p);
+/// The field that colours when none is named: none under a picture, and none where the data has materials of its own.
+const Field* automatic_field(const SurfaceShow& p, const Dataset& data);
 
 /// Adds items for the dataset; returns what the legend shows when a field is mapped to colours.
 std::optional<Legend> add(Scene& scene, const DatasetPtr& data, const SurfaceShow& p, Context& context);

@@ -19,7 +19,7 @@ export type Kind =
   | "file" // a path, as the server sees it
   | "text"; // free text: a name, an expression, a title
 
-const colors = new Set(["color", "below", "above", "nan", "background", "halo_color"]);
+const colors = new Set(["color", "below", "above", "nan", "background", "halo_color", "isoline_color"]);
 /** A list of words whose sentence begins with fields is one of fields: "Point fields to advect", "Names of the fields to leave out". */
 const listsFields = (s: Schema): boolean => /^(\w+ ){0,3}fields\b/i.test(s.description ?? "");
 // A choice or a field, an expression of fields, or a column of a table: free text with the fields suggested.

@@ -55,7 +55,7 @@ describe.skipIf(!found)("the catalogue", () => {
     for (const [, name, s] of all) {
       const kind = kindOf(name, s);
       if ((kind === "text" || kind === "texts") && !known.has(name)) odd.add(name);
-      if (/colou?r/i.test(s.description ?? "") && /^(color|background|halo_color|below|above|nan)$/.test(name) && typesOf(s).includes("string") && !s.enum) expect(kind, name).toBe("color");
+      if (/colou?r/i.test(s.description ?? "") && /^(color|background|halo_color|isoline_color|below|above|nan)$/.test(name) && typesOf(s).includes("string") && !s.enum) expect(kind, name).toBe("color");
     }
     expect([...odd].sort()).toEqual([]);
   });

@@ -33,6 +33,7 @@ Json pack_surface(const raster::PreparedItem& item, const Packing& p) {
     if (const size_t after = s.triangles.size() / 3; after < before) p.note(fmt::format("a surface of {} triangles has {}", before, after));
   }
   if (item.lic) p.note("the texture along a vector field is left out");
+  if (item.pictures) p.note("pictures on a surface are left out");
   // Faces of one colour each, and faces lit by themselves, show their own small turns.
   const bool faceted = s.normals.empty() && item.material.lit;
   Json::Members m{

@@ -19,7 +19,7 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
   /// Unbiased but for what each kind states. `ray` starts outside of everything.
-  virtual Estimate along(const World& world, const Ray& ray, Sampler& sampler) const = 0;
+  virtual Estimate along(const World& world, const Ray& ray, Sampler& sampler, const RayFootprint& footprint = {}) const = 0;
 };
 
 /// Paths from the camera that turn at surfaces, at most `bounces` times, and in media, at most 128 times as often. At each turn one light

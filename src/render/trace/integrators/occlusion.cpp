@@ -15,11 +15,12 @@ class OcclusionIntegrator : public Integrator {
  public:
   explicit OcclusionIntegrator(float reach) : reach_(reach) {}
 
-  Estimate along(const World& world, const Ray& first, Sampler& sampler) const override {
+  Estimate along(const World& world, const Ray& first, Sampler& sampler, const RayFootprint& whole) const override {
     const Media::Borrowed media = world.borrow_media();
     Estimate out;
     float share = 1;  // that has not met anything
     Ray ray = first;
+    RayFootprint footprint = whole;
     for (Hit hit; share > 0; hit = Hit()) {
       const bool met = world.geometry().nearest(ray, hit);
       if (media) {
@@ -39,7 +40,7 @@ class OcclusionIntegrator : public Integrator {
       }
       if (!met) break;
       const SurfacePoint point = world.geometry().at(ray, hit);
-      const Vec4f color = world.color(hit);
+      const Vec4f color = world.color(ray, hit, footprint);
       const bool below = dot(point.face_normal, ray.direction) > 0;
       const Vec3f normal = below ? -point.shading_normal : point.shading_normal;
       const LocalFrame frame = LocalFrame::about(normal);
@@ -53,7 +54,7 @@ class OcclusionIntegrator : public Integrator {
       }
       out.radiance += Vec3f(color.x, color.y, color.z) * (share * color.w * float(open) / (strata * strata));
       share *= 1 - color.w;
-      ray = {leave(point, ray.direction), ray.direction};
+      ray = {leave(point, ray.direction), ray.direction}, footprint = footprint.after(hit.t);
     }
     out.passed = share;
     return out;

@@ -21,6 +21,8 @@ constexpr int turns_per_bounce = 128;
 
 bool is_dark(Vec3f c) { return !(c.x > 0 || c.y > 0 || c.z > 0); }
 float most(Vec3f c) { return std::max({c.x, c.y, c.z}); }
+/// How a ray opens that stands for all those drawn with about its density: a part of them, so that what they see together is not blurred.
+float opening_of(float pdf) { return std::min(0.1f / std::sqrt(std::max(pdf, 1e-6f)), 0.25f); }
 
 /// A path on its way.
 struct Path {
@@ -33,7 +35,8 @@ struct Path {
   int turns = 0, turns_in_media = 0;      // of these
   float share = 1;                        // of the pixel that it stands for
 
-  explicit Path(const Ray& first) : ray(first), turned_at(first.origin) {}
+  RayFootprint footprint;
+  Path(const Ray& first, const RayFootprint& pixel) : ray(first), turned_at(first.origin), footprint(pixel) {}
   int bounces() const { return turns - turns_in_media; }
 
   void turn(Vec3f from, Vec3f direction, float density) {
@@ -47,10 +50,10 @@ class PathIntegrator : public Integrator {
  public:
   explicit PathIntegrator(int bounces, bool mirrors_only) : bounces_(bounces), mirrors_only_(mirrors_only) {}
 
-  Estimate along(const World& world, const Ray& first, Sampler& sampler) const override {
+  Estimate along(const World& world, const Ray& first, Sampler& sampler, const RayFootprint& footprint) const override {
     const Media::Borrowed media = world.borrow_media();
     Estimate out;
-    Path path(first);
+    Path path(first, footprint);
     const bool split = media && media->exact();
     if (split) {
       // What the viewer sees of matter, and what is seen through it: both, as far as there is of each.
@@ -102,7 +105,7 @@ class PathIntegrator : public Integrator {
 
   /// On from a surface; false where the path ends.
   bool meet(const World& world, MediaWalk* media, const Hit& hit, Path& path, Sampler& sampler, Estimate& out) const {
-    const Vertex v = world.at(path.ray, hit, !mirrors_only_);
+    const Vertex v = world.at(path.ray, hit, path.footprint, !mirrors_only_);
     if (!is_dark(v.emission)) {
       const float p =
           world.lights().triangle_pdf(hit.object, hit.primitive, path.since + hit.t, dot(path.ray.direction, v.point.face_normal));
@@ -148,6 +151,11 @@ class PathIntegrator : public Integrator {
     if ((dot(direction, v.point.face_normal) > 0) != (s->direction.z > 0)) return false;
     path.throughput = path.throughput * s->weight;
     const Vec3f from = leave(v.point, direction);
+    if (!path.footprint.none()) {
+      path.footprint = path.footprint.after(hit.t);
+      if (s->delta && !s->transmitted) path.footprint = path.footprint.mirrored(v.point.shading_normal);
+      else if (!passes) path.footprint = path.footprint.turned(direction, s->delta ? 0 : opening_of(s->pdf));
+    }
     if (passes) path.go_straight(from, hit.t);
     else path.turn(from, direction, s->delta ? infinite : s->pdf);
     if (s->transmitted && v.material->has_inside() && !passes) path.absorption = s->direction.z < 0 ? v.material->absorption() : Vec3f();
@@ -205,6 +213,7 @@ class PathIntegrator : public Integrator {
       direction = LocalFrame::about(along).to_world({sine * std::cos(turn), sine * std::sin(turn), cosine});
     }
     direction = normalize(direction);
+    if (!path.footprint.none()) path.footprint = path.footprint.after(c.t).turned(direction, opening_of(scattered(direction).pdf));
     path.turn(from, direction, scattered(direction).pdf), ++path.turns_in_media;
     return path.turns <= 3 || survives(path, 1, roulette);
   }

@@ -22,6 +22,15 @@ Ray PictureCamera::ray(Vec2f pixel, Vec2f on_lens) const {
   return {placement_.traced(r.origin + r.direction * start(r)), normalize(Vec3f(r.direction))};
 }
 
+RayFootprint PictureCamera::footprint(Vec2f pixel) const {
+  const Projection::Ray r = projection_.ray(double(pixel.x), double(pixel.y));
+  const double step = 1 / (projection_.scale * double(RayFootprint::paths_across));  // in parallel a length, else per depth
+  const Vec3 right = projection_.right * step, down = projection_.up * -step;
+  if (projection_.parallel) return {Vec3f(right * placement_.scale), Vec3f(down * placement_.scale), {}, {}};
+  const double begin = start(r) * placement_.scale / r.per_depth;
+  return {Vec3f(right * begin), Vec3f(down * begin), Vec3f(right / r.per_depth), Vec3f(down / r.per_depth)};
+}
+
 double PictureCamera::depth(Vec2f pixel, float t) const {
   const Projection::Ray r = projection_.ray(double(pixel.x), double(pixel.y));
   return (start(r) + double(t) / placement_.scale) / r.per_depth;

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "render/trace/geometry/ray.h"
+#include "render/trace/integrators/ray_footprint.h"
 #include "scene/camera.h"
 
 namespace sg::trace {
@@ -29,6 +30,8 @@ class PictureCamera {
   bool has_lens() const { return projection_.lens > 0; }
   /// `on_lens`: a place in the unit disc, from which the ray leaves towards what is sharp.
   Ray ray(Vec2f pixel, Vec2f on_lens = {}) const;
+  /// Of such a ray: its part of the pixel, through the pinhole in the lens's middle.
+  RayFootprint footprint(Vec2f pixel) const;
   /// Of a place along such a ray, t in traced coordinates: the distance along the viewing axis in the world.
   double depth(Vec2f pixel, float t) const;
   /// Nothing for points beside the picture, behind the eye or nearer than the near plane. O(1).

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "render/prepare/glyph_set.h"
+#include "render/shade/picture_color.h"
 
 namespace sg::trace {
 
@@ -56,9 +57,18 @@ float value_at(const ColorSource& color, const Places& at, size_t stride, size_t
   return sum != sum ? sum : std::clamp(sum, lo, hi);
 }
 
+raster::PictureRay picture_ray(const Ray& ray, const Hit& hit, const RayFootprint& footprint, double scale) {
+  raster::PictureRay at;
+  at.per_pixel = double(RayFootprint::paths_across);
+  at.direction = Vec3(ray.direction);
+  at.right = Vec3(footprint.right_at(hit.t)) / scale, at.down = Vec3(footprint.down_at(hit.t)) / scale;
+  at.weights[0] = 1 - double(hit.u) - double(hit.v), at.weights[1] = double(hit.u), at.weights[2] = double(hit.v);
+  return at;
+}
+
 }  // namespace
 
-Vec4f surface_color(const PreparedItem& item, const Hit& hit) {
+Vec4f surface_color(const PreparedItem& item, const Ray& ray, const Hit& hit, const RayFootprint& footprint, double scale) {
   const ColorSource& color = item.color;
   Vec4f rgba = color.constant;
   if (color.kind != ColorSource::Kind::constant) {
@@ -67,8 +77,14 @@ Vec4f surface_color(const PreparedItem& item, const Hit& hit) {
     else
       for (size_t k = 0; k < 4; ++k) rgba[int(k)] = value_at(color, at, 4, k);
   }
+  if (item.pictures) rgba = picture_color(*item.pictures, item.triangles, hit.primitive, picture_ray(ray, hit, footprint, scale), rgba);
   rgba.w *= item.opacity;
   return rgba;
+}
+
+Vec4f surface_picture(const raster::PlacedPicture& picture, const PreparedItem& item, const Ray& ray, const Hit& hit,
+                      const RayFootprint& footprint, double scale) {
+  return picture.lookup(*picture.texture, place_in(picture, item.triangles, hit.primitive, picture_ray(ray, hit, footprint, scale)));
 }
 
 }  // namespace sg::trace

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "render/prepare/picture_set.h"
 #include "render/trace/integrators/surface_color.h"
 
 namespace sg::trace {
@@ -14,6 +15,7 @@ std::vector<AnyLight> with_emitters(const PreparedScene& scene, const std::vecto
                                     const Placement& placement, std::vector<AnyLight> lights) {
   for (size_t i = 0; i < scene.items.size(); ++i) {
     const raster::PreparedItem& item = scene.items[i];
+    if (item.pictures && item.pictures->emission) continue;  // no even light: it is met by chance alone
     if (!materials[i]->emits() || item.kind != raster::PreparedItem::Kind::surface || item.glyphs) continue;
     const auto corner = [&](uint32_t point) {
       const float* x = item.triangles.xyz() + 3 * size_t(point);
@@ -54,12 +56,20 @@ World::World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_
     translucent_ = translucent_ || item.translucent || item.opacity < 1 || item.color.translucent;
   for (const Isosurfaces::Look& look : isosurfaces_)
     for (const Vec4f& c : look.colors) translucent_ = translucent_ || c.w < 1;
+  for (const raster::PreparedItem& item : scene_->items) {
+    pictures_ = pictures_ || item.pictures;
+    const auto* picture =
+        item.pictures && item.made_of && item.pictures->metallic_roughness ? &*item.pictures->metallic_roughness : nullptr;
+    palettes_.push_back(picture ? std::make_unique<const MaterialPalette>(*item.made_of, *picture->texture, geometry_.placement().scale)
+                                : nullptr);
+  }
   for (const auto& m : materials_) translucent_ = translucent_ || m->passes_straight();
 }
 
-Vec4f World::color(const Hit& hit) const {
+Vec4f World::color(const Ray& ray, const Hit& hit, const RayFootprint& footprint) const {
   const size_t items = scene_->items.size();
-  return hit.object < items ? surface_color(scene_->items[hit.object], hit) : isosurfaces_[hit.object - items].colors[hit.primitive];
+  return hit.object < items ? surface_color(scene_->items[hit.object], ray, hit, footprint, geometry_.placement().scale)
+                            : isosurfaces_[hit.object - items].colors[hit.primitive];
 }
 
 uint32_t World::id(const Hit& hit) const {
@@ -67,16 +77,33 @@ uint32_t World::id(const Hit& hit) const {
   return hit.object < items ? scene_->items[hit.object].id : isosurfaces_[hit.object - items].id;
 }
 
-Vertex World::at(const Ray& ray, const Hit& hit, bool walks) const {
+// What pictures make of the material there.
+void World::take_pictures(const raster::PreparedItem& item, const Ray& ray, const Hit& hit, const RayFootprint& footprint,
+                          Vertex& v) const {
+  const double scale = geometry_.placement().scale;
+  if (const auto& palette = palettes_[hit.object]) {
+    const Vec4f t = surface_picture(*item.pictures->metallic_roughness, item, ray, hit, footprint, scale);
+    if (t.w > 0) v.material = &palette->at(t.y / t.w, t.z / t.w);
+  }
+  v.emission = v.material->emission();
+  if (item.pictures->emission) {
+    const Vec4f t = surface_picture(*item.pictures->emission, item, ray, hit, footprint, scale);
+    v.emission = v.emission * Vec3f{t.x, t.y, t.z};
+  }
+}
+
+Vertex World::at(const Ray& ray, const Hit& hit, const RayFootprint& footprint, bool walks) const {
   Vertex v;
   v.point = geometry_.at(ray, hit);
   v.material = materials_[hit.object].get();
-  const Vec4f color = this->color(hit);
+  v.emission = v.material->emission();
+  const Vec4f color = this->color(ray, hit, footprint);
+  if (hit.object < scene_->items.size() && scene_->items[hit.object].pictures)
+    take_pictures(scene_->items[hit.object], ray, hit, footprint, v);
   // At a silhouette the shading normal may look away from a viewer who sees the face.
   const bool above = dot(ray.direction, v.point.face_normal) < 0, shaded_above = dot(ray.direction, v.point.shading_normal) < 0;
   v.frame = LocalFrame::about(above == shaded_above ? v.point.shading_normal : v.point.face_normal, v.point.tangent);
   v.bsdf = make_bsdf(*v.material, {color.x, color.y, color.z}, color.w, walks && above);
-  v.emission = v.material->emission();
   return v;
 }
 

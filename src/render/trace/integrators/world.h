@@ -7,9 +7,11 @@
 #include "base/context.h"
 #include "render/prepare/prepared.h"
 #include "render/trace/geometry/geometry.h"
+#include "render/trace/integrators/ray_footprint.h"
 #include "render/trace/isosurface/isosurface.h"
 #include "render/trace/light/lights.h"
 #include "render/trace/material/bsdf.h"
+#include "render/trace/material/material_palette.h"
 #include "render/trace/media/media.h"
 #include "render/trace/sampling/local_frame.h"
 
@@ -34,27 +36,32 @@ class World {
   const Geometry& geometry() const { return geometry_; }
   const Lights& lights() const { return lights_; }
   /// Linear colour and opacity of what was met, and the id of its item (its number + 1).
-  Vec4f color(const Hit& hit) const;
+  Vec4f color(const Ray& ray, const Hit& hit, const RayFootprint& footprint = {}) const;
   uint32_t id(const Hit& hit) const;
   /// Null where there are none.
   Media::Borrowed borrow_media() const { return media_ ? media_->borrow() : Media::Borrowed(); }
   bool has_media() const { return media_ && media_->any(); }
   bool empty() const { return geometry_.bounds().empty() && !has_media(); }
   /// With `walks` the part of light that wanders below a surface which is met from outside is the integrator's (walk_below()).
-  Vertex at(const Ray& ray, const Hit& hit, bool walks = false) const;
+  Vertex at(const Ray& ray, const Hit& hit, const RayFootprint& footprint = {}, bool walks = false) const;
   /// Whether an item lets some light pass straight on, so that shadows have shades.
   bool translucent() const { return translucent_; }
+  /// Whether colours depend on what a ray stands for.
+  bool has_pictures() const { return pictures_; }
   /// Share of light that surfaces let pass along the ray up to t_max: 0 behind anything opaque.
   Vec3f passes(Ray ray) const;
 
  private:
+  void take_pictures(const raster::PreparedItem& item, const Ray& ray, const Hit& hit, const RayFootprint& footprint, Vertex& v) const;
+
   PreparedScenePtr scene_;
   Geometry geometry_;
   std::vector<std::shared_ptr<const Material>> materials_;
+  std::vector<std::unique_ptr<const MaterialPalette>> palettes_;  ///< of items; null where a material is the same all over
   Lights lights_;
   std::shared_ptr<const Media> media_;
   std::vector<Isosurfaces::Look> isosurfaces_;
-  bool translucent_ = false;
+  bool translucent_ = false, pictures_ = false;
 };
 
 }  // namespace sg::trace

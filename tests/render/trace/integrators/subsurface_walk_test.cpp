@@ -77,7 +77,7 @@ TEST_CASE("subsurface walk: it comes out as far away as the diffusion profile sa
   const LitWorld w(body(half_space(wax(path), 0.8)));
   Hit hit;
   REQUIRE(w.world.geometry().nearest(down, hit));
-  const Vertex entry = w.world.at(down, hit, true);
+  const Vertex entry = w.world.at(down, hit, {}, true);
   std::vector<double> distances;
   double all = 0;
   std::vector<double> weights;

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Textures from the bytes of picture files.
+#pragma once
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "image/texture/texture.h"
+
+namespace sg {
+
+/// PNG, JPEG or Radiance HDR, told apart by their content; numbers of HDR are linear whatever `encoding` says. Throws Error(data) naming
+/// `name` for other files, damaged ones, and those that are too large.
+Texture decode_texture(std::span<const std::byte> bytes, const std::string& name, TexelEncoding encoding, bool alpha);
+
+}  // namespace sg

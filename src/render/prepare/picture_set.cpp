@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/prepare/picture_set.h"
+
+#include <fmt/core.h>
+
+#include "base/error.h"
+#include "base/parallel.h"
+
+namespace sg::raster {
+
+namespace {
+
+constexpr size_t points_per_chunk = 1 << 15;
+
+Array placed(const Array& coordinates, const std::array<double, 6>& p) {
+  float* out = nullptr;
+  Array uv = Array::make<float>(coordinates.count(), 2, &out);
+  dispatch(coordinates, [&](auto v) {
+    parallel_for(v.count, points_per_chunk, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        const double x = double(v(i, 0)), y = double(v(i, 1));
+        out[2 * i] = float(p[0] * x + p[1] * y + p[2]), out[2 * i + 1] = float(p[3] * x + p[4] * y + p[5]);
+      }
+    });
+  });
+  return uv;
+}
+
+std::optional<PlacedPicture> placed(const std::optional<SurfacePicture>& picture, const DatasetPtr& data) {
+  if (!picture) return {};
+  const Field& f =
+      with_context("picture", [&]() -> const Field& { return data->fields().require(picture->coordinates, Association::point); });
+  if (f.components() < 2)
+    fail_usage(fmt::format("field '{}' has {} component, texture coordinates have 2", f.name, f.components()), "picture");
+  const auto& p = picture->place;
+  const std::string key = fmt::format("picture/{}/{},{},{},{},{},{}", f.name, p[0], p[1], p[2], p[3], p[4], p[5]);
+  return PlacedPicture{picture->texture, picture->lookup, *derived(data, key, [&] { return placed(f.array, p); })};
+}
+
+std::optional<IsolineSet> placed(const std::optional<SurfaceIsolines>& lines, const DatasetPtr& data) {
+  if (!lines || lines->values.empty()) return {};
+  FieldColor by;
+  by.field = lines->field, by.component = lines->component;
+  const ColorSource values = color_source(data, by, {}, "isolines");
+  IsolineSet set{values.values, {}, float(lines->width), linear_light(lines->color)};
+  for (const double v : lines->values) set.levels.push_back(float(v - values.offset));
+  return set;
+}
+
+}  // namespace
+
+std::shared_ptr<const PictureSet> place_pictures(const SurfacePictures& pictures, const DatasetPtr& data) {
+  auto set = std::make_shared<PictureSet>();
+  set->tint = pictures.tint, set->color = placed(pictures.color, data);
+  set->metallic_roughness = placed(pictures.metallic_roughness, data), set->emission = placed(pictures.emission, data);
+  set->isolines = placed(pictures.isolines, data);
+  set->alpha = pictures.alpha, set->cutoff = pictures.cutoff;
+  return set;
+}
+
+}  // namespace sg::raster

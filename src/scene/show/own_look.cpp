@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/show/own_look.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <map>
+
+#include "base/error.h"
+#include "data/field_ops.h"
+#include "image/image.h"
+#include "image/texture/texture_file.h"
+#include "scene/choose/own_materials.h"
+#include "scene/items/surface_pictures.h"
+
+namespace sg {
+
+namespace {
+
+std::shared_ptr<const Texture> texture_of(const PictureFile& file, TexelEncoding encoding, bool alpha) {
+  const std::string key = fmt::format("texture/{}/{}", int(encoding), alpha);
+  if (auto kept = file.memo->find<Texture>(key)) return kept;
+  Texture t = decode_texture(file.bytes, file.name, encoding, alpha);
+  const size_t bytes = t.bytes();
+  return file.memo->keep<Texture>(key, std::move(t), bytes);
+}
+
+TextureWrap wrap_of(MaterialPicture::Beyond beyond) {
+  switch (beyond) {
+    case MaterialPicture::Beyond::repeat: break;
+    case MaterialPicture::Beyond::mirror: return TextureWrap::mirror;
+    case MaterialPicture::Beyond::clamp: return TextureWrap::clamp;
+  }
+  return TextureWrap::repeat;
+}
+
+std::optional<SurfacePicture> picture_on(const Dataset& d, const MaterialPicture& p, TexelEncoding encoding, bool alpha, Context& context) {
+  if (!p.file) return {};
+  const Field* f = nullptr;
+  for (const Field& g : d.fields())
+    if (!f && g.association == Association::point && g.components() >= 2 &&
+        (p.coordinates.empty() ? g.role == Role::tcoords : g.name == p.coordinates))
+      f = &g;
+  if (!f) {
+    context.warn(fmt::format("the picture '{}' is left out: the surface has no texture coordinates{}", p.file->name,
+                             p.coordinates.empty() ? "" : fmt::format(" '{}'", p.coordinates)));
+    return {};
+  }
+  try {
+    SurfacePicture on{texture_of(*p.file, encoding, alpha), f->name, p.place, {}};
+    on.lookup.wrap_u = wrap_of(p.beyond_u), on.lookup.wrap_v = wrap_of(p.beyond_v), on.lookup.sharp = p.nearest;
+    return on;
+  } catch (const Error& e) {
+    context.warn(fmt::format("a picture is left out: {}", e.what()));
+    return {};
+  }
+}
+
+/// Null without any. `tinted`: multiplied with the material's colour, too.
+std::shared_ptr<const SurfacePictures> pictures_of(const MaterialLook& l, const Dataset& d, bool tinted, Context& context) {
+  using Alpha = SurfacePictures::Alpha;
+  auto p = std::make_shared<SurfacePictures>();
+  if (tinted) p->tint = l.base_color;
+  p->alpha = l.alpha == MaterialLook::Alpha::opaque ? Alpha::none : l.alpha == MaterialLook::Alpha::mask ? Alpha::cutout : Alpha::coverage;
+  p->cutoff = l.alpha_cutoff;
+  p->color = picture_on(d, l.base_picture, TexelEncoding::srgb, p->alpha != Alpha::none, context);
+  p->metallic_roughness = picture_on(d, l.metallic_roughness, TexelEncoding::linear, false, context);
+  p->emission = picture_on(d, l.emission_picture, TexelEncoding::srgb, false, context);
+  const bool any = p->color || p->metallic_roughness || p->emission || tinted;
+  return any ? p : nullptr;
+}
+
+SurfaceMaterial matter_of(const MaterialLook& l) {
+  const auto share = [](float v) { return std::clamp(double(v), 0.0, 1.0); };
+  SurfaceMaterial m;
+  m.base_color = {1, 1, 1};
+  m.base_metalness = share(l.metallic), m.specular_roughness = share(l.roughness);
+  m.specular_ior = std::clamp(double(l.ior), 1.0, 4.0);
+  m.transmission_weight = share(l.transmission), m.coat_weight = share(l.coat), m.coat_roughness = share(l.coat_roughness);
+  m.emission = Vec3(l.emission);
+  m.thin_walled = l.transmission > 0 && l.thin;
+  if (!m.thin_walled && l.attenuation_distance > 0)
+    m.transmission_color = Vec3(l.attenuation_color), m.transmission_depth = double(l.attenuation_distance);
+  return m;
+}
+
+/// Polygons and strips of one number; the points of all.
+DatasetPtr polygons_of(const DatasetPtr& data, const Field& numbers, int64_t number) {
+  const std::string key = fmt::format("polygons of material {}", number);
+  struct Kept {
+    DatasetPtr data;
+  };
+  if (const auto kept = data->memo().find<Kept>(key)) return kept->data;
+  const SurfaceMesh& from = *data->as<SurfaceMesh>();
+  std::vector<int64_t> cells;
+  size_t cell = from.vertices.size() + from.lines.size();
+  const auto chosen = [&](const CellArray& list) {
+    const CellsView v = cells_view(list);
+    std::vector<int32_t> ids, offsets{0};
+    for (size_t c = 0; c < v.count; ++c, ++cell) {
+      if (numbers.array.get(cell) != double(number)) continue;
+      for (size_t k = 0; k < v.size(c); ++k) ids.push_back(int32_t(v.point(c, k)));
+      offsets.push_back(int32_t(ids.size()));
+      cells.push_back(int64_t(cell));
+    }
+    CellArray out;
+    if (cells.empty() || offsets.size() == 1) return out;
+    out.connectivity = Array::from_vector(std::move(ids)), out.offsets = Array::from_vector(std::move(offsets));
+    return out;
+  };
+  SurfaceMesh mesh;
+  mesh.points = from.points, mesh.polygons = chosen(from.polygons), mesh.strips = chosen(from.strips);
+  DatasetParts parts;
+  parts.point_ghost = data->point_ghost();
+  if (!data->cell_ghost().empty()) parts.cell_ghost = gather(data->cell_ghost(), std::span<const int64_t>(cells));
+  for (const Field& f : data->fields())
+    if (f.association != Association::cell) parts.fields.add(f);
+  carry_gathered(parts.fields, data->fields(), Association::cell, std::span<const int64_t>(cells), Association::cell);
+  const size_t bytes = mesh.polygons.connectivity.bytes() + mesh.strips.connectivity.bytes();
+  parts.mesh = std::move(mesh);
+  return data->memo().keep<Kept>(key, {make_dataset(std::move(parts))}, bytes)->data;
+}
+
+/// The numbers of polygons and strips, in rising order.
+std::vector<int64_t> numbers_of(const SurfaceMesh& mesh, const Field& numbers) {
+  std::map<int64_t, bool> seen;
+  const size_t first = mesh.vertices.size() + mesh.lines.size(), last = first + mesh.polygons.size() + mesh.strips.size();
+  int64_t before = 0;
+  for (size_t c = first; c < last; ++c) {
+    const double v = numbers.array.get(c);
+    const int64_t n = v == v && std::abs(v) < 1e15 ? int64_t(v) : 0;
+    if (c == first || n != before) seen[n] = true;
+    before = n;
+  }
+  std::vector<int64_t> all;
+  for (const auto& entry : seen) all.push_back(entry.first);
+  return all;
+}
+
+}  // namespace
+
+std::vector<SurfaceItem> items_of_materials(const SurfaceItem& like, Context& context) {
+  const Field* numbers = material_numbers(*like.data);
+  const SurfaceMesh* mesh = like.data->as<SurfaceMesh>();
+  if (!numbers || !mesh) return {like};
+  const auto& looks = numbers->materials->looks;
+  const std::vector<int64_t> all = numbers_of(*mesh, *numbers);
+  std::vector<SurfaceItem> items;
+  for (const int64_t number : all) {
+    SurfaceItem item = like;
+    if (all.size() > 1) item.data = polygons_of(like.data, *numbers, number), item.edge_lines = nullptr;
+    if (const auto at = looks.find(number); at != looks.end()) {
+      const MaterialLook& look = at->second;
+      item.pictures = pictures_of(look, *item.data, item.color_by.has_value(), context), item.made_of = matter_of(look);
+      if (item.color_by) {
+        item.color = {1, 1, 1};
+      } else {
+        const Vec3f c = look.base_color;
+        item.color = {srgb_encode(c.x), srgb_encode(c.y), srgb_encode(c.z)};
+      }
+      if (look.alpha == MaterialLook::Alpha::blend) item.opacity *= std::clamp(double(look.opacity), 0.0, 1.0);
+    }
+    items.push_back(std::move(item));
+  }
+  return items;
+}
+
+}  // namespace sg

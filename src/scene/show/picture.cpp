@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/show/picture.h"
+
+#include <fmt/core.h>
+#include <sys/stat.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "base/file/file.h"
+#include "data/memory/memo.h"
+#include "image/texture/texture_file.h"
+
+namespace sg {
+
+void describe(Schema& s, PictureShow& p) {
+  s("picture", p.picture,
+    "Picture on the surface, by its texture coordinates: a file (PNG, JPEG, Radiance HDR). It takes the place of colours by a field; "
+    "color= "
+    "tints it, and what it leaves transparent is not drawn.")
+      .unit("file");
+  s("pattern", p.pattern,
+    "Pattern in the place of a picture: checker, two by two squares in a unit of the coordinates, or noise, a cloud. Default: none.");
+  s("picture_coordinates", p.picture_coordinates,
+    "Point field of 2 components or more: where in the picture each point lies, (0, 0) at its lower left, (1, 1) at its upper right. "
+    "Default: the texture coordinates that the data has.")
+      .takes(fields::point_vectors);
+  s("picture_repeats", p.picture_repeats,
+    "How often the picture stands in a unit of the coordinates: one number, or across and up. Default: once.")
+      .items(0, 2);
+  s("picture_wrap", p.picture_wrap, "What lies beyond the picture: it is repeated, mirrored, or its border goes on.");
+  s("picture_filter", p.picture_filter,
+    "How a pixel sees it: the nearest texel, between the four nearest, also between smaller copies for what is far away, or these along "
+    "the "
+    "longer side of what the pixel sees, too.");
+  s("picture_encoding", p.picture_encoding, "Whether its numbers are those of a screen's colours, or light itself. HDR is always light.");
+}
+
+void check(const PictureShow& p) {
+  if (!p.picture.empty() && p.pattern) fail_usage("both a picture and a pattern are stated", "picture", "give one of them");
+  for (const double r : p.picture_repeats)
+    if (!std::isfinite(r) || r == 0) fail_usage(fmt::format("picture_repeats={} is no number of times", r), "picture");
+}
+
+const Field& picture_coordinates(const Dataset& d, const FieldName& wanted) {
+  const Field* f = nullptr;
+  if (!wanted.empty()) {
+    f = &d.fields().require(wanted.name, Association::point);
+  } else {
+    for (const Field& g : d.fields())
+      if (!f && g.role == Role::tcoords && g.association == Association::point && g.components() >= 2) f = &g;
+    if (!f)
+      fail_usage("the data has no texture coordinates, so that a picture has no place on it", "picture",
+                 "-f texture_coordinates makes some; picture_coordinates=NAME takes a point field of 2 components");
+  }
+  if (f->components() < 2)
+    fail_usage(fmt::format("field '{}' has one component; a place in a picture has two", f->name), "picture_coordinates");
+  return *f;
+}
+
+namespace {
+
+/// Another one when the file was written again.
+int64_t time_of_change(const std::string& path) {
+  struct stat now {};
+  return ::stat(path.c_str(), &now) == 0 ? int64_t(now.st_mtim.tv_sec) * 1'000'000'000 + now.st_mtim.tv_nsec : 0;
+}
+
+std::shared_ptr<const Texture> texture_in_file(const Dataset& d, const PictureShow& p) {
+  const MappedFile file(p.picture);
+  const std::string key = fmt::format("pictures/{}/{}/{}/{}", p.picture, time_of_change(p.picture), file.size(), int(p.picture_encoding));
+  if (auto kept = d.memo().find<Texture>(key)) return kept;
+  Texture t = decode_texture({file.data(), file.size()}, p.picture, p.picture_encoding, true);
+  const size_t bytes = t.bytes();
+  return d.memo().keep<Texture>(key, std::move(t), bytes);
+}
+
+}  // namespace
+
+std::shared_ptr<const SurfacePictures> pictures_of(const Dataset& d, const PictureShow& p) {
+  if (!p.any()) return nullptr;
+  check(p);
+  SurfacePicture on;
+  on.coordinates = picture_coordinates(d, p.picture_coordinates).name;
+  if (!p.picture_repeats.empty()) on.place = {p.picture_repeats.front(), 0, 0, 0, p.picture_repeats.back(), 0};
+  on.lookup.wrap_u = on.lookup.wrap_v = p.picture_wrap, on.lookup.filter = p.picture_filter;
+  auto pictures = std::make_shared<SurfacePictures>();
+  if (p.pattern) {
+    // Of the surface's own colour, and dark.
+    constexpr Vec3f light{1, 1, 1}, dark{0.12f, 0.12f, 0.12f};
+    on.texture = std::make_shared<const Texture>(pattern_texture(*p.pattern, light, dark));
+    on.lookup.sharp = *p.pattern == TexturePattern::checker;
+  } else {
+    on.texture = texture_in_file(d, p);
+    pictures->alpha = SurfacePictures::Alpha::coverage;
+  }
+  pictures->color = std::move(on);
+  return pictures;
+}
+
+}  // namespace sg
