@@ -24,7 +24,8 @@ int main(int argc, char** argv) {
   if (!f || std::fread(counts, 8, 2, f) != 2) return 1;
   std::vector<float> xyz(3 * counts[0]);
   std::vector<uint32_t> corners(3 * counts[1]);
-  if (std::fread(xyz.data(), 4, xyz.size(), f) != xyz.size() || std::fread(corners.data(), 4, corners.size(), f) != corners.size()) return 1;
+  if (std::fread(xyz.data(), 4, xyz.size(), f) != xyz.size() || std::fread(corners.data(), 4, corners.size(), f) != corners.size())
+    return 1;
   std::fclose(f);
 
   OSPGeometry mesh = ospNewGeometry("mesh");
@@ -48,7 +49,8 @@ int main(int argc, char** argv) {
   ospSetObjectAsData(world, "instance", OSP_INSTANCE, instance);
   std::vector<OSPObject> lights;
   OSPLight around = ospNewLight("ambient");
-  ospSetFloat(around, "intensity", name == "even" || occlusion ? 1 : .2f), ospSetInt(around, "intensityQuantity", OSP_INTENSITY_QUANTITY_RADIANCE);
+  ospSetFloat(around, "intensity", name == "even" || occlusion ? 1 : .2f),
+      ospSetInt(around, "intensityQuantity", OSP_INTENSITY_QUANTITY_RADIANCE);
   ospSetBool(around, "visible", false);
   ospCommit(around), lights.push_back(around);
   if (name == "lamp" || name == "metal") {
@@ -62,7 +64,8 @@ int main(int argc, char** argv) {
 
   OSPCamera camera = ospNewCamera("perspective");
   ospSetFloat(camera, "aspect", float(width) / float(height)), ospSetFloat(camera, "fovy", 40);
-  ospSetVec3f(camera, "position", 2.2f, 2.6f, 3.6f), ospSetVec3f(camera, "direction", -2.2f, -2.6f, -3.6f), ospSetVec3f(camera, "up", 0, 1, 0);
+  ospSetVec3f(camera, "position", 2.2f, 2.6f, 3.6f), ospSetVec3f(camera, "direction", -2.2f, -2.6f, -3.6f),
+      ospSetVec3f(camera, "up", 0, 1, 0);
   ospCommit(camera);
   OSPRenderer renderer = ospNewRenderer(occlusion ? "scivis" : "pathtracer");
   ospSetInt(renderer, "pixelSamples", occlusion ? 1 : paths), ospSetInt(renderer, "pixelFilter", OSP_PIXELFILTER_BOX);

@@ -2,8 +2,8 @@
 // One picture of a scene of bench/light/compare.py by the path tracer: linear colours as a file, times as a line.
 #include <fmt/core.h>
 
-#include <cmath>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>

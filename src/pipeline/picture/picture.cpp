@@ -9,9 +9,9 @@
 #include "data/memory/memory_budget.h"
 #include "pipeline/film/film_params.h"
 #include "pipeline/offline/page_params.h"
-#include "pipeline/picture/picture_notes.h"
 #include "pipeline/picture/picture_parts.h"
 #include "pipeline/picture/prepare.h"
+#include "pipeline/picture/report/picture_notes.h"
 #include "pipeline/picture/scene/shutter.h"
 #include "scene/show/show.h"
 

@@ -8,7 +8,7 @@
 
 #include "pipeline/graph/step_report.h"
 #include "pipeline/picture/picture_parts.h"
-#include "pipeline/picture/picture_report.h"
+#include "pipeline/picture/report/picture_report.h"
 #include "render/render.h"
 
 namespace sg {

@@ -27,7 +27,7 @@ void add(Seen& seen, float share, Vec3f albedo, Vec3f normal, float depth) {
   seen[Features::depth] += share * depth, seen[Features::cover] += share;
 }
 
-Seen seen_along(const World& world, MediaWalk* media, Ray ray, Sampler& sampler) {
+Seen seen_along(const World& world, MediaWalk* media, Ray ray, RayFootprint footprint, Sampler& sampler) {
   Seen seen{};
   float share = 1, gone = 0;
   for (int layer = 0; layer < most_layers && share > 1e-3f; ++layer) {
@@ -48,13 +48,13 @@ Seen seen_along(const World& world, MediaWalk* media, Ray ray, Sampler& sampler)
     }
     if (!met) break;
     const SurfacePoint point = world.geometry().at(ray, hit);
-    const Vec4f color = world.color(ray, hit);
+    const Vec4f color = world.color(ray, hit, footprint);
     const float opacity = std::clamp(color.w, 0.f, 1.f);
     const Vec3f normal = dot(point.face_normal, ray.direction) > 0 ? -point.shading_normal : point.shading_normal;
     gone += hit.t;
     add(seen, share * opacity, {color.x, color.y, color.z}, normal, gone);
     share *= 1 - opacity;
-    ray = {leave(point, ray.direction), ray.direction};
+    ray = {leave(point, ray.direction), ray.direction}, footprint = footprint.after(hit.t);
   }
   return seen;
 }
@@ -80,7 +80,9 @@ Features features_of(const World& world, const PictureCamera& camera, const Ligh
           for (int k = 0; k < rays; ++k) {
             sampler.start(uint32_t(x), uint32_t(y), uint32_t(k));
             const Vec2f in_pixel = sampler.next2(), on_lens = camera.has_lens() ? concentric_disc(sampler.next2()) : Vec2f();
-            const Seen seen = seen_along(world, media.get(), camera.ray({float(x) + in_pixel.x, float(y) + in_pixel.y}, on_lens), sampler);
+            const Vec2f at{float(x) + in_pixel.x, float(y) + in_pixel.y};
+            const RayFootprint footprint = world.has_pictures() ? camera.footprint(at) : RayFootprint();
+            const Seen seen = seen_along(world, media.get(), camera.ray(at, on_lens), footprint, sampler);
             for (size_t c = 0; c < seen.size(); ++c) sum[c] += double(seen[c]), square[c] += double(seen[c]) * double(seen[c]);
           }
           const size_t i = y * size_t(f.width) + size_t(x);

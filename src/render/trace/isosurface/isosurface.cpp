@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/lending.h"
+#include "base/threads/lending.h"
 #include "render/trace/geometry/object.h"
 #include "render/volume/natural_units.h"
 #include "render/volume/prepare_cast.h"

@@ -13,7 +13,8 @@ namespace sg::trace {
 /// lies between two texels that differ much takes the nearest pair that there is.
 class MaterialPalette {
  public:
-  /// `described` holds the factors; roughness is in green, metalness in blue. `length`: as of Material. Some ten milliseconds for each pair. Throws Error(usage).
+  /// `described` holds the factors; roughness is in green, metalness in blue. `length`: as of Material. Some ten milliseconds for each
+  /// pair. Throws Error(usage).
   MaterialPalette(const SurfaceMaterial& described, const Texture& texture, double length = 1);
 
   const Material& at(float roughness_texel, float metalness_texel) const;

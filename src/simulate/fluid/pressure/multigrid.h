@@ -15,7 +15,8 @@ namespace sg::fluid {
 ///
 /// precondition() is one symmetric V-cycle: red-black Gauss-Seidel before, black-red after, linear interpolation between the middles of
 /// cells (Trottenberg, Oosterlee, Schueller 2001, 2.8.4) and its transpose for residuals, walls coarsened by averages of their open
-/// shares, cells that are all but solid closed. As a preconditioner of conjugate gradients it needs no more at obstacles (McAdams, Sifakis, Teran 2010).
+/// shares, cells that are all but solid closed. As a preconditioner of conjugate gradients it needs no more at obstacles (McAdams, Sifakis,
+/// Teran 2010).
 template <class T>
 class Multigrid {
  public:

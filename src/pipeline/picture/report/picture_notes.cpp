@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/picture/picture_notes.h"
+#include "pipeline/picture/report/picture_notes.h"
 
 #include <fmt/format.h>
 

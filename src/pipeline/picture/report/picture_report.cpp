@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/picture/picture_report.h"
+#include "pipeline/picture/report/picture_report.h"
 
 #include <fmt/format.h>
 
