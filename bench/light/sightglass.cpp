@@ -2,6 +2,7 @@
 // One picture of a scene of bench/light/compare.py by the path tracer: linear colours as a file, times as a line.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -69,7 +70,7 @@ Scene scene_of(const DatasetPtr& mesh, const std::string& name) {
 
 int main(int argc, char** argv) {
   if (argc != 7) {
-    fmt::print(stderr, "usage: {} MESH.raw even|lamp|metal PATHS WIDTH HEIGHT OUT.f32\n", argv[0]);
+    fmt::print(stderr, "usage: {} MESH.raw even|lamp|metal|occlusion PATHS WIDTH HEIGHT OUT.f32\n", argv[0]);
     return 2;
   }
   const Scene scene = scene_of(read_mesh(argv[1]), argv[2]);
@@ -80,6 +81,10 @@ int main(int argc, char** argv) {
   Context context;
   LightOptions options;
   options.paths = std::atoi(argv[3]), options.noise = 1e-9;
+  if (std::string(argv[2]) == "occlusion") {  // of so many rays to the open, four for each from the camera
+    options.integrator = trace::IntegratorKind::ambient_occlusion;
+    options.paths = std::max(1, options.paths / 4);
+  }
   const PreparedScenePtr prepared = prepare_scene(scene, context);
   const Projection projection = make_projection(camera, width, height);
   TraceReport report;

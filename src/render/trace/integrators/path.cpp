@@ -92,7 +92,7 @@ class PathIntegrator : public Integrator {
       }
       if (!path.straight) {
         const Ray seen{path.turned_at, path.ray.direction, path.since + path.ray.t_max};
-        out.radiance += path.throughput * world.lights().seen(seen, path.since, path.pdf);
+        out.radiance += path.throughput * world.lamps().seen(seen, path.since, path.pdf);
       } else if (!met && !matter) {
         out.passed = luminance(path.throughput);
       }
@@ -108,7 +108,7 @@ class PathIntegrator : public Integrator {
     const Vertex v = world.at(path.ray, hit, path.footprint, !mirrors_only_);
     if (!is_dark(v.emission)) {
       const float p =
-          world.lights().triangle_pdf(hit.object, hit.primitive, path.since + hit.t, dot(path.ray.direction, v.point.face_normal));
+          world.lamps().triangle_pdf(hit.object, hit.primitive, path.since + hit.t, dot(path.ray.direction, v.point.face_normal));
       out.radiance += path.throughput * v.emission * power_weight(path.pdf, p);
     }
     const Vec3f wo = v.frame.to_local(-path.ray.direction);
@@ -122,7 +122,8 @@ class PathIntegrator : public Integrator {
           return {v.bsdf.evaluate(wo, wi) * std::abs(wi.z), mirrors_only_ ? 0 : v.bsdf.pdf(wo, wi)};
         };
         const auto from = [&](Vec3f direction) { return leave(v.point, direction); };
-        out.radiance += path.throughput * direct(world, media, v.point.position, from, scattered, choice, u, sampler);
+        out.radiance += path.throughput * direct(world, mirrors_only_ ? world.lights() : world.lamps(), media, v.point.position, from,
+                                                 scattered, choice, u, sampler);
       }
     }
 
@@ -173,7 +174,8 @@ class PathIntegrator : public Integrator {
     const auto from = [&](Vec3f direction) { return leave(v.point, direction); };
     const float choice = sampler.next();
     const Vec2f u = sampler.next2();
-    out.radiance += path.throughput * direct(world, media, v.point.position, from, scattered, choice, u, sampler);
+    out.radiance += path.throughput * direct(world, mirrors_only_ ? world.lights() : world.lamps(), media, v.point.position, from,
+                                             scattered, choice, u, sampler);
 
     const Vec3f direction = normalize(v.frame.to_world(cosine_hemisphere(sampler.next2())));
     const float roulette = sampler.next();
@@ -199,7 +201,8 @@ class PathIntegrator : public Integrator {
     const float choice = sampler.next();
     const Vec2f u = sampler.next2();
     out.radiance += path.throughput * direct(
-                                          world, media, from, [&](Vec3f) { return from; }, scattered, choice, u, sampler);
+                                          world, last ? world.lights() : world.lamps(), media, from, [&](Vec3f) { return from; }, scattered,
+                                          choice, u, sampler);
 
     const Vec2f v = sampler.next2();
     const float roulette = sampler.next();
@@ -230,12 +233,12 @@ class PathIntegrator : public Integrator {
     Vec3f share;  ///< with the cosine of a surface
     float pdf = 0;
   };
-  /// One light, chosen by its power, if nothing is in the way. `from(direction)`: where rays to it start.
+  /// One of the lights, chosen by its power, if nothing is in the way. `from(direction)`: where rays to it start.
   template <class From, class F>
-  Vec3f direct(const World& world, MediaWalk* media, Vec3f position, From&& from, F&& scattered, float choice, Vec2f u,
-               Sampler& sampler) const {
+  Vec3f direct(const World& world, const Lights& lights, MediaWalk* media, Vec3f position, From&& from, F&& scattered, float choice,
+               Vec2f u, Sampler& sampler) const {
     const uint64_t stream = media ? sampler.stream() : 0;
-    const auto light = world.lights().sample(position, choice, u);
+    const auto light = lights.sample(position, choice, u);
     if (!light) return {};
     const Scattered s = scattered(light->direction);
     if (is_dark(s.share)) return {};

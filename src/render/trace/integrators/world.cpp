@@ -52,6 +52,11 @@ World::World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_
               reach_of(geometry_, media.get())),
       media_(std::move(media)),
       isosurfaces_(std::move(isosurfaces)) {
+  if (const Environment& around = lights_.environment(); around.even() && !around.dark()) {
+    std::vector<AnyLight> all;
+    for (uint32_t i = 0; i < lights_.count(); ++i) all.push_back(lights_.light(i));
+    lamps_.emplace(std::move(all), around, reach_of(geometry_, media_.get()), false);
+  }
   for (const raster::PreparedItem& item : scene_->items)
     translucent_ = translucent_ || item.translucent || item.opacity < 1 || item.color.translucent;
   for (const Isosurfaces::Look& look : isosurfaces_)

@@ -2,6 +2,7 @@
 // World: all that integrators ask of a scene. What rays meet, of what it is made there, and what shines.
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/context.h"
@@ -35,6 +36,9 @@ class World {
 
   const Geometry& geometry() const { return geometry_; }
   const Lights& lights() const { return lights_; }
+  /// The same for paths that go on into every direction: they do not ask for an environment that is the same everywhere, which they meet by
+  /// chance as well as by asking.
+  const Lights& lamps() const { return lamps_ ? *lamps_ : lights_; }
   /// Linear colour and opacity of what was met, and the id of its item (its number + 1).
   Vec4f color(const Ray& ray, const Hit& hit, const RayFootprint& footprint = {}) const;
   uint32_t id(const Hit& hit) const;
@@ -59,6 +63,7 @@ class World {
   std::vector<std::shared_ptr<const Material>> materials_;
   std::vector<std::unique_ptr<const MaterialPalette>> palettes_;  ///< of items; null where a material is the same all over
   Lights lights_;
+  std::optional<Lights> lamps_;  ///< where they are others
   std::shared_ptr<const Media> media_;
   std::vector<Isosurfaces::Look> isosurfaces_;
   bool translucent_ = false, pictures_ = false;

@@ -19,6 +19,7 @@ class Environment {
   /// `pixels`: width * height linear RGB. Throws Error(usage) for numbers that are negative or not finite, and for no pixels.
   Environment(std::span<const Vec3f> pixels, size_t width, Vec3 up, Vec3 front, float factor);
 
+  bool even() const { return !picture_; }
   bool dark() const { return !picture_ && even_ == Vec3f(); }
   Vec3f radiance(Vec3f direction) const;
   /// Its mean over all directions.

@@ -179,7 +179,7 @@ uint64_t key_of(uint32_t object, uint32_t primitive) { return uint64_t(object) <
 
 }  // namespace
 
-Lights::Lights(std::vector<AnyLight> lights, Environment environment, float reach)
+Lights::Lights(std::vector<AnyLight> lights, Environment environment, float reach, bool ask_even)
     : lights_(std::move(lights)), environment_(std::move(environment)) {
   std::vector<float> powers;
   for (const AnyLight& l : lights_) {
@@ -192,7 +192,7 @@ Lights::Lights(std::vector<AnyLight> lights, Environment environment, float reac
   }
   std::sort(triangles_.begin(), triangles_.end());
   const float around = pi * reach * reach * pi * luminance(environment_.mean());
-  if (around > 0) {
+  if (around > 0 && (ask_even || !environment_.even())) {
     // Light from everywhere is half of what is asked for, however bright single lights are: all shadows are filled by it.
     float sum = 0;
     for (const float p : powers) sum += p;
@@ -226,8 +226,8 @@ Vec3f Lights::seen(const Ray& ray, float t_min, float pdf) const {
   for (const uint32_t i : met_)
     if (const auto s = std::visit([&](const auto& l) { return seen_one(l, ray, t_min); }, lights_[i]))
       sum += s->radiance * power_weight(pdf, choice_->probability(i) * s->pdf);
-  if (ray.t_max == infinite && choice_ && choice_->cells() > lights_.size())
-    sum += environment_.radiance(ray.direction) * power_weight(pdf, choice_->probability(lights_.size()) * environment_.pdf(ray.direction));
+  if (ray.t_max == infinite && !environment_.dark())
+    sum += environment_.radiance(ray.direction) * power_weight(pdf, chance(uint32_t(lights_.size())) * environment_.pdf(ray.direction));
   return sum;
 }
 

@@ -78,9 +78,10 @@ class Lights {
  public:
   Lights() = default;
   /// `reach`: radius of a ball about the scene, for the power of what is far away. Throws Error(usage) for a light without size or power.
-  Lights(std::vector<AnyLight> lights, Environment environment, float reach);
+  /// `ask_even` = false: sample() leaves out an environment that is the same everywhere.
+  Lights(std::vector<AnyLight> lights, Environment environment, float reach, bool ask_even = true);
 
-  bool any() const { return choice_.has_value(); }
+  bool any() const { return choice_.has_value() || !environment_.dark(); }
   size_t count() const { return lights_.size(); }
   /// One of all lights, drawn by their power. Nothing where it does not shine on the point.
   std::optional<LightSample> sample(Vec3f from, float choice, Vec2f u) const;
