@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "base/error.h"
@@ -55,7 +56,7 @@ int run_lookdev(const Options& o, Context& context) {
       fail_usage(fmt::format("there is no material '{}'", names[i]), "sightglass lookdev", unknown_name_hint(names[i], known));
     }
     Context part(context, double(i) / double(names.size()), double(i + 1) / double(names.size()));
-    balls.push_back({lookdev_ball(preset_material(*preset), balls_wide, o.noise, part), names[i]});
+    balls.push_back({lookdev_ball(preset_material(*preset, 2 * std::sqrt(3.0)), balls_wide, o.noise, part), names[i]});
   }
   write_image(output, balls.size() == 1 ? balls[0].image : contact_sheet(balls, 5, balls_wide));
   if (!o.quiet) say(fmt::format("{}: {} materials\n", printable(output), balls.size()));

@@ -62,7 +62,7 @@ World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Proje
   Studio studio = studio_of(scene, projection, geometry.placement());
   backdrop = studio.backdrop;
   return {prepared, std::move(geometry),         std::move(materials), std::move(studio.lights), std::move(studio.environment),
-          media,    std::move(isosurfaces.looks)};
+          media,    std::move(isosurfaces.looks), scene.shows};
 }
 
 /// What is around the scene, as the middle of each pixel sees it.

@@ -136,6 +136,12 @@ ColoringParams coloring_of(const SurfaceShow& p, const Dataset& d) {
 
 }  // namespace
 
+void share(const std::vector<DatasetPtr>& parts, const std::vector<SurfaceShow*>& params) {
+  Box3 box;
+  for (const DatasetPtr& d : parts) box.add(d->bounds());
+  for (SurfaceShow* p : params) p->body = box.diagonal();
+}
+
 std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceShow& p, Context& context) {
   if (p.style != SurfaceStyle::solid) return add_sparse(scene, input, p, context);
   check(p);
@@ -158,7 +164,7 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceSh
     if (item.data != whole && !item.edge_lines) item.edge_lines = whole;
   }
   if (p.material) {
-    item.made_of = preset_material(*p.material, input->bounds().diagonal());
+    item.made_of = preset_material(*p.material, p.body > 0 ? p.body : input->bounds().diagonal());
     const Vec3f own(item.made_of->base_color);
     item.color = {srgb_encode(own.x), srgb_encode(own.y), srgb_encode(own.z)};
   }

@@ -28,6 +28,7 @@ struct SurfaceShow {
   PictureShow picture;
   IsolineShow isolines;
   std::optional<MaterialPreset> material;
+  double body = 0;  ///< diagonal of all parts of a collection; 0: that of the data
   bool own_materials = true;
 };
 void describe(Schema& s, SurfaceShow& p);
@@ -35,6 +36,9 @@ void describe(Schema& s, SurfaceShow& p);
 void check(const SurfaceShow& p);
 /// The field that colours when none is named: none under a picture, and none where the data has materials of its own.
 const Field* automatic_field(const SurfaceShow& p, const Dataset& data);
+
+/// All parts are one body.
+void share(const std::vector<DatasetPtr>& parts, const std::vector<SurfaceShow*>& params);
 
 /// Adds items for the dataset; returns what the legend shows when a field is mapped to colours.
 std::optional<Legend> add(Scene& scene, const DatasetPtr& data, const SurfaceShow& p, Context& context);

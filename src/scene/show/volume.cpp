@@ -219,6 +219,12 @@ VolumeShow with_preset(const VolumeShow& p, const Schema& schema, const Dataset&
 
 }  // namespace
 
+void share(const std::vector<DatasetPtr>& parts, const std::vector<VolumeShow*>& params) {
+  Box3 box;
+  for (const DatasetPtr& d : parts) box.add(d->bounds());
+  for (VolumeShow* p : params) p->body = box.diagonal();
+}
+
 std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const VolumeShow& p, Context& context) {
   return add(scene, input, p, Schema(), context);
 }
@@ -269,7 +275,7 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const VolumeSho
   else item.opacity = parse_opacity(*p.opacity, item.color);
   bool own_colors = !p.colors.empty() || !p.coloring.color.empty();
   if (p.material) {
-    item.made_of = preset_material(*p.material, input->bounds().diagonal());
+    item.made_of = preset_material(*p.material, stated.body > 0 ? stated.body : input->bounds().diagonal());
     if (!p.opacity) item.opacity.points = {{item.color.lo, 1}};
     if (!own_colors && !p.coloring.map && p.coloring.range.empty() && p.color_by.empty()) {
       const Vec3f own(item.made_of->base_color);

@@ -36,6 +36,7 @@ struct VolumeShow {
   std::vector<double> levels;
   bool shaded = true;
   std::optional<MaterialPreset> material;
+  double body = 0;  ///< diagonal of all parts of a collection; 0: that of the data
   VolumeSampling sampling;
   VolumeLight light;
   VolumeScattering scattering;
@@ -45,6 +46,9 @@ void describe(Schema& s, VolumeShow& p);
 
 /// Throws Error(usage) for what no data could make right; all mistakes at once.
 void check(const VolumeShow& p);
+
+/// All parts are one body.
+void share(const std::vector<DatasetPtr>& parts, const std::vector<VolumeShow*>& params);
 
 /// Adds one VolumeItem; what was chosen and why goes to context.info(). Explicit parameters override a preset: what `schema`, the
 /// one of `p`, knows as stated, and all that is not a default. Throws Error(usage) for data without volume, unknown fields and presets, and

@@ -182,6 +182,7 @@ class PathIntegrator : public Integrator {
     const Scattered s = scattered(direction);
     if (!(s.pdf > 0)) return false;
     path.throughput = path.throughput * s.share / s.pdf;
+    if (!path.footprint.none()) path.footprint = path.footprint.turned(direction, opening_of(s.pdf));
     path.turn(leave(v.point, direction), direction, s.pdf);
     return path.turns <= 3 || survives(path, 0.95f, roulette);
   }

@@ -66,9 +66,10 @@ std::optional<WalkExit> walk_below(const World& world, const Vertex& entry, Rand
     if (passes) {
       const Vertex v = world.at(ray, hit);
       const float across = dot(ray.direction, v.point.face_normal);
-      if (hit.object == entry.point.object && across > 0) return WalkExit{v, weight};
+      const bool own = world.same_surface(entry.point, hit);
+      if (own && across > 0) return WalkExit{v, weight};
       direction = ray.direction;
-      if (hit.object != entry.point.object) {
+      if (!own) {
         const float choice = random.next();
         const auto s = v.bsdf.sample(v.frame.to_local(-ray.direction), choice, two(random));
         if (!s) return {};

@@ -44,14 +44,15 @@ float reach_of(const Geometry& geometry, const Media* media) {
 
 World::World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_ptr<const Material>> materials,
              std::vector<AnyLight> lights, Environment environment, std::shared_ptr<const Media> media,
-             std::vector<Isosurfaces::Look> isosurfaces)
+             std::vector<Isosurfaces::Look> isosurfaces, std::vector<uint32_t> shows)
     : scene_(std::move(scene)),
       geometry_(std::move(geometry)),
       materials_(std::move(materials)),
       lights_(with_emitters(*scene_, materials_, geometry_.placement(), std::move(lights)), std::move(environment),
               reach_of(geometry_, media.get())),
       media_(std::move(media)),
-      isosurfaces_(std::move(isosurfaces)) {
+      isosurfaces_(std::move(isosurfaces)),
+      shows_(std::move(shows)) {
   if (const Environment& around = lights_.environment(); around.even() && !around.dark()) {
     std::vector<AnyLight> all;
     for (uint32_t i = 0; i < lights_.count(); ++i) all.push_back(lights_.light(i));
@@ -80,6 +81,16 @@ Vec4f World::color(const Ray& ray, const Hit& hit, const RayFootprint& footprint
 uint32_t World::id(const Hit& hit) const {
   const size_t items = scene_->items.size();
   return hit.object < items ? scene_->items[hit.object].id : isosurfaces_[hit.object - items].id;
+}
+
+bool World::same_surface(const SurfacePoint& point, const Hit& hit) const {
+  const auto is_level = [&](uint32_t object) { return object >= scene_->items.size(); };
+  if (is_level(point.object) != is_level(hit.object) || (is_level(hit.object) && point.primitive != hit.primitive)) return false;
+  if (point.object == hit.object) return true;
+  Hit first;
+  first.object = point.object;
+  const uint32_t a = id(first) - 1, b = id(hit) - 1;  // items of the scene
+  return a < shows_.size() && b < shows_.size() && shows_[a] == shows_[b] && !is_line(point.object) && !is_line(hit.object);
 }
 
 // What pictures make of the material there.

@@ -30,9 +30,10 @@ struct Vertex {
 class World {
  public:
   /// `lights` in traced coordinates of `geometry`; triangles of emissive items are added to them. One material an object of the geometry:
-  /// items, then isosurfaces.
+  /// items, then isosurfaces. `shows`: as of Scene.
   World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_ptr<const Material>> materials, std::vector<AnyLight> lights,
-        Environment environment, std::shared_ptr<const Media> media = nullptr, std::vector<Isosurfaces::Look> isosurfaces = {});
+        Environment environment, std::shared_ptr<const Media> media = nullptr, std::vector<Isosurfaces::Look> isosurfaces = {},
+        std::vector<uint32_t> shows = {});
 
   const Geometry& geometry() const { return geometry_; }
   const Lights& lights() const { return lights_; }
@@ -42,6 +43,8 @@ class World {
   /// Linear colour and opacity of what was met, and the id of its item (its number + 1).
   Vec4f color(const Ray& ray, const Hit& hit, const RayFootprint& footprint = {}) const;
   uint32_t id(const Hit& hit) const;
+  /// Whether both are of the surface of one body: shown by one entry, of isosurfaces at one level.
+  bool same_surface(const SurfacePoint& point, const Hit& hit) const;
   /// Null where there are none.
   Media::Borrowed borrow_media() const { return media_ ? media_->borrow() : Media::Borrowed(); }
   bool has_media() const { return media_ && media_->any(); }
@@ -56,6 +59,9 @@ class World {
   Vec3f passes(Ray ray) const;
 
  private:
+  bool is_line(uint32_t object) const {
+    return object < scene_->items.size() && scene_->items[object].kind != raster::PreparedItem::Kind::surface;
+  }
   void take_pictures(const raster::PreparedItem& item, const Ray& ray, const Hit& hit, const RayFootprint& footprint, Vertex& v) const;
 
   PreparedScenePtr scene_;
@@ -66,6 +72,7 @@ class World {
   std::optional<Lights> lamps_;  ///< where they are others
   std::shared_ptr<const Media> media_;
   std::vector<Isosurfaces::Look> isosurfaces_;
+  std::vector<uint32_t> shows_;
   bool translucent_ = false, pictures_ = false;
 };
 

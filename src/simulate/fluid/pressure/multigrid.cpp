@@ -130,14 +130,16 @@ Lattice<T> coarse_faces(const Walls<T>& fine, int axis, const std::array<size_t,
 template <class T>
 void close_narrow_cells(const std::array<size_t, 3>& n, Faces<T>& open) {
   auto& [x, y, z] = open;
-  std::vector<std::array<size_t, 3>> narrow;
-  for (size_t k = 0; k < n[2]; ++k)
-    for (size_t j = 0; j < n[1]; ++j)
-      for (size_t i = 0; i < n[0]; ++i) {
-        const T sum = (x(i, j, k) + x(i + 1, j, k)) + (y(i, j, k) + y(i, j + 1, k)) + (z(i, j, k) + z(i, j, k + 1));
-        if (sum > 0 && sum < T(narrowest)) narrow.push_back({i, j, k});
-      }
-  for (const auto& [i, j, k] : narrow) x(i, j, k) = x(i + 1, j, k) = y(i, j, k) = y(i, j + 1, k) = z(i, j, k) = z(i, j, k + 1) = 0;
+  for (bool closed = true; closed;) {  // until what is closed leaves no neighbour narrow
+    closed = false;
+    for (size_t k = 0; k < n[2]; ++k)
+      for (size_t j = 0; j < n[1]; ++j)
+        for (size_t i = 0; i < n[0]; ++i) {
+          const T sum = (x(i, j, k) + x(i + 1, j, k)) + (y(i, j, k) + y(i, j + 1, k)) + (z(i, j, k) + z(i, j, k + 1));
+          if (!(sum > 0 && sum < T(narrowest))) continue;
+          x(i, j, k) = x(i + 1, j, k) = y(i, j, k) = y(i, j + 1, k) = z(i, j, k) = z(i, j, k + 1) = 0, closed = true;
+        }
+  }
 }
 
 }  // namespace

@@ -103,6 +103,20 @@ TEST_CASE("isosurface: of two volumes the nearer one is met, whichever comes fir
   }
 }
 
+TEST_CASE("isosurface: levels are surfaces of their own, each one surface all over") {
+  const World world = isosurface_world(scene_of({levels_of(grid(cube(24, -1, 1), to_middle), {0.1, 0.3})}), matte(), {});
+  const Placement& p = world.geometry().placement();
+  const auto hit_from = [&](Vec3 from, Vec3 direction) {
+    Hit hit;
+    REQUIRE(world.geometry().nearest(ray_of(p, from, direction), hit));
+    return hit;
+  };
+  const Hit outer = hit_from({0.1, 0, 2}, {0, 0, -1}), there = hit_from({-2, 0, 0.1}, {1, 0, 0}), inner = hit_from({0, 0, 0.1}, {0, 0, 1});
+  const SurfacePoint at = world.geometry().at(ray_of(p, {0.1, 0, 2}, {0, 0, -1}), outer);
+  CHECK(world.same_surface(at, there));
+  CHECK(!world.same_surface(at, inner));
+}
+
 TEST_CASE("isosurface: white ones are invisible in even light, whatever they are made of") {
   for (const DatasetPtr& data : {grid(cube(17, -1, 1), to_middle), tets_of(to_middle)})
     for (const MaterialPreset preset : {MaterialPreset::matte, MaterialPreset::glass, MaterialPreset::plastic}) {
