@@ -77,8 +77,8 @@ sg::PipelineFile Scene::State::pipeline(int width, int height,
 void watch(sg::PictureOptions& options, const sg::PipelineFile& file, const Context& context) {
   if (!context.state().picture) return;
   options.on_draft = [&file, &context](const sg::Picture& picture, const sg::PictureDraft&) {
-    context.state().picture(
-        Image(std::make_shared<const Image::Held>(Image::Held{picture.image, file, picture.notes, picture.seen, told_legends(picture.legends)})));
+    context.state().picture(Image(
+        std::make_shared<const Image::Held>(Image::Held{picture.image, file, picture.notes, picture.seen, told_legends(picture.legends)})));
   };
 }
 

@@ -80,8 +80,8 @@ constexpr size_t band_pixels = size_t(1) << 21;
 std::string unreached(const TraceReport& report, const LightOptions& light) {
   if (report.reached) return "";
   if (report.stopped > 0 && light.seconds > 0)
-    return fmt::format("; noise={} was not reached everywhere in {:.3g} s, enough for {} paths a pixel there", light.noise,
-                       light.seconds, report.stopped);
+    return fmt::format("; noise={} was not reached everywhere in {:.3g} s, enough for {} paths a pixel there", light.noise, light.seconds,
+                       report.stopped);
   if (report.stopped > 0) return fmt::format("; stopped before noise={} was reached everywhere", light.noise);
   if (light.stop > 0 && light.stop < light.paths)
     return fmt::format("; noise={} was not reached everywhere with stop={}", light.noise, light.stop);

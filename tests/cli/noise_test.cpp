@@ -14,7 +14,7 @@ namespace {
 
 test::Ran render(const std::string& output, std::vector<std::string> more) {
   std::vector<std::string> args{"render", "--source", "gyroid size=12", "-f", "contour values=0", "--size", "64x48", "--integrator", "path",
-                                "-o", output};
+                                "-o",     output};
   args.insert(args.end(), more.begin(), more.end());
   return sightglass(args);
 }
@@ -74,8 +74,8 @@ TEST_CASE("layers: what lies behind the colours is written as data") {
 }
 
 TEST_CASE("noise: pictures of films have targets and are denoised, too") {
-  const test::Ran ran = sightglass({"render", "--source", "gyroid size=12", "-f", "contour values={t}", "--size", "48x32", "--integrator", "path",
-                                    "--noise", "0.1", "--denoise", "yes", "--times", "0:0.2:2", "-o", "film_{n}.png"});
+  const test::Ran ran = sightglass({"render", "--source", "gyroid size=12", "-f", "contour values={t}", "--size", "48x32", "--integrator",
+                                    "path", "--noise", "0.1", "--denoise", "yes", "--times", "0:0.2:2", "-o", "film_{n}.png"});
   CAPTURE(ran.err);
   CHECK(ran.status == 0);
   CHECK(contains(recipe_of("film_000.png"), "denoise: yes"));

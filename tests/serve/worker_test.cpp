@@ -57,9 +57,10 @@ TEST_CASE("workers: the same bytes as in this process") {
 }
 
 TEST_CASE("workers: pictures by paths come on the way, and end as in this process") {
-  PipelineFile file = parse_pipeline("sightglass: 1\nsteps:\n  ball: {sphere: {size: 24}}\n  skin: {contour: {values: 0}, from: ball}\nshow:\n"
-                                     "  - {surface: {color: tomato}, of: skin}\n",
-                                     "", picture_vocabulary());
+  PipelineFile file = parse_pipeline(
+      "sightglass: 1\nsteps:\n  ball: {sphere: {size: 24}}\n  skin: {contour: {values: 0}, from: ball}\nshow:\n"
+      "  - {surface: {color: tomato}, of: skin}\n",
+      "", picture_vocabulary());
   file.picture = {"integrator=path", "noise=0.0001", "paths=64"};
   Context context;
   WorkerRenderer worker(options());

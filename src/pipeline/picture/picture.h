@@ -55,8 +55,8 @@ struct StatedPicture;
 
 /// One of several pictures: of a volume that memory does not hold, or by paths.
 struct PictureDraft {
-  std::string made_of;      ///< "level 3 of 7 (204x204x204)": what is in memory; or "bricks"
-  double voxel_pixels = 1;  ///< largest number of pixels a voxel covers (if the allowed memory suffices)
+  std::string made_of;               ///< "level 3 of 7 (204x204x204)": what is in memory; or "bricks"
+  double voxel_pixels = 1;           ///< largest number of pixels a voxel covers (if the allowed memory suffices)
   std::optional<TraceReport> light;  ///< of pictures by paths that grow, instead of these
   bool compared = false;
   double most = 0, mean = 0;  ///< of full scale: change from the picture with voxels of about twice that size, an estimate of the error
@@ -97,9 +97,8 @@ struct Picture {
 };
 
 /// Evaluates the steps, shows what is requested (or else what the data suggests), renders and annotates.
-/// `file` is completed with what was chosen, so that recipe_of() gives the recipe; where time ended a picture by paths, `stop` stands in the
-/// place of `seconds`. All mistakes that can be seen beforehand are
-/// reported together, before anything runs.
+/// `file` is completed with what was chosen, so that recipe_of() gives the recipe; where time ended a picture by paths, `stop` stands in
+/// the place of `seconds`. All mistakes that can be seen beforehand are reported together, before anything runs.
 Picture make_picture(PipelineFile& file, const PictureOptions& options, Context& context);
 
 /// Puts the recipe, the version and the hashes of the inputs into the image's text. Paths of inputs are written relative to

@@ -105,7 +105,9 @@ void draw_drafts(const Scene& scene, const Camera& camera, const StatedPicture& 
   const Rect area = picture_beside_legends(annotation, stated);
   const Projection p = make_projection(camera, int(area.width), int(area.height));
   const double coarsest = options.on_draft ? pixels_in_memory(scene, p, draft.made_of) : 0;
-  const auto draw = [&](double coarser, Context& c) { return draw_picture(scene, camera, stated, annotation, {.coarser = coarser, .layers = options.layers}, c); };
+  const auto draw = [&](double coarser, Context& c) {
+    return draw_picture(scene, camera, stated, annotation, {.coarser = coarser, .layers = options.layers}, c);
+  };
   const auto take = [&](DrawnPicture drawn) { picture.image = std::move(drawn.image), picture.seen = std::move(drawn.seen); };
   if (!(coarsest > 1)) {  // all is in memory, or fine enough there
     take(draw(1, context));

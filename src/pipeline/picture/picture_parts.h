@@ -72,7 +72,7 @@ struct DrawnPicture {
 
 /// How a picture is drawn, beside what is stated.
 struct DrawHow {
-  double coarser = 1;  ///< as in RenderOptions
+  double coarser = 1;                                          ///< as in RenderOptions
   std::optional<std::chrono::steady_clock::time_point> until;  ///< by paths: then it stops
   std::function<bool(DrawnPicture)> on_finer;                  ///< by paths: gets pictures on the way; false: no more of them
   double every = 1;                                            ///< as in LightWatch

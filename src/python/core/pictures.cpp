@@ -108,11 +108,12 @@ void declare_scene(py::module_& m) {
            [](Scene& scene, const Data& data, const std::string& way, const py::dict& params) { scene.show(data, way, params_of(params)); })
       .def("camera", [](Scene& scene, const py::dict& params) { scene.camera(params_of(params)); })
       .def("picture", [](Scene& scene, const py::dict& params) { scene.picture(params_of(params)); })
-      .def("render",
-           [](const Scene& scene, int width, int height, const py::object& on_picture) {
-             return watched(on_picture, [&](const Context& context) { return scene.render(width, height, context); });
-           },
-           py::arg("width"), py::arg("height"), py::arg("on_picture") = py::none())
+      .def(
+          "render",
+          [](const Scene& scene, int width, int height, const py::object& on_picture) {
+            return watched(on_picture, [&](const Context& context) { return scene.render(width, height, context); });
+          },
+          py::arg("width"), py::arg("height"), py::arg("on_picture") = py::none())
       .def("film",
            [](const Scene& scene, const std::string& output, const py::dict& params, int width, int height) {
              const Params stated = params_of(params);
@@ -149,11 +150,12 @@ void declare_pipeline(py::module_& m) {
            })
       .def("result",
            [](const Pipeline& p, const std::string& step) { return call([&](const Context& context) { return p.result(step, context); }); })
-      .def("render",
-           [](const Pipeline& p, int width, int height, const py::object& on_picture) {
-             return watched(on_picture, [&](const Context& context) { return p.render(width, height, context); });
-           },
-           py::arg("width"), py::arg("height"), py::arg("on_picture") = py::none())
+      .def(
+          "render",
+          [](const Pipeline& p, int width, int height, const py::object& on_picture) {
+            return watched(on_picture, [&](const Context& context) { return p.render(width, height, context); });
+          },
+          py::arg("width"), py::arg("height"), py::arg("on_picture") = py::none())
       .def("explain", &Pipeline::explain)
       .def("text", &Pipeline::text)
       .def("write", &Pipeline::write)

@@ -11,8 +11,8 @@
 #include "render/trace/integrators/picture_camera.h"
 #include "render/trace/light_options.h"
 #include "render/trace/progress/light_watch.h"
-#include "render/trace/studio.h"
 #include "render/trace/progress/sweeps.h"
+#include "render/trace/studio.h"
 
 namespace sg::trace {
 
@@ -37,9 +37,9 @@ struct PixelSum {
   double variance(uint32_t n) const;
 };
 
-/// Fills a frame with linear premultiplied light and what the middle of each pixel sees, `variance` with those of the pixels' luminance, and
-/// the report, whose plane of errors has the frame's size. In one go, or where sweeps are wanted as many paths everywhere at a time, with the
-/// same bytes. The same bytes for any number of threads.
+/// Fills a frame with linear premultiplied light and what the middle of each pixel sees, `variance` with those of the pixels' luminance,
+/// and the report, whose plane of errors has the frame's size. In one go, or where sweeps are wanted as many paths everywhere at a time,
+/// with the same bytes. The same bytes for any number of threads.
 void draw_squares(const LitPicture& picture, const Integrator& integrator, Sweeps& sweeps, Frame& frame, Plane<float>& variance,
                   TraceReport& report, Context& context);
 

@@ -13,9 +13,9 @@
 #include "render/trace/integrators/bidirectional/whole_picture.h"
 #include "render/trace/integrators/integrator.h"
 #include "render/trace/integrators/picture_camera.h"
+#include "render/trace/progress/sweeps.h"
 #include "render/trace/squares.h"
 #include "render/trace/studio.h"
-#include "render/trace/progress/sweeps.h"
 
 namespace sg {
 

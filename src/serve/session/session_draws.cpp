@@ -108,7 +108,8 @@ void Session::send_finer(int id, const DrawnView& drawn, const WantedView& view,
   if (it == clients_.end() || revision != revision_) return;
   WantedView& now = it->second->views[number];
   if (now.n != view.n || now.on_its_way) return;
-  now.on_its_way = it->second->socket->send_binary(std::make_shared<const std::string>(frame_message(drawn, view, number, revision, false)));
+  now.on_its_way =
+      it->second->socket->send_binary(std::make_shared<const std::string>(frame_message(drawn, view, number, revision, false)));
   now.whole = revision, now.whole_area = drawn.area;
 }
 
@@ -126,7 +127,8 @@ void Session::draw(std::unique_lock<std::mutex>& lock, Client& client, WantedVie
   std::string problem;
   bool cancelled = false;
   try {
-    drawn = renderer_->draw(view.request, [&](const DrawnView& finer) { send_finer(id, finer, view, revision); }, context);
+    drawn = renderer_->draw(
+        view.request, [&](const DrawnView& finer) { send_finer(id, finer, view, revision); }, context);
   } catch (const Error& e) {
     cancelled = e.kind() == ErrorKind::cancelled, problem = e.what();
   } catch (const std::exception& e) {

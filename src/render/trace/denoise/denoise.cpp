@@ -16,9 +16,9 @@ namespace sg::trace {
 
 namespace {
 
-constexpr int reach = 7;   // of the neighbours, to each side
-constexpr int patch = 2;   // of the pixels around both that are compared, to each side
-constexpr int block = 32;  // pixels, along each side, that one thread does at a time
+constexpr int reach = 7;                                             // of the neighbours, to each side
+constexpr int patch = 2;                                             // of the pixels around both that are compared, to each side
+constexpr int block = 32;                                            // pixels, along each side, that one thread does at a time
 constexpr float color_bandwidth = 0.45f, feature_bandwidth = 0.75f;  // k, as Rousselle et al. 2013
 // Squares of differences that are none: of colours, which are data, less than of directions and distances.
 constexpr float least_color_variance = 1e-3f, least_shape_variance = 1e-2f;
@@ -101,7 +101,8 @@ struct Noisy {
   float slope_squared(const Plane<float>& f, size_t i) const {
     const int x = int(i % size_t(width)), y = int(i / size_t(width));
     const auto smoother = [&](bool before, bool after, ptrdiff_t step) {
-      const float a = before ? f[size_t(ptrdiff_t(i) - step)] - f[i] : HUGE_VALF, b = after ? f[size_t(ptrdiff_t(i) + step)] - f[i] : HUGE_VALF;
+      const float a = before ? f[size_t(ptrdiff_t(i) - step)] - f[i] : HUGE_VALF,
+                  b = after ? f[size_t(ptrdiff_t(i) + step)] - f[i] : HUGE_VALF;
       const float d = std::min(a * a, b * b);
       return std::isfinite(d) ? d : 0;
     };
@@ -142,7 +143,8 @@ class Block {
     if (xs.size() == 0 || ys.size() == 0) return;
     const ptrdiff_t to_q = ptrdiff_t(dy) * noisy_.width + dx;
     std::fill(distance_.begin(), distance_.end(), 0.f);
-    for (int y = ys.begin; y < ys.end; ++y) color_distances(&distance_[at(xs.begin, y)], size_t(y) * size_t(noisy_.width) + size_t(xs.begin), to_q, xs.size());
+    for (int y = ys.begin; y < ys.end; ++y)
+      color_distances(&distance_[at(xs.begin, y)], size_t(y) * size_t(noisy_.width) + size_t(xs.begin), to_q, xs.size());
     const Range x = x_.moving(dx, noisy_.width), y_in = y_.moving(dy, noisy_.height);
     for (int y = ys.begin; y < ys.end; ++y) {
       const float* row = &distance_[at(x.begin, y)];

@@ -7,8 +7,9 @@
 
 namespace sg::trace {
 
-/// Non-local means of which distances are in units of what noise explains (Buades, Coll, Morel 2005; Rousselle, Knaus, Zwicker 2012), guided
-/// by features (Rousselle, Manzi, Zwicker 2013). Of a pixel p and its neighbours q, with colours u, features f and variances v of both:
+/// Non-local means of which distances are in units of what noise explains (Buades, Coll, Morel 2005; Rousselle, Knaus, Zwicker 2012),
+/// guided by features (Rousselle, Manzi, Zwicker 2013). Of a pixel p and its neighbours q, with colours u, features f and variances v of
+/// both:
 ///
 ///   d(p, q) = ((u_p - u_q)^2 - v_p - min(v_p, v_q)) / (k^2 (v_p + v_q)),   mean over a patch and the colours;   the same of each feature
 ///   w(p, q) = min(exp(-d_u), exp(-d_f of the feature that differs most));   u_p becomes the mean of all u_q by w

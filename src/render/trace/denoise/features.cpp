@@ -16,7 +16,7 @@ namespace sg::trace {
 namespace {
 
 constexpr int most_rays = 8, most_rays_in_matter = 4;  // ways through matter cost more than they tell
-constexpr int most_layers = 16;  // of what is translucent
+constexpr int most_layers = 16;                        // of what is translucent
 
 using Seen = std::array<float, Features::channels>;
 
@@ -81,8 +81,7 @@ Features features_of(const World& world, const PictureCamera& camera, const Ligh
           for (int k = 0; k < rays; ++k) {
             sampler.start(uint32_t(x), uint32_t(y), uint32_t(k));
             const Vec2f in_pixel = sampler.next2(), on_lens = camera.has_lens() ? concentric_disc(sampler.next2()) : Vec2f();
-            const Seen seen =
-                seen_along(world, media.get(), camera.ray({float(x) + in_pixel.x, float(y) + in_pixel.y}, on_lens), sampler);
+            const Seen seen = seen_along(world, media.get(), camera.ray({float(x) + in_pixel.x, float(y) + in_pixel.y}, on_lens), sampler);
             for (size_t c = 0; c < seen.size(); ++c) sum[c] += double(seen[c]), square[c] += double(seen[c]) * double(seen[c]);
           }
           const size_t i = y * size_t(f.width) + size_t(x);

@@ -94,7 +94,8 @@ TEST_CASE("denoise: the same bytes for any number of threads, by all integrators
   NoisyScene s = glossy_room(50, 70);
   s.options.paths = 4, s.options.denoise = true;
   const int before = thread_count();
-  for (const IntegratorKind kind : {IntegratorKind::path, IntegratorKind::whitted, IntegratorKind::ambient_occlusion, IntegratorKind::bdpt}) {
+  for (const IntegratorKind kind :
+       {IntegratorKind::path, IntegratorKind::whitted, IntegratorKind::ambient_occlusion, IntegratorKind::bdpt}) {
     CAPTURE(kind);
     s.options.integrator = kind;
     std::vector<Frame> frames;
@@ -111,11 +112,14 @@ TEST_CASE("denoise: the same bytes for any number of threads, by all integrators
 TEST_CASE("features: what is seen first, as cover, colour, direction and distance") {
   LightScene l;
   add_floor(l, 0.5);
-  const NoisyScene s = finished("floor", l.scene, [] {
-    Camera c = look({0, 0, 2.1}, {0, 0, -0.9}, 20);
-    c.up = {0, 1, 0};
-    return c;
-  }(), 9, 9);
+  const NoisyScene s = finished(
+      "floor", l.scene,
+      [] {
+        Camera c = look({0, 0, 2.1}, {0, 0, -0.9}, 20);
+        c.up = {0, 1, 0};
+        return c;
+      }(),
+      9, 9);
   LightOptions options = s.options;
   options.paths = 4, options.features = true;
   TraceReport report;

@@ -3,8 +3,8 @@
 #pragma once
 #include "base/context.h"
 #include "image/image.h"
-#include "render/trace/integrators/world.h"
 #include "render/trace/integrators/picture_camera.h"
+#include "render/trace/integrators/world.h"
 #include "render/trace/light_options.h"
 #include "render/trace/progress/light_watch.h"
 #include "render/trace/progress/sweeps.h"
