@@ -33,7 +33,7 @@
 #include "pipeline/offline/page.h"
 #include "pipeline/picture/picture.h"
 #include "pipeline/picture/picture_cost.h"
-#include "pipeline/picture/picture_layers.h"
+#include "pipeline/picture/layers/picture_layers.h"
 #include "pipeline/picture/picture_sets.h"
 #include "render/render.h"
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int reach = 7;                                             // of the neighbours, to each side
 constexpr int patch = 2;                                             // of the pixels around both that are compared, to each side
-constexpr int block = 64;                                            // pixels, along each side, that one thread does at a time
+constexpr int block = 32;                                            // pixels, along each side, that one thread does at a time
 constexpr float color_bandwidth = 0.45f, feature_bandwidth = 0.75f;  // k, as Rousselle et al. 2013
 // Squares of differences that are none: of colours, which are data, less than of directions and distances.
 constexpr float least_color_variance = 1e-3f, least_shape_variance = 1e-2f;
@@ -30,6 +30,14 @@ inline float falling(float d) {
   x *= x, x *= x;
   return x * x;
 }
+
+struct Range {
+  int begin, end;
+  int size() const { return std::max(0, end - begin); }
+  Range grown(int by) const { return {begin - by, end + by}; }
+  /// Of places that stay within [0, size) when moved.
+  Range moving(int by, int size) const { return {std::max({begin, 0, -by}), std::min({end, size, size - by})}; }
+};
 
 struct Noisy {
   int width = 0, height = 0;
@@ -63,6 +71,13 @@ struct Noisy {
     });
   }
 
+  bool any_noise(Range xs, Range ys) const {
+    for (int y = ys.begin; y < ys.end; ++y)
+      for (int x = xs.begin; x < xs.end; ++x)
+        if (variance[0][size_t(y) * size_t(width) + size_t(x)] > 0) return true;
+    return false;
+  }
+
   // The own variance, or that of neighbours which look alike where it is small by chance.
   float around(const Plane<float>& v, size_t i) const {
     if (!(v[i] > 0) && !(features.mean[Features::cover][i] > 0)) return 0;  // nothing is there
@@ -93,14 +108,6 @@ struct Noisy {
     };
     return std::max(smoother(x > 0, x + 1 < width, 1), smoother(y > 0, y + 1 < height, width));
   }
-};
-
-struct Range {
-  int begin, end;
-  int size() const { return std::max(0, end - begin); }
-  Range grown(int by) const { return {begin - by, end + by}; }
-  /// Of places that stay within [0, size) when moved.
-  Range moving(int by, int size) const { return {std::max({begin, 0, -by}), std::min({end, size, size - by})}; }
 };
 
 class Block {
@@ -214,9 +221,12 @@ void denoise(const Features& features, const Plane<float>& variance, Frame& fram
       across * down, 1,
       [&](size_t i, size_t) {
         const int x = int(i % across) * block, y = int(i / across) * block;
-        Block part(noisy, {x, std::min(x + block, frame.width)}, {y, std::min(y + block, frame.height)});
-        part.take_neighbours();
-        part.put(frame);
+        const Range xs{x, std::min(x + block, frame.width)}, ys{y, std::min(y + block, frame.height)};
+        if (noisy.any_noise(xs, ys)) {
+          Block part(noisy, xs, ys);
+          part.take_neighbours();
+          part.put(frame);
+        }
         progress.step();
       },
       &context);

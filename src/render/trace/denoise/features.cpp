@@ -14,8 +14,8 @@ namespace sg::trace {
 
 namespace {
 
-constexpr int most_rays = 16, most_rays_in_matter = 4;  // ways through matter cost more than they tell
-constexpr int most_layers = 16;                         // of what is translucent
+constexpr int most_rays = 8, most_rays_in_matter = 4;  // ways through matter cost more than they tell
+constexpr int most_layers = 16;                        // of what is translucent
 
 using Seen = std::array<float, Features::channels>;
 

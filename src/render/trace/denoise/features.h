@@ -13,7 +13,7 @@
 
 namespace sg::trace {
 
-/// Means over the first rays of each pixel, those that its paths begin with (at most 16; 4 where there is matter), each by the share of the
+/// Means over the first rays of each pixel, those that its paths begin with (at most 8; 4 where there is matter), each by the share of the
 /// ray that is stopped, and the variances of these means.
 struct Features {
   enum Channel { albedo, normal = 3, depth = 6, cover = 7, channels = 8 };  ///< RGB; in the world, towards the viewer; traced; 0 to 1

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/picture/picture_layers.h"
+#include "pipeline/picture/layers/picture_layers.h"
 
 #include <cmath>
 #include <limits>
