@@ -71,11 +71,7 @@ void add_picture_words(const Options& o, PipelineFile& file) {
   file.picture.insert(file.picture.end(), o.light.begin(), o.light.end());
   for (const std::string& group : o.picture)
     for (const std::string& w : quoted_words(group)) file.picture.push_back(w);
-  for (const std::string& w : quoted_words(o.camera)) {
-    const bool named = w.find('=') == std::string::npos;
-    if (named && value_of_word<ProjectionKind>(w)) file.picture.push_back("camera.projection=" + w);
-    else file.picture.push_back(named ? "camera.view=" + w : "camera." + w);
-  }
+  for (const std::string& w : camera_words(quoted_words(o.camera))) file.picture.push_back("camera." + w);
 }
 
 class Chains {

@@ -117,7 +117,7 @@ void describe(Schema& s, SpotLightParams& p) {
 void describe(Schema& s, FileLightParams& p) {
   s("names", p.names, "Those of these names; default: all.");
   s("brightness", p.brightness,
-    "How bright a white surface at the middle of the data is that faces all of them; their ratios are those of the file.")
+    "How bright a white surface at the middle of the data is that faces all of them; their ratios stay as they are stated.")
       .range(0, 1e9)
       .positive();
   s("lux", p.lux,

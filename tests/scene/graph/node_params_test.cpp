@@ -32,9 +32,8 @@ TEST_CASE("node: scale, then rotation about the centre, then translation; a matr
 TEST_CASE("node: the same rotation as axis with angle, quaternion of any length, Euler angles and matrix") {
   const Affine a = affine({"axis=0,1,0", "angle=90"});
   for (const Vec3 p : {Vec3(1, 2, 3), Vec3(-1, 0, 0.5)})
-    for (const Affine& b : {affine({"quaternion=0,3,0,3"}), affine({"euler=0,90,0"}),
-                            affine({"euler=90,0,90", "order=zyz"}).linear == Mat3() ? Affine() : affine({"euler=0,90,0", "order=zyx"})})
-      CHECK(length(a(p) - b(p)) < 1e-15);
+    for (const Affine& b : {affine({"quaternion=0,3,0,3"}), affine({"euler=0,90,0", "order=zyz"}), affine({"euler=0,90,0", "order=zyx"})})
+      CHECK(length(a(p) - b(p)) < 4e-15);
 }
 
 TEST_CASE("node: what is stated twice, flattens or is not finite is refused, with the node's name") {

@@ -40,6 +40,10 @@ TEST_CASE("scene: what a node shows lies in the world, with its box, its axes an
   CHECK(moved.shown[0].legends[0].lo == plain.shown[0].legends[0].lo);
   CHECK(moved.shown[0].scene.items.size() == 2 * plain.shown[0].scene.items.size());
   for (const uint32_t show : moved.shown[0].scene.shows) CHECK((show == 1 || show == 2));
+  const auto& copy = std::get<SurfaceItem>(moved.shown[0].scene.items.at(0));
+  REQUIRE(copy.copy_of);  // so that its tree of rays serves all
+  CHECK(copy.copy_of->place(Vec3(1, 0, 0)) == Vec3(12, 0, 0));
+  CHECK(copy.copy_of->original->point_count() == copy.data->point_count());
   const Box3 items = scene_bounds(moved.shown[0].scene);
   CHECK(items.hi.y == doctest::Approx(there.hi.y).epsilon(1e-5));
 }
