@@ -16,7 +16,8 @@ namespace {
 
 PipelineFile file_with(const std::string& show, const std::string& origin = "") {
   return parse_pipeline(
-      "sightglass: 1\nsteps: {a: {gyroid: {size: 12}}, b: {slice: {axis: z}, from: a}, c: {texture_coordinates: {axis: z}, from: b}}\nshow: "
+      "sightglass: 1\nsteps: {a: {gyroid: {size: 12}}, b: {slice: {axis: z}, from: a}, c: {texture_coordinates: {axis: z}, from: "
+      "b}}\nshow: "
       "[{surface: " +
           show + "}]\npicture: {size: 48x48, legend: false, axes: false, triad: false, background: white}",
       origin, picture_vocabulary());
