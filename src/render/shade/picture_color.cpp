@@ -42,7 +42,7 @@ float line_cover(const IsolineSet& lines, const TriangleSet& triangles, size_t t
   if (above != lines.levels.end()) off = double(*above) - v;
   if (above != lines.levels.begin()) off = std::min(off, v - double(above[-1]));
   if (above != lines.levels.end() && above != lines.levels.begin()) room = double(*above) - double(above[-1]);
-  constexpr double closest = 3, full = 8;  // pixels from line to line
+  constexpr double closest = 2, full = 5;  // pixels from line to line
   const double fade = std::clamp((room / slope - closest) / (full - closest), 0.0, 1.0);
   return float(std::clamp(double(lines.width) / 2 + 0.5 - off / slope, 0.0, std::min(1.0, double(lines.width))) * fade);
 }

@@ -121,8 +121,11 @@ DatasetPtr polygons_of(const DatasetPtr& data, const Field& numbers, int64_t num
   return data->memo().keep<Kept>(key, {make_dataset(std::move(parts))}, bytes)->data;
 }
 
-/// The numbers of polygons and strips, in rising order.
-std::vector<int64_t> numbers_of(const SurfaceMesh& mesh, const Field& numbers) {
+/// The numbers of polygons and strips, in rising order. Kept with the data.
+std::vector<int64_t> numbers_of(const DatasetPtr& data, const Field& numbers) {
+  const std::string key = "numbers of materials";
+  if (const auto kept = data->memo().find<std::vector<int64_t>>(key)) return *kept;
+  const SurfaceMesh& mesh = *data->as<SurfaceMesh>();
   std::map<int64_t, bool> seen;
   const size_t first = mesh.vertices.size() + mesh.lines.size(), last = first + mesh.polygons.size() + mesh.strips.size();
   int64_t before = 0;
@@ -134,17 +137,16 @@ std::vector<int64_t> numbers_of(const SurfaceMesh& mesh, const Field& numbers) {
   }
   std::vector<int64_t> all;
   for (const auto& entry : seen) all.push_back(entry.first);
-  return all;
+  return *data->memo().keep<std::vector<int64_t>>(key, std::move(all), seen.size() * sizeof(int64_t));
 }
 
 }  // namespace
 
 std::vector<SurfaceItem> items_of_materials(const SurfaceItem& like, Context& context) {
   const Field* numbers = material_numbers(*like.data);
-  const SurfaceMesh* mesh = like.data->as<SurfaceMesh>();
-  if (!numbers || !mesh) return {like};
+  if (!numbers || !like.data->as<SurfaceMesh>()) return {like};
   const auto& looks = numbers->materials->looks;
-  const std::vector<int64_t> all = numbers_of(*mesh, *numbers);
+  const std::vector<int64_t> all = numbers_of(like.data, *numbers);
   std::vector<SurfaceItem> items;
   for (const int64_t number : all) {
     SurfaceItem item = like;

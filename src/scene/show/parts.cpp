@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/text/alike_notes.h"
 #include "scene/choose/shared_scale.h"
+#include "scene/show/glyphs.h"
 #include "scene/show/volume.h"
 #include "scene/show/volume_parts.h"
 
@@ -28,7 +29,7 @@ std::string field_of_parts(const std::vector<DatasetPtr>& parts, const ShowKind&
 void share_colors(const std::vector<DatasetPtr>& parts, const ShowKind& kind, const std::vector<DatasetPtr>& beside,
                   std::vector<ParamSet>& params) {
   ColoringParams shared = *kind.coloring(params[0]);
-  const bool by_themselves = kind.automatic && shared.field.empty();  // they choose their field: here the range alone
+  const bool by_themselves = kind.is<GlyphsShow>() && shared.field.empty();  // they choose their field: here the range alone
   const std::string name = field_of_parts(parts, kind, params[0]);
   if (name.empty()) return;
   std::vector<FieldOf> fields;

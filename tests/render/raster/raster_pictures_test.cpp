@@ -261,3 +261,35 @@ TEST_CASE("pictures: lines of equal value are as wide everywhere, by the rasteri
   std::get<SurfaceItem>(s.items[0]).pictures = many;
   CHECK(dark(draw(s, front_parallel(2), 64, 64).frame, 20, 0, 64) == Approx(0));
 }
+
+TEST_CASE("pictures: a lamp by a picture lights alike by chance, by asking for it, and from its own end") {
+  // Half of a lamp over a floor shines; what the floor gets is the closed irradiance of that half.
+  std::vector<Vec4f> texels{{1, 1, 1, 1}, {0, 0, 0, 1}};
+  auto all = std::make_shared<SurfacePictures>();
+  all->emission = picture({2, 1, texels});
+  all->emission->lookup.filter = TextureFilter::nearest;
+  SurfaceItem lamp = item(quad(1, 1, coordinates({0, 0, 1, 0, 1, 1, 0, 1})), {0, 0, 0}), floor = item(quad(0.01f, 0), {1, 1, 1});
+  lamp.pictures = all;
+  SurfaceMaterial shines, white;
+  shines.base_color = {0, 0, 0}, shines.specular_weight = 0, shines.emission = {1, 1, 1};
+  white.specular_weight = 0;
+  lamp.made_of = shines, floor.made_of = white;
+  Scene s;
+  s.items.emplace_back(floor), s.items.emplace_back(lamp);
+  s.lighting.environment = parse_environment("none");
+  s.background = {0, 0, 0};
+  Camera c;  // from below the lamp
+  c.position = {0.5, 0, 0.5}, c.target = {0, 0, 0}, c.up = {0, 1, 0}, c.view_angle = 0.5, c.near_plane = 0.01, c.far_plane = 10;
+  // Of the rectangle 0 > x > -1, -1 < y < 1 at the distance 1: a form factor over a corner is (X atan(Y/X') / X' + ...) / 2 pi.
+  const double r = 1 / std::sqrt(2.0), corner = (r * std::atan(r) + r * std::atan(r)) / (2 * pi), expected = 2 * corner;
+  for (const auto kind : {trace::IntegratorKind::path, trace::IntegratorKind::bdpt}) {
+    Context context;
+    LightOptions options;
+    options.integrator = kind, options.noise = 1e-4, options.paths = 2048;
+    TraceReport report;
+    const Frame f = trace_scene(s, prepare_scene(s, context), make_projection(c, 8, 8), options, report, context);
+    double sum = 0;
+    for (int i = 0; i < 64; ++i) sum += double(f.rgba[4 * size_t(i)]) / 64;
+    CHECK(sum == Approx(expected).epsilon(0.02));
+  }
+}

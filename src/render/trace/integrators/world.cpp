@@ -5,6 +5,7 @@
 
 #include "render/prepare/picture_set.h"
 #include "render/trace/integrators/surface_color.h"
+#include "render/trace/light/luminance.h"
 
 namespace sg::trace {
 
@@ -15,15 +16,19 @@ std::vector<AnyLight> with_emitters(const PreparedScene& scene, const std::vecto
                                     const Placement& placement, std::vector<AnyLight> lights) {
   for (size_t i = 0; i < scene.items.size(); ++i) {
     const raster::PreparedItem& item = scene.items[i];
-    if (item.pictures && item.pictures->emission) continue;  // no even light: it is met by chance alone
     if (!materials[i]->emits() || item.kind != raster::PreparedItem::Kind::surface || item.glyphs) continue;
+    const raster::PlacedPicture* picture = item.pictures && item.pictures->emission ? &*item.pictures->emission : nullptr;
+    const Vec4f mean = picture ? picture->texture->levels().back().texels[0] : Vec4f{1, 1, 1, 1};
+    const float share = luminance(materials[i]->emission() * Vec3f{mean.x, mean.y, mean.z}) / luminance(materials[i]->emission());
+    if (!(share > 0)) continue;
     const auto corner = [&](uint32_t point) {
       const float* x = item.triangles.xyz() + 3 * size_t(point);
       return placement.traced(Vec3{x[0], x[1], x[2]} + item.triangles.origin);
     };
     for (uint32_t t = 0; t < item.triangles.count; ++t) {
       const uint32_t* p = item.triangles.indices() + 3 * size_t(t);
-      TriangleLight l{corner(p[0]), corner(p[1]), corner(p[2]), materials[i]->emission(), uint32_t(i), t};
+      TriangleLight l{corner(p[0]), corner(p[1]),       corner(p[2]), materials[i]->emission(), uint32_t(i), t,
+                      picture,      {p[0], p[1], p[2]}, share};
       const float area = length(cross(l.b - l.a, l.c - l.a));
       if (area > 0 && std::isfinite(area)) lights.emplace_back(l);
     }
@@ -103,7 +108,7 @@ void World::take_pictures(const raster::PreparedItem& item, const Ray& ray, cons
   }
   v.emission = v.material->emission();
   if (item.pictures->emission) {
-    const Vec4f t = surface_picture(*item.pictures->emission, item, ray, hit, footprint, scale);
+    const Vec4f t = surface_picture(*item.pictures->emission, item, ray, hit, {}, scale);  // as the lights know it
     v.emission = v.emission * Vec3f{t.x, t.y, t.z};
   }
 }

@@ -142,7 +142,7 @@ std::optional<EmittedRay> Emission::sample(float choice, Vec2f u, Vec2f v) const
                               },
                               [&](const TriangleLight& l) -> std::optional<EmittedRay> {
                                 const Place p = place_on(l, u);
-                                EmittedRay e = from_surface(p, l.radiance, 0.5f, v);
+                                EmittedRay e = from_surface(p, l.radiance_at(uniform_triangle(u)), 0.5f, v);
                                 e.leaves = off_surface(l, p, e.direction);
                                 return e;
                               },

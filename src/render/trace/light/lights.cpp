@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/overloaded.h"
+#include "render/prepare/picture_set.h"
 #include "render/trace/light/luminance.h"
 #include "render/trace/sampling/local_frame.h"
 #include "render/trace/sampling/mis.h"
@@ -19,14 +20,15 @@ constexpr float infinite = std::numeric_limits<float>::infinity();
 
 float power(const AnyLight& light, float reach) {
   const float disc = pi * reach * reach;
-  return std::visit(Overloaded{[&](const PointLight& l) { return 4 * pi * luminance(l.intensity); },
-                               [&](const SpotLight& l) { return 2 * pi * (l.inner + (l.outer - l.inner) / 3) * luminance(l.intensity); },
-                               [&](const DistantLight& l) { return disc * luminance(l.irradiance); },
-                               [&](const SphereLight& l) { return 4 * pi * l.radius * l.radius * pi * luminance(l.radiance); },
-                               [&](const DiscLight& l) { return pi * l.radius * l.radius * pi * luminance(l.radiance); },
-                               [&](const RectangleLight& l) { return length(cross(l.u, l.v)) * pi * luminance(l.radiance); },
-                               [&](const TriangleLight& l) { return length(cross(l.b - l.a, l.c - l.a)) * pi * luminance(l.radiance); }},
-                    light);
+  return std::visit(
+      Overloaded{[&](const PointLight& l) { return 4 * pi * luminance(l.intensity); },
+                 [&](const SpotLight& l) { return 2 * pi * (l.inner + (l.outer - l.inner) / 3) * luminance(l.intensity); },
+                 [&](const DistantLight& l) { return disc * luminance(l.irradiance); },
+                 [&](const SphereLight& l) { return 4 * pi * l.radius * l.radius * pi * luminance(l.radiance); },
+                 [&](const DiscLight& l) { return pi * l.radius * l.radius * pi * luminance(l.radiance); },
+                 [&](const RectangleLight& l) { return length(cross(l.u, l.v)) * pi * luminance(l.radiance); },
+                 [&](const TriangleLight& l) { return length(cross(l.b - l.a, l.c - l.a)) * pi * luminance(l.radiance) * l.share; }},
+      light);
 }
 
 std::optional<LightSample> sharp(Vec3f direction, float distance, Vec3f irradiance) {
@@ -115,7 +117,7 @@ std::optional<LightSample> sample_one(const RectangleLight& l, Vec3f from, Vec2f
 std::optional<LightSample> sample_one(const TriangleLight& l, Vec3f from, Vec2f u) {
   const Vec3f w = uniform_triangle(u), n = cross(l.b - l.a, l.c - l.a);
   const float twice = length(n);
-  return flat(from, l.a * w.x + l.b * w.y + l.c * w.z, n / twice, twice / 2, l.radiance, true);
+  return flat(from, l.a * w.x + l.b * w.y + l.c * w.z, n / twice, twice / 2, l.radiance_at(w), true);
 }
 
 /// What a ray sees of a light, and the density with which sample_one() draws its direction.
@@ -178,6 +180,17 @@ float pdf_one(const TriangleLight& l, Vec3f, Vec3f direction, float distance) {
 uint64_t key_of(uint32_t object, uint32_t primitive) { return uint64_t(object) << 32 | primitive; }
 
 }  // namespace
+
+Vec3f TriangleLight::radiance_at(Vec3f w) const {
+  if (!picture) return radiance;
+  TexturePlace place;
+  for (int k = 0; k < 3; ++k) {
+    const float* uv = picture->uv() + 2 * size_t(points[size_t(k)]);
+    place.at = place.at + Vec2{double(uv[0]), double(uv[1])} * double(w[k]);
+  }
+  const Vec4f texel = picture->lookup(*picture->texture, place);
+  return radiance * Vec3f{texel.x, texel.y, texel.z};
+}
 
 Lights::Lights(std::vector<AnyLight> lights, Environment environment, float reach, bool ask_even)
     : lights_(std::move(lights)), environment_(std::move(environment)) {

@@ -2,6 +2,8 @@
 // Lights: all that shines in a scene, of which a point asks for one at random, or what it sees of them. Traced coordinates; radiance and
 // irradiance in linear RGB, of which 1 is a white surface in full light.
 #pragma once
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -9,6 +11,10 @@
 #include "render/trace/geometry/ray.h"
 #include "render/trace/light/environment.h"
 #include "render/trace/sampling/distribution.h"
+
+namespace sg::raster {
+struct PlacedPicture;
+}
 
 namespace sg::trace {
 
@@ -52,7 +58,13 @@ struct RectangleLight {
 struct TriangleLight {
   Vec3f a, b, c;
   Vec3f radiance;
-  uint32_t object = 0, primitive = 0;  ///< as in Hit
+  uint32_t object = 0, primitive = 0;              ///< as in Hit
+  const raster::PlacedPicture* picture = nullptr;  ///< multiplied with the radiance; null: it is the same all over
+  std::array<uint32_t, 3> points{};                ///< of the corners in the picture
+  float share = 1;                                 ///< of the radiance that the picture leaves, on average
+
+  /// At the place of these weights of the corners.
+  Vec3f radiance_at(Vec3f weights) const;
 };
 using AnyLight = std::variant<PointLight, SpotLight, DistantLight, SphereLight, DiscLight, RectangleLight, TriangleLight>;
 
