@@ -31,9 +31,9 @@
 #include "pipeline/graph/slabs.h"
 #include "pipeline/graph/step_report.h"
 #include "pipeline/offline/page.h"
+#include "pipeline/picture/layers/picture_layers.h"
 #include "pipeline/picture/picture.h"
 #include "pipeline/picture/picture_cost.h"
-#include "pipeline/picture/layers/picture_layers.h"
 #include "pipeline/picture/picture_sets.h"
 #include "render/render.h"
 

@@ -61,7 +61,7 @@ World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Proje
   for (const Isosurfaces::Look& look : isosurfaces.looks) add(look.made_of);
   Studio studio = studio_of(scene, projection, geometry.placement());
   backdrop = studio.backdrop;
-  return {prepared, std::move(geometry),         std::move(materials), std::move(studio.lights), std::move(studio.environment),
+  return {prepared, std::move(geometry),          std::move(materials), std::move(studio.lights), std::move(studio.environment),
           media,    std::move(isosurfaces.looks), scene.shows};
 }
 
