@@ -30,15 +30,36 @@ Image decode_jpeg(std::span<const std::byte> file, const std::string& name) {
   return out;
 }
 
+bool starts_with(std::span<const std::byte> bytes, std::string_view magic) {
+  return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+}
+
 }  // namespace
 
+double texture_memory(std::span<const std::byte> bytes) {
+  double pixels = 0;
+  if (starts_with(bytes, "\x89PNG") && bytes.size() >= 24) {
+    const auto number = [&](size_t at) {  // big-endian
+      double v = 0;
+      for (size_t i = at; i < at + 4; ++i) v = v * 256 + double(bytes[i]);
+      return v;
+    };
+    pixels = number(16) * number(20);
+  } else if (starts_with(bytes, "\xff\xd8\xff")) {
+    const std::unique_ptr<void, int (*)(tjhandle)> tj(tjInitDecompress(), tjDestroy);
+    int width = 0, height = 0, sampling = 0, space = 0;
+    if (tj && tjDecompressHeader3(tj.get(), reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), &width, &height, &sampling,
+                                  &space) == 0)
+      pixels = double(width) * double(height);
+  }
+  constexpr double of_texel = 16 * 4 / 3.0 + 4;
+  return pixels * of_texel;
+}
+
 Texture decode_texture(std::span<const std::byte> bytes, const std::string& name, TexelEncoding encoding, bool alpha) {
-  const auto starts = [&](std::string_view magic) {
-    return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
-  };
-  if (starts("\x89PNG")) return Texture::of(decode_png(bytes, name), encoding, alpha);
-  if (starts("\xff\xd8\xff")) return Texture::of(decode_jpeg(bytes, name), encoding, alpha);
-  if (starts("#?")) return Texture::of(decode_hdr(bytes, name));
+  if (starts_with(bytes, "\x89PNG")) return Texture::of(decode_png(bytes, name), encoding, alpha);
+  if (starts_with(bytes, "\xff\xd8\xff")) return Texture::of(decode_jpeg(bytes, name), encoding, alpha);
+  if (starts_with(bytes, "#?")) return Texture::of(decode_hdr(bytes, name));
   fail_data("is no picture that can be drawn on a surface", name, "give a PNG, a JPEG or a Radiance .hdr");
 }
 

@@ -13,4 +13,7 @@ namespace sg {
 /// `name` for other files, damaged ones, and those that are too large.
 Texture decode_texture(std::span<const std::byte> bytes, const std::string& name, TexelEncoding encoding, bool alpha);
 
+/// Memory that the texture of a PNG or JPEG takes, with its mip maps and while it is decoded, by its header; 0 for others.
+double texture_memory(std::span<const std::byte> bytes);
+
 }  // namespace sg

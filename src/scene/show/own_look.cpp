@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "data/field_ops.h"
+#include "data/memory/memory_budget.h"
 #include "image/image.h"
 #include "image/texture/texture_file.h"
 #include "scene/choose/own_materials.h"
@@ -20,6 +21,7 @@ namespace {
 std::shared_ptr<const Texture> texture_of(const PictureFile& file, TexelEncoding encoding, bool alpha) {
   const std::string key = fmt::format("texture/{}/{}", int(encoding), alpha);
   if (auto kept = file.memo->find<Texture>(key)) return kept;
+  need_memory(texture_memory(file.bytes), "a picture on a surface", file.name, "make it smaller");
   Texture t = decode_texture(file.bytes, file.name, encoding, alpha);
   const size_t bytes = t.bytes();
   return file.memo->keep<Texture>(key, std::move(t), bytes);

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/file/file.h"
 #include "data/memory/memo.h"
+#include "data/memory/memory_budget.h"
 #include "image/texture/texture_file.h"
 
 namespace sg {
@@ -70,6 +71,7 @@ std::shared_ptr<const Texture> texture_in_file(const Dataset& d, const PictureSh
   const MappedFile file(p.picture);
   const std::string key = fmt::format("pictures/{}/{}/{}/{}", p.picture, time_of_change(p.picture), file.size(), int(p.picture_encoding));
   if (auto kept = d.memo().find<Texture>(key)) return kept;
+  need_memory(texture_memory({file.data(), file.size()}), "a picture on a surface", p.picture, "make it smaller");
   Texture t = decode_texture({file.data(), file.size()}, p.picture, p.picture_encoding, true);
   const size_t bytes = t.bytes();
   return d.memo().keep<Texture>(key, std::move(t), bytes);

@@ -100,6 +100,10 @@ TEST_CASE("texture: files are told apart by their content, and others are refuse
   CHECK(a.width() == 3);
   CHECK(a.levels()[0].at(0, 0).x == Approx(120 / 255.0));
   CHECK(b.levels()[0].at(0, 0).x == Approx(120 / 255.0).epsilon(0.03));
+  for (const auto bytes : {std::as_bytes(std::span(png)), std::as_bytes(std::span(jpeg))}) {
+    CHECK(texture_memory(bytes) == Approx(6 * (16 * 4 / 3.0 + 4)));
+    CHECK(texture_memory(bytes.first(12)) == 0);
+  }
   const std::string text = "P6 not for us";
   const auto refused = [&](std::span<const std::byte> bytes) {
     return test::error_of([&] { decode_texture(bytes, "wood.ppm", TexelEncoding::srgb, true); });
