@@ -191,6 +191,8 @@ void join_fields(const std::vector<DatasetPtr>& parts, Association on, const std
     }
     Field f = *first;
     f.array = joined(have, counts);
+    for (const DatasetPtr& d : parts)  // numbers of one list of materials are not those of another
+      if (const Field* g = d->fields().find(name, on); g && g->materials != f.materials) f.materials = nullptr;
     if (on == Association::cell && !order.empty()) f.array = gather(f.array, order);
     out.add(std::move(f));
   }

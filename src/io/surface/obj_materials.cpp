@@ -55,7 +55,7 @@ class Library {
  private:
   void begin(const std::string& name) {
     now_ = &materials_[name];
-    *now_ = {};
+    *now_ = {}, states_opacity_ = false;
     now_->look.metallic = 0, now_->look.roughness = 0.5f;
   }
 
@@ -68,8 +68,8 @@ class Library {
     } else if (w[0] == "map_Kd") {
       map(w, line, l.base_picture);
     } else if (const auto v = number_after(w, w[1] == "-halo" ? 2 : 1, 0, 1e6)) {
-      if (w[0] == "d") opacity(std::min(*v, 1.f));
-      else if (w[0] == "Tr") opacity(1 - std::min(*v, 1.f));
+      if (w[0] == "d") opacity(std::min(*v, 1.f)), states_opacity_ = true;
+      else if (w[0] == "Tr" && !states_opacity_) opacity(1 - std::min(*v, 1.f));  // some write both, and mean d
       else if (w[0] == "Ns") l.roughness = std::pow(2 / (*v + 2), 0.25f);
       else if (w[0] == "Ni") l.ior = std::clamp(*v, 1.f, 4.f);
       else if (w[0] == "Pr") l.roughness = std::min(*v, 1.f), l.states_matter = true;
@@ -120,6 +120,7 @@ class Library {
     }
   }
 
+  bool states_opacity_ = false;
   const std::string& path_;
   std::map<std::string, ObjMaterial>& materials_;
   Context& context_;

@@ -53,7 +53,9 @@ bool write_time_in_scene(PipelineFile& file, double time) {
   bool written = false;
   for (PipelineFile::Node& n : file.scene) {
     written = write_time(n.words, time) || written;
-    for (auto& words : n.instances) written = write_time(words, time) || written;
+    for (auto* lists : {&n.instances, &n.keys})
+      for (auto& words : *lists) written = write_time(words, time) || written;
+    written = write_time(n.at_words, time) || written;
     if (n.keys.empty() || word_value(n.words, "time")) continue;
     n.words.push_back("time=" + exact_number(time)), written = true;
   }

@@ -43,7 +43,7 @@ Image watched(const py::object& on_picture, F&& f) {
   if (on_picture.is_none()) return call(f);
   std::optional<py::error_already_set> raised;
   try {
-    return call([&](Context& context) {
+    Image image = call([&](Context& context) {
       context.on_picture([&](const Image& image) {
         const py::gil_scoped_acquire locked;
         try {
@@ -54,6 +54,8 @@ Image watched(const py::object& on_picture, F&& f) {
       });
       return f(context);
     });
+    if (raised) throw *raised;  // the work was done before it could be cancelled
+    return image;
   } catch (const Error&) {
     if (raised) throw *raised;
     throw;

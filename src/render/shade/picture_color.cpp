@@ -67,12 +67,15 @@ TexturePlace place_in(const PlacedPicture& picture, const TriangleSet& triangles
 namespace {
 
 Vec4f under_picture(const PictureSet& pictures, const TriangleSet& triangles, size_t triangle, const PictureRay& ray, Vec4f rgba) {
+  using Alpha = SurfacePictures::Alpha;
   for (int k = 0; k < 3; ++k) rgba[k] *= pictures.tint[k];
-  if (!pictures.color) return rgba;
+  if (!pictures.color) {
+    if (pictures.alpha == Alpha::cutout) rgba.w = rgba.w < pictures.cutoff ? 0.f : 1.f;
+    return rgba;
+  }
   const TexturePlace place = place_in(*pictures.color, triangles, triangle, ray);
   if (!std::isfinite(place.at.x + place.at.y)) return rgba;  // corners without coordinates
   const Vec4f seen = pictures.color->lookup(*pictures.color->texture, place);
-  using Alpha = SurfacePictures::Alpha;
   if (seen.w > 0)
     for (int k = 0; k < 3; ++k) rgba[k] *= seen[k] / seen.w;
   switch (pictures.alpha) {

@@ -81,13 +81,23 @@ void put_behind(Frame& frame, const PictureCamera& camera, const Backdrop& backd
 Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Projection& projection, const LightOptions& options,
                   TraceReport& report, Context& context, const LightWatch& watch) {
   check(options);
-  Sweeps sweeps(options, watch);
   Backdrop backdrop;
+  const PictureCamera* eye = nullptr;
+  LightWatch whole_watch = watch;  // of pictures that get what is around the scene at the end
+  if (watch.on_frame && lights_whole_picture(options.integrator))
+    whole_watch.on_frame = [&](const Frame& frame, const TraceReport& so_far) {
+      if (!backdrop.seen) return watch.on_frame(frame, so_far);
+      Frame all = frame;
+      put_behind(all, *eye, backdrop);
+      return watch.on_frame(all, so_far);
+    };
+  Sweeps sweeps(options, whole_watch);
   const World world = world_of(scene, prepared, projection, backdrop, context);
   if (!world.lights().any() && options.integrator != IntegratorKind::ambient_occlusion)
     context.warn("nothing shines: no light, no environment, no material with emission; the picture is dark");
   const auto integrator = make_integrator(options);
   const PictureCamera camera(projection, world.geometry().placement());
+  eye = &camera;
   Frame frame(projection.width, projection.height);
   report = {};
   report.planes.error.assign(frame.pixels(), 0);
@@ -103,6 +113,10 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
     if (projection.lens > 0)
       fail_usage(fmt::format("integrator={} sees through a pinhole", word_of(options.integrator)), "aperture",
                  "leave out aperture=, or use integrator=path");
+    if (std::any_of(prepared->items.begin(), prepared->items.end(), [](const auto& i) { return i.pictures && i.pictures->isolines; }))
+      context.info(
+          "lines of equal value are left out: their width is one of pixels, which paths from the lights do not know; "
+          "integrator=path draws them");
     draw_whole_picture(world, camera, options, sweeps, frame, variance, report, context);
   } else {
     LitPicture picture{world, camera, backdrop, {}, options};

@@ -43,13 +43,16 @@ std::vector<Affine> places_at(const DatasetPtr& points, const PointInstancesPara
 std::vector<std::vector<Affine>> world_places(std::span<const SceneNode> nodes) {
   constexpr size_t most = 1000000;
   std::vector<std::vector<Affine>> all;
+  size_t together = 0;
   for (const SceneNode& n : nodes) {
     std::vector<Affine> world;
     const std::vector<Affine> root{{}};
     const std::vector<Affine>& parents = n.parent < 0 ? root : all.at(size_t(n.parent));
-    if (n.visible && !n.instances.empty() && parents.size() > most / n.instances.size())
-      fail_usage(fmt::format("it would stand at {} places", double(parents.size()) * double(n.instances.size())),
-                 fmt::format("node '{}'", n.name), "a million at most; glyphs show more");
+    const bool places = n.visible && !n.instances.empty();
+    if (places && parents.size() > (most - together) / n.instances.size())
+      fail_usage(fmt::format("{:.0f} more places", double(parents.size()) * double(n.instances.size())), fmt::format("node '{}'", n.name),
+                 "all nodes together stand at a million at most; glyphs show more");
+    if (places) together += parents.size() * n.instances.size();
     for (const Affine& parent : n.visible ? parents : std::vector<Affine>())
       for (const Affine& instance : n.instances) {
         world.push_back(parent * (n.place * instance));

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 #include "color/parse_color.h"
@@ -40,6 +41,8 @@ std::optional<SurfaceIsolines> isolines_of(const Dataset& d, const IsolineShow& 
   }
   if (range.empty()) range = d.range(d.fields().require(lines.field, Association::point), lines.component);
   lines.values = p.isoline_values.empty() ? even_values(range, p.isolines) : p.isoline_values;
+  for (const double v : lines.values)
+    if (!std::isfinite(v)) fail_usage(fmt::format("{} is no value that a line could have", v), "isoline_values", "give finite numbers");
   std::sort(lines.values.begin(), lines.values.end());
   lines.width = p.isoline_width, lines.color = parse_color(p.isoline_color, "isoline_color");
   return lines;

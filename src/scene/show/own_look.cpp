@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "base/error.h"
@@ -64,7 +65,7 @@ std::shared_ptr<const SurfacePictures> pictures_of(const MaterialLook& l, const 
   auto p = std::make_shared<SurfacePictures>();
   if (tinted) p->tint = l.base_color;
   p->alpha = l.alpha == MaterialLook::Alpha::opaque ? Alpha::none : l.alpha == MaterialLook::Alpha::mask ? Alpha::cutout : Alpha::coverage;
-  p->cutoff = l.alpha_cutoff;
+  p->cutoff = l.opacity > 0 ? l.alpha_cutoff / l.opacity : 2;  // the picture's alpha counts times the material's
   p->color = picture_on(d, l.base_picture, TexelEncoding::srgb, p->alpha != Alpha::none, context);
   p->metallic_roughness = picture_on(d, l.metallic_roughness, TexelEncoding::linear, false, context);
   p->emission = picture_on(d, l.emission_picture, TexelEncoding::srgb, false, context);
@@ -83,7 +84,14 @@ SurfaceMaterial matter_of(const MaterialLook& l) {
   m.thin_walled = l.transmission > 0 && l.thin;
   if (!m.thin_walled && l.attenuation_distance > 0)
     m.transmission_color = Vec3(l.attenuation_color), m.transmission_depth = double(l.attenuation_distance);
+  else if (l.transmission > 0) m.transmission_color = Vec3(l.base_color);
   return m;
+}
+
+/// The number of a cell's material; 0 for none.
+int64_t number_of(const Field& numbers, size_t cell) {
+  const double v = numbers.array.get(cell);
+  return v == v && std::abs(v) < 1e15 ? int64_t(v) : 0;
 }
 
 /// Polygons and strips of one number; the points of all.
@@ -100,7 +108,7 @@ DatasetPtr polygons_of(const DatasetPtr& data, const Field& numbers, int64_t num
     const CellsView v = cells_view(list);
     std::vector<int32_t> ids, offsets{0};
     for (size_t c = 0; c < v.count; ++c, ++cell) {
-      if (numbers.array.get(cell) != double(number)) continue;
+      if (number_of(numbers, cell) != number) continue;
       for (size_t k = 0; k < v.size(c); ++k) ids.push_back(int32_t(v.point(c, k)));
       offsets.push_back(int32_t(ids.size()));
       cells.push_back(int64_t(cell));
@@ -132,8 +140,7 @@ std::vector<int64_t> numbers_of(const DatasetPtr& data, const Field& numbers) {
   const size_t first = mesh.vertices.size() + mesh.lines.size(), last = first + mesh.polygons.size() + mesh.strips.size();
   int64_t before = 0;
   for (size_t c = first; c < last; ++c) {
-    const double v = numbers.array.get(c);
-    const int64_t n = v == v && std::abs(v) < 1e15 ? int64_t(v) : 0;
+    const int64_t n = number_of(numbers, c);
     if (c == first || n != before) seen[n] = true;
     before = n;
   }

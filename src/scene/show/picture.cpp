@@ -85,6 +85,10 @@ std::shared_ptr<const SurfacePictures> pictures_of(const Dataset& d, const Pictu
   SurfacePicture on;
   on.coordinates = picture_coordinates(d, p.picture_coordinates).name;
   if (!p.picture_repeats.empty()) on.place = {p.picture_repeats.front(), 0, 0, 0, p.picture_repeats.back(), 0};
+  if (on.coordinates.starts_with("TEXCOORD_")) {  // glTF's, whose second one runs downwards
+    auto& q = on.place;
+    q[2] += q[1], q[1] = -q[1], q[5] += q[4], q[4] = -q[4];
+  }
   on.lookup.wrap_u = on.lookup.wrap_v = p.picture_wrap, on.lookup.filter = p.picture_filter;
   auto pictures = std::make_shared<SurfacePictures>();
   if (p.pattern) {

@@ -2,6 +2,7 @@
 #include "pipeline/picture/scene/shutter.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "base/error.h"
@@ -45,6 +46,17 @@ Picture draw_moments(const std::vector<PipelineFile>& moments, const PreparedPic
   PictureOptions each = options;
   each.on_draft = nullptr;
   PreparedPicture moment = prepared;
+  // Each moment has its own noise, and what time makes of the first one all others get.
+  PictureParams& drawn = moment.stated.picture;
+  double seconds = drawn.light.seconds;
+  if (options.until) {
+    const double left = std::chrono::duration<double>(*options.until - std::chrono::steady_clock::now()).count();
+    seconds = seconds > 0 ? std::min(seconds, left) : left;
+    each.until.reset();
+    seconds = std::max(seconds, 1e-3);
+  }
+  drawn.light.seconds = seconds / double(moments.size());
+  int stopped = 0;
   for (size_t k = 0; k < moments.size(); ++k) {
     Context part(context, double(k) / double(moments.size()), double(k + 1) / double(moments.size()));
     if (k > 0) part.on_log = nullptr;  // all say the same
@@ -53,9 +65,14 @@ Picture draw_moments(const std::vector<PipelineFile>& moments, const PreparedPic
     for (size_t i = 0; i < moment.shown.size() && i < there.shown.size(); ++i) moment.shown[i].scene = there.shown[i].scene;
     picture = draw_prepared(moment, moment.stated, each, part);
     if (picture.image.pixels.empty()) return picture;
+    if (k == 0) {
+      stopped = picture.stopped, drawn.light.seconds = 0;
+      if (stopped > 0) drawn.light.stop = stopped;
+    }
+    ++drawn.seed;
     mean.add(picture.image);
   }
-  picture.image = mean.mean();
+  picture.image = mean.mean(), picture.stopped = stopped;
   return picture;
 }
 

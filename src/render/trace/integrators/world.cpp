@@ -75,6 +75,7 @@ World::World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_
                                 : nullptr);
   }
   for (const auto& m : materials_) translucent_ = translucent_ || m->passes_straight();
+  for (const auto& p : palettes_) translucent_ = translucent_ || (p && p->passes_straight());
 }
 
 Vec4f World::color(const Ray& ray, const Hit& hit, const RayFootprint& footprint) const {

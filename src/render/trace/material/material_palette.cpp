@@ -48,4 +48,8 @@ MaterialPalette::MaterialPalette(const SurfaceMaterial& described, const Texture
 
 const Material& MaterialPalette::at(float roughness, float metalness) const { return *materials_[pair_of(roughness, metalness)]; }
 
+bool MaterialPalette::passes_straight() const {
+  return std::any_of(materials_.begin(), materials_.end(), [](const auto& m) { return m && m->passes_straight(); });
+}
+
 }  // namespace sg::trace

@@ -18,6 +18,8 @@ class MaterialPalette {
   MaterialPalette(const SurfaceMaterial& described, const Texture& texture, double length = 1);
 
   const Material& at(float roughness_texel, float metalness_texel) const;
+  /// Whether any of its materials does (Material::passes_straight()).
+  bool passes_straight() const;
 
  private:
   static size_t pair_of(float roughness, float metalness);
