@@ -116,7 +116,7 @@ void check_picture_memory(int width, int height, int frames) {
 }
 
 std::string light_text(const TraceReport& report) {
-  if (report.paths < 2) return "1 path a pixel, too few to know the error";
+  if (report.paths < 1.5) return "1 path a pixel, too few to know the error";
   return fmt::format("{:.0f} paths a pixel on average, standard error {:.4f} of full scale", report.paths, report.noise);
 }
 
