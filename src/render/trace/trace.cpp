@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "render/composite/background.h"
+#include "render/prepare/picture_set.h"
 #include "render/trace/denoise/denoise.h"
 #include "render/trace/denoise/features.h"
 #include "render/trace/integrators/bidirectional/whole_picture.h"
