@@ -41,10 +41,11 @@ void draw_pictures(const PreparedItem& item, const EyeView& v, double pixel_scal
     const Vec4f own{b.rgba[0][i], b.rgba[1][i], b.rgba[2][i], b.rgba[3][i]};
     const Vec4f seen = picture_color(*item.pictures, item.triangles, triangle, ray, own);
     for (int k = 0; k < 4; ++k) b.rgba[k][i] = seen[k];
-    if (!item.pictures->emission || !item.made_of) continue;
+    if (!item.made_of || item.made_of->emission == Vec3()) continue;
     // What shines by itself is added to what the light makes of the colour.
-    const PlacedPicture& shining = *item.pictures->emission;
-    const Vec4f texel = shining.lookup(*shining.texture, place_in(shining, item.triangles, triangle, ray));
+    Vec4f texel{1, 1, 1, 1};
+    if (const auto& shining = item.pictures->emission)
+      texel = shining->lookup(*shining->texture, place_in(*shining, item.triangles, triangle, ray));
     for (int k = 0; k < 3; ++k) b.rgba[k][i] += float(item.made_of->emission[k]) * texel[k] / std::max(b.light[i], 1e-3f);
   }
 }

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
+#include <span>
 
 #include "base/error.h"
 #include "data/field_ops.h"
@@ -69,7 +71,7 @@ std::shared_ptr<const SurfacePictures> pictures_of(const MaterialLook& l, const 
   p->color = picture_on(d, l.base_picture, TexelEncoding::srgb, p->alpha != Alpha::none, context);
   p->metallic_roughness = picture_on(d, l.metallic_roughness, TexelEncoding::linear, false, context);
   p->emission = picture_on(d, l.emission_picture, TexelEncoding::srgb, false, context);
-  const bool any = p->color || p->metallic_roughness || p->emission || tinted;
+  const bool any = p->color || p->metallic_roughness || p->emission || tinted || !(l.emission == Vec3f());
   return any ? p : nullptr;
 }
 
@@ -94,59 +96,59 @@ int64_t number_of(const Field& numbers, size_t cell) {
   return v == v && std::abs(v) < 1e15 ? int64_t(v) : 0;
 }
 
-/// Polygons and strips of one number; the points of all.
-DatasetPtr polygons_of(const DatasetPtr& data, const Field& numbers, int64_t number) {
+/// The polygons and strips of each number, in rising order. Kept with the data.
+using CellsByNumber = std::map<int64_t, std::vector<int64_t>>;
+std::shared_ptr<const CellsByNumber> cells_by_number(const DatasetPtr& data, const Field& numbers) {
+  const std::string key = "cells by material";
+  if (auto kept = data->memo().find<CellsByNumber>(key)) return kept;
+  const SurfaceMesh& mesh = *data->as<SurfaceMesh>();
+  const size_t first = mesh.vertices.size() + mesh.lines.size(), last = first + mesh.polygons.size() + mesh.strips.size();
+  CellsByNumber cells;
+  std::vector<int64_t>* list = nullptr;
+  int64_t before = 0;
+  for (size_t c = first; c < last; ++c) {
+    const int64_t n = number_of(numbers, c);
+    if (!list || n != before) list = &cells[n], before = n;
+    list->push_back(int64_t(c));
+  }
+  return data->memo().keep<CellsByNumber>(key, std::move(cells), (last - first) * sizeof(int64_t));
+}
+
+/// Those of one number; the points of all.
+DatasetPtr polygons_of(const DatasetPtr& data, int64_t number, std::span<const int64_t> cells) {
   const std::string key = fmt::format("polygons of material {}", number);
   struct Kept {
     DatasetPtr data;
   };
   if (const auto kept = data->memo().find<Kept>(key)) return kept->data;
   const SurfaceMesh& from = *data->as<SurfaceMesh>();
-  std::vector<int64_t> cells;
-  size_t cell = from.vertices.size() + from.lines.size();
-  const auto chosen = [&](const CellArray& list) {
+  const int64_t first = int64_t(from.vertices.size() + from.lines.size()), strips = first + int64_t(from.polygons.size());
+  const auto chosen = [&](const CellArray& list, int64_t begin, int64_t end) {
     const CellsView v = cells_view(list);
     std::vector<int32_t> ids, offsets{0};
-    for (size_t c = 0; c < v.count; ++c, ++cell) {
-      if (number_of(numbers, cell) != number) continue;
+    for (const int64_t cell : cells) {
+      if (cell < begin || cell >= end) continue;
+      const auto c = size_t(cell - begin);
       for (size_t k = 0; k < v.size(c); ++k) ids.push_back(int32_t(v.point(c, k)));
       offsets.push_back(int32_t(ids.size()));
-      cells.push_back(int64_t(cell));
     }
     CellArray out;
-    if (cells.empty() || offsets.size() == 1) return out;
+    if (offsets.size() == 1) return out;
     out.connectivity = Array::from_vector(std::move(ids)), out.offsets = Array::from_vector(std::move(offsets));
     return out;
   };
   SurfaceMesh mesh;
-  mesh.points = from.points, mesh.polygons = chosen(from.polygons), mesh.strips = chosen(from.strips);
+  mesh.points = from.points, mesh.polygons = chosen(from.polygons, first, strips),
+  mesh.strips = chosen(from.strips, strips, strips + int64_t(from.strips.size()));
   DatasetParts parts;
   parts.point_ghost = data->point_ghost();
-  if (!data->cell_ghost().empty()) parts.cell_ghost = gather(data->cell_ghost(), std::span<const int64_t>(cells));
+  if (!data->cell_ghost().empty()) parts.cell_ghost = gather(data->cell_ghost(), cells);
   for (const Field& f : data->fields())
     if (f.association != Association::cell) parts.fields.add(f);
-  carry_gathered(parts.fields, data->fields(), Association::cell, std::span<const int64_t>(cells), Association::cell);
+  carry_gathered(parts.fields, data->fields(), Association::cell, cells, Association::cell);
   const size_t bytes = mesh.polygons.connectivity.bytes() + mesh.strips.connectivity.bytes();
   parts.mesh = std::move(mesh);
   return data->memo().keep<Kept>(key, {make_dataset(std::move(parts))}, bytes)->data;
-}
-
-/// The numbers of polygons and strips, in rising order. Kept with the data.
-std::vector<int64_t> numbers_of(const DatasetPtr& data, const Field& numbers) {
-  const std::string key = "numbers of materials";
-  if (const auto kept = data->memo().find<std::vector<int64_t>>(key)) return *kept;
-  const SurfaceMesh& mesh = *data->as<SurfaceMesh>();
-  std::map<int64_t, bool> seen;
-  const size_t first = mesh.vertices.size() + mesh.lines.size(), last = first + mesh.polygons.size() + mesh.strips.size();
-  int64_t before = 0;
-  for (size_t c = first; c < last; ++c) {
-    const int64_t n = number_of(numbers, c);
-    if (c == first || n != before) seen[n] = true;
-    before = n;
-  }
-  std::vector<int64_t> all;
-  for (const auto& entry : seen) all.push_back(entry.first);
-  return *data->memo().keep<std::vector<int64_t>>(key, std::move(all), seen.size() * sizeof(int64_t));
 }
 
 }  // namespace
@@ -155,11 +157,16 @@ std::vector<SurfaceItem> items_of_materials(const SurfaceItem& like, Context& co
   const Field* numbers = material_numbers(*like.data);
   if (!numbers || !like.data->as<SurfaceMesh>()) return {like};
   const auto& looks = numbers->materials->looks;
-  const std::vector<int64_t> all = numbers_of(like.data, *numbers);
+  const auto all = cells_by_number(like.data, *numbers);
+  if (constexpr size_t most = 256; all->size() > most) {
+    context.warn(
+        fmt::format("its {} materials are more than are drawn by themselves ({} at most): their pictures are left out", all->size(), most));
+    return {like};
+  }
   std::vector<SurfaceItem> items;
-  for (const int64_t number : all) {
+  for (const auto& [number, cells] : *all) {
     SurfaceItem item = like;
-    if (all.size() > 1) item.data = polygons_of(like.data, *numbers, number), item.edge_lines = nullptr;
+    if (all->size() > 1) item.data = polygons_of(like.data, number, cells), item.edge_lines = nullptr;
     if (const auto at = looks.find(number); at != looks.end()) {
       const MaterialLook& look = at->second;
       item.pictures = pictures_of(look, *item.data, item.color_by.has_value(), context), item.made_of = matter_of(look);
