@@ -13,7 +13,7 @@ using doctest::Approx;
 
 namespace {
 
-const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
+const std::string square_with_coordinates = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
 
 void write_png(const std::string& name) {
   const std::vector<uint8_t> bytes = encode_png(Image(2, 2, 3));
@@ -27,7 +27,7 @@ std::shared_ptr<const MaterialTable> table(const std::string& library, std::vect
     if (level == LogLevel::warning && warnings) warnings->emplace_back(text);
   };
   const std::string path =
-      temp_file("looks.obj", "mtllib looks.mtl\n" + square + "usemtl wood\nf 1/1 2/2 3/3\nusemtl glass\nf 1/1 3/3 4/4\n");
+      temp_file("looks.obj", "mtllib looks.mtl\n" + square_with_coordinates + "usemtl wood\nf 1/1 2/2 3/3\nusemtl glass\nf 1/1 3/3 4/4\n");
   return std::get<DatasetPtr>(read_data(path, {}, context))->fields().require("MaterialIds").materials;
 }
 

@@ -14,7 +14,7 @@ using namespace sg;
 
 namespace {
 
-PipelineFile file_with(const std::string& show, const std::string& origin = "") {
+PipelineFile file_showing(const std::string& show, const std::string& origin = "") {
   return parse_pipeline(
       "sightglass: 1\nsteps: {a: {gyroid: {size: 12}}, b: {slice: {axis: z}, from: a}, c: {texture_coordinates: {axis: z}, from: "
       "b}}\nshow: "
@@ -35,7 +35,7 @@ TEST_CASE("surface picture: its path begins at the pipeline file, and in a recip
   const std::string folder = test::fresh_folder("surface_pictures");
   std::filesystem::create_directories(folder + "in"), std::filesystem::create_directories(folder + "deep");
   write_colored(folder + "in/red.png", 255, 0);
-  PipelineFile file = file_with("{picture: ../in/red.png, lit: false}", folder + "deep/a.yaml");
+  PipelineFile file = file_showing("{picture: ../in/red.png, lit: false}", folder + "deep/a.yaml");
   Context context;
   Picture picture = make_picture(file, {}, context);
   const uint8_t* middle = picture.image.at(24, 24);
@@ -51,8 +51,8 @@ TEST_CASE("surface picture: its path begins at the pipeline file, and in a recip
   write_colored(folder + "in/red.png", 0, 255);
   recipe_in(picture.image, folder + "a.png", changed);
   CHECK(changed.size() == 1);
-  const PipelineFile outside = file_with("{picture: /etc/wood.png}");
+  const PipelineFile outside = file_showing("{picture: /etc/wood.png}");
   CHECK(test::contains(test::error_of([&] { check_recipe(outside, folder + "a.png"); }), "/etc/wood.png"));
-  PipelineFile missing = file_with("{picture: none.png}", folder + "deep/a.yaml");
+  PipelineFile missing = file_showing("{picture: none.png}", folder + "deep/a.yaml");
   CHECK(test::contains(test::error_of([&] { make_picture(missing, {}, context); }), "none.png"));
 }

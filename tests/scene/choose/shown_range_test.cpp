@@ -183,7 +183,7 @@ TEST_CASE("glyphs of several parts: one length for one value, and shares of one 
   const std::vector<DatasetPtr> parts{wind(0, 60, 2), wind(60, 20, 6)};
   const auto shared = [&](const GlyphsShow& stated) {
     std::vector<GlyphsShow> all(2, stated);
-    share(parts, {&all[0], &all[1]});
+    share(parts, std::vector<GlyphsShow*>{&all[0], &all[1]});
     return all;
   };
   const std::vector<GlyphsShow> both = shared({});
