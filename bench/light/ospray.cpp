@@ -70,7 +70,7 @@ int main(int argc, char** argv) {
   OSPRenderer renderer = ospNewRenderer(occlusion ? "scivis" : "pathtracer");
   ospSetInt(renderer, "pixelSamples", occlusion ? 1 : paths), ospSetInt(renderer, "pixelFilter", OSP_PIXELFILTER_BOX);
   ospSetVec4f(renderer, "backgroundColor", 0, 0, 0, 0);
-  if (occlusion) ospSetInt(renderer, "aoSamples", paths), ospSetFloat(renderer, "aoDistance", .5f), ospSetBool(renderer, "shadows", false);
+  if (occlusion) ospSetInt(renderer, "aoSamples", paths), ospSetFloat(renderer, "aoDistance", 1), ospSetBool(renderer, "shadows", false);
   else ospSetInt(renderer, "maxPathLength", 9), ospSetInt(renderer, "roulettePathLength", 4);
   OSPData materials = ospNewSharedData(&material, OSP_MATERIAL, 1);
   ospCommit(materials), ospSetObject(renderer, "material", materials), ospCommit(renderer);

@@ -123,7 +123,9 @@ TEST_CASE("isosurface: white ones are invisible in even light, whatever they are
       SurfaceMaterial made_of = preset_material(preset);
       made_of.base_color = {1, 1, 1};
       CAPTURE(int(preset));
-      const World world = isosurface_world(scene_of({levels_of(data, {0.2})}), made_of, Environment(Vec3f{1, 1, 1}));
+      VolumeItem level = levels_of(data, {0.2});
+      level.shaded = false;  // rounded normals reflect a few per cent into the surface where cells are as coarse as here
+      const World world = isosurface_world(scene_of({level}), made_of, Environment(Vec3f{1, 1, 1}));
       for (const double x : {0.0, 0.3, 0.5}) {
         const Mean got = seen(world, {x, 0.1, 3}, {0, 0, -1}, 2000);
         CHECK(std::abs(got.value + got.passed - 1) <= 4 * got.error + 0.006);
