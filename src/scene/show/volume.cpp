@@ -11,6 +11,7 @@
 #include "data/fields/field_component.h"
 #include "data/lattice.h"
 #include "data/ranks/over_all.h"
+#include "image/image.h"
 #include "scene/choose/scale.h"
 #include "scene/choose/volume/boundaries.h"
 #include "scene/choose/volume/extent.h"
