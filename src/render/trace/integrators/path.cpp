@@ -174,8 +174,7 @@ class PathIntegrator : public Integrator {
     const auto from = [&](Vec3f direction) { return leave(v.point, direction); };
     const float choice = sampler.next();
     const Vec2f u = sampler.next2();
-    out.radiance += path.throughput * direct(world, mirrors_only_ ? world.lights() : world.lamps(), media, v.point.position, from,
-                                             scattered, choice, u, sampler);
+    out.radiance += path.throughput * direct(world, world.lamps(), media, v.point.position, from, scattered, choice, u, sampler);
 
     const Vec3f direction = normalize(v.frame.to_world(cosine_hemisphere(sampler.next2())));
     const float roulette = sampler.next();

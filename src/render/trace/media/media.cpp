@@ -69,23 +69,6 @@ std::shared_ptr<Media> Media::make(const Scene& scene, const Projection& project
   return out;
 }
 
-Media::Borrowed Media::borrow() const {
-  if (media_.empty()) return Borrowed(nullptr, Return{this});
-  {
-    const std::lock_guard lock(mutex_);
-    if (!idle_.empty()) {
-      std::unique_ptr<MediaWalk> walk = std::move(idle_.back());
-      idle_.pop_back();
-      return Borrowed(walk.release(), Return{this});
-    }
-  }
-  return Borrowed(new MediaWalk(media_, placement_), Return{this});
-}
-
-void Media::Return::operator()(MediaWalk* walk) const {
-  std::unique_ptr<MediaWalk> owned(walk);
-  const std::lock_guard lock(to->mutex_);
-  to->idle_.push_back(std::move(owned));
-}
+Media::Borrowed Media::borrow() const { return media_.empty() ? Borrowed() : walks_.borrow(); }
 
 }  // namespace sg::trace

@@ -2,10 +2,10 @@
 // Media: all volumes of a scene, and the walkers that threads borrow to go through them.
 #pragma once
 #include <memory>
-#include <mutex>
 #include <vector>
 
 #include "base/context.h"
+#include "base/threads/lending.h"
 #include "render/trace/media/media_walk.h"
 #include "scene/scene.h"
 
@@ -24,11 +24,7 @@ class Media {
   /// Tells the coordinates of rays; before walkers are borrowed.
   void place(const Placement& placement) { placement_ = placement; }
 
-  struct Return {
-    const Media* to = nullptr;
-    void operator()(MediaWalk* walk) const;
-  };
-  using Borrowed = std::unique_ptr<MediaWalk, Return>;
+  using Borrowed = Lending<MediaWalk>::Loan;
   /// Null when there are no media.
   Borrowed borrow() const;
 
@@ -37,8 +33,7 @@ class Media {
   std::vector<ParticipatingMedium> media_;
   Box3 bounds_;
   Placement placement_;
-  mutable std::mutex mutex_;
-  mutable std::vector<std::unique_ptr<MediaWalk>> idle_;
+  Lending<MediaWalk> walks_{[this] { return std::make_unique<MediaWalk>(media_, placement_); }};
 };
 
 }  // namespace sg::trace
