@@ -20,6 +20,7 @@ pybind11_add_module(sightglass_python MODULE NO_EXTRAS ${python_core})
 target_include_directories(sightglass_python PRIVATE ${CMAKE_SOURCE_DIR}/src)
 target_link_libraries(sightglass_python PRIVATE libsightglass)
 target_compile_definitions(sightglass_python PRIVATE SIGHTGLASS_NO_SHORT_NAME)
+sg_level(sightglass_python quick)
 set_target_properties(sightglass_python PROPERTIES OUTPUT_NAME _core LIBRARY_OUTPUT_DIRECTORY ${python_package})
 
 # Editors and type checkers read the operations from stubs.

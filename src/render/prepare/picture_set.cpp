@@ -12,13 +12,15 @@ namespace {
 
 constexpr size_t points_per_chunk = 1 << 15;
 
-Array placed(const Array& coordinates, const std::array<double, 6>& p) {
+Array placed(const Array& coordinates, const Array* second, const std::array<double, 6>& p) {
+  const Array ys = second ? second->converted(ElementType::f64) : Array();
+  const double* y_of = second ? reinterpret_cast<const double*>(ys.raw()) : nullptr;
   float* out = nullptr;
   Array uv = Array::make<float>(coordinates.count(), 2, &out);
   dispatch(coordinates, [&](auto v) {
     parallel_for(v.count, points_per_chunk, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
-        const double x = double(v(i, 0)), y = double(v(i, 1));
+        const double x = double(v(i, 0)), y = y_of ? y_of[i] : v.components > 1 ? double(v(i, 1)) : 0;
         out[2 * i] = float(p[0] * x + p[1] * y + p[2]), out[2 * i + 1] = float(p[3] * x + p[4] * y + p[5]);
       }
     });
@@ -28,13 +30,16 @@ Array placed(const Array& coordinates, const std::array<double, 6>& p) {
 
 std::optional<PlacedPicture> placed(const std::optional<SurfacePicture>& picture, const DatasetPtr& data) {
   if (!picture) return {};
-  const Field& f =
-      with_context("picture", [&]() -> const Field& { return data->fields().require(picture->coordinates, Association::point); });
-  if (f.components() < 2)
-    fail_usage(fmt::format("field '{}' has {} component, texture coordinates have 2", f.name, f.components()), "picture");
+  const auto field = [&](const std::string& name) -> const Field& {
+    return with_context("picture", [&]() -> const Field& { return data->fields().require(name, Association::point); });
+  };
+  const Field& f = field(picture->coordinates);
+  const Field* second = picture->second_coordinates.empty() ? nullptr : &field(picture->second_coordinates);
   const auto& p = picture->place;
-  const std::string key = fmt::format("picture/{}/{},{},{},{},{},{}", f.name, p[0], p[1], p[2], p[3], p[4], p[5]);
-  return PlacedPicture{picture->texture, picture->lookup, *derived(data, key, [&] { return placed(f.array, p); })};
+  const std::string key =
+      fmt::format("picture/{}/{}/{},{},{},{},{},{}", f.name, picture->second_coordinates, p[0], p[1], p[2], p[3], p[4], p[5]);
+  return PlacedPicture{picture->texture, picture->lookup,
+                       *derived(data, key, [&] { return placed(f.array, second ? &second->array : nullptr, p); })};
 }
 
 std::optional<IsolineSet> placed(const std::optional<SurfaceIsolines>& lines, const DatasetPtr& data) {

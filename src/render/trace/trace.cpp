@@ -51,9 +51,7 @@ World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Proje
   size.more = std::move(isosurfaces.objects);
   Geometry geometry = Geometry::make(*prepared, size, context);
   media->place(geometry.placement());
-  SurfaceMaterial plain;
-  plain.specular_roughness = 0.45, plain.specular_weight = 0.6;
-  const auto of_data = std::make_shared<const trace::Material>(plain);
+  const auto of_data = std::make_shared<const trace::Material>(data_material());
   std::vector<std::shared_ptr<const trace::Material>> materials;
   const auto add = [&](const std::optional<SurfaceMaterial>& made_of) {
     materials.push_back(made_of ? std::make_shared<const trace::Material>(*made_of, geometry.placement().scale) : of_data);
@@ -93,12 +91,13 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
       return watch.on_frame(all, so_far);
     };
   Sweeps sweeps(options, whole_watch);
-  const World world = world_of(scene, prepared, projection, backdrop, context);
+  World world = world_of(scene, prepared, projection, backdrop, context);
   if (!world.lights().any() && options.integrator != IntegratorKind::ambient_occlusion)
     context.warn("nothing shines: no light, no environment, no material with emission; the picture is dark");
   const auto integrator = make_integrator(options);
   const PictureCamera camera(projection, world.geometry().placement());
   eye = &camera;
+  world.look_from(camera.ray({float(projection.width) / 2, float(projection.height) / 2}));
   Frame frame(projection.width, projection.height);
   report = {};
   report.planes.error.assign(frame.pixels(), 0);

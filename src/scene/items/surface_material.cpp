@@ -41,6 +41,10 @@ void describe(Schema& s, SurfaceMaterial& m) {
   s("coat_roughness", m.coat_roughness, "Roughness of the coat.").range(0, 1);
   s("coat_ior", m.coat_ior, "Index of refraction of the coat.").range(1, 10);
   s("retro_weight", m.retro_weight, "Share of the surface that reflects light back to where it comes from.").range(0, 1);
+  s("dielectric_priority", m.dielectric_priority,
+    "Of clear bodies that touch or overlap, where each refracts against the other: the one of the highest is there; 0 = refracts against "
+    "air.")
+      .range(0, 1000);
   s("emission", m.emission, "Light that the surface gives off by itself: radiance of red, green and blue.").at_least(0);
   s("thin_walled", m.thin_walled, "The surface is a sheet, without a body behind it.");
 }
@@ -75,6 +79,12 @@ SurfaceMaterial of_glass(double ior, double roughness) {
 }
 
 }  // namespace
+
+SurfaceMaterial data_material() {
+  SurfaceMaterial m;
+  m.specular_roughness = 0.45, m.specular_weight = 0.6;
+  return m;
+}
 
 SurfaceMaterial preset_material(MaterialPreset preset, double size) {
   SurfaceMaterial m;

@@ -48,6 +48,7 @@ struct SurfaceMaterial {
   double coat_roughness = 0;
   double coat_ior = 1.6;
   double retro_weight = 0;
+  int dielectric_priority = 0;
   Vec3 emission{0, 0, 0};
   bool thin_walled = false;
 };
@@ -107,5 +108,7 @@ constexpr auto enum_words(MaterialPreset) {
 }
 /// `size`: diagonal of the body, of which lengths are shares.
 SurfaceMaterial preset_material(MaterialPreset preset, double size = 1);
+/// What is not stated to be of anything: plastic whose highlights leave the colours of the data alone.
+SurfaceMaterial data_material();
 
 }  // namespace sg

@@ -14,7 +14,8 @@ namespace sg {
 
 struct SurfacePicture {
   std::shared_ptr<const Texture> texture;
-  std::string coordinates;                        ///< point field of 2 components or more
+  std::string coordinates;                        ///< point field: x and y, or x alone
+  std::string second_coordinates;                 ///< one for y; without any, y is 0
   std::array<double, 6> place{1, 0, 0, 0, 1, 0};  ///< u = p0 x + p1 y + p2, v = p3 x + p4 y + p5
   TextureLookup lookup;
 };

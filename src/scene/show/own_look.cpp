@@ -52,7 +52,7 @@ std::optional<SurfacePicture> picture_on(const Dataset& d, const MaterialPicture
     return {};
   }
   try {
-    SurfacePicture on{texture_of(*p.file, encoding, alpha), f->name, p.place, {}};
+    SurfacePicture on{texture_of(*p.file, encoding, alpha), f->name, {}, p.place, {}};
     on.lookup.wrap_u = wrap_of(p.beyond_u), on.lookup.wrap_v = wrap_of(p.beyond_v), on.lookup.sharp = p.nearest;
     return on;
   } catch (const Error& e) {

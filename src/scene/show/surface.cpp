@@ -28,9 +28,8 @@ void describe(Schema& s, SurfaceShow& p) {
   s("lit", p.lit, "Light the surface; default: yes, but not a flat one that a field colours: its colours are those of the legend.");
   s("feature_angle", p.feature_angle, "Edges with a larger angle stay sharp when normals are computed.").unit("deg").range(0, 180);
   describe(s, p.lic);
-  s("material", p.material,
-    "What the surface is made of, where the picture has an integrator; its own colour takes the place of those of a field that is not "
-    "stated. sightglass lookdev shows all. Default: plastic of the data's colours.");
+  describe(s, p.material);
+  describe(s, p.material_fields);
   s("texture", p.texture, "Point field in [0, 1] that darkens and brightens the colours; default: 'lic' or 'spot noise'; 'none' for none.")
       .takes(fields::point_scalars);
   describe(s, p.isolines);
@@ -145,12 +144,13 @@ void share(const std::vector<DatasetPtr>& parts, const std::vector<SurfaceShow*>
 std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceShow& p, Context& context) {
   if (p.style != SurfaceStyle::solid) return add_sparse(scene, input, p, context);
   check(p);
-  const bool unstated = p.coloring.field.empty() && p.coloring.color.empty() && !p.coloring.states_map() && !p.material && !p.picture.any();
+  const bool unstated = p.coloring.field.empty() && p.coloring.color.empty() && !p.coloring.states_map() && !p.material.any() &&
+                        !p.material_fields.any() && !p.picture.any();
   const bool own_look = unstated && p.own_materials && !automatic_field(*input) && has_own_materials(*input);
   SurfaceItem item;
   // Ranges come from the whole input, so that a surface and its volume share colours.
   if (own_look) item.color_by = own_colors(*input);
-  else if ((!p.material && !p.picture.any()) || !p.coloring.field.empty())
+  else if ((!p.material.material && !p.picture.any()) || !p.coloring.field.empty())
     item.color_by = field_color(*input, coloring_of(p, *input), context);
   if (p.edges) {
     // Of a clipped mesh the pieces of a cell keep its own number, by which the edges between them are left out.
@@ -163,14 +163,19 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceSh
     const DatasetPtr whole = std::exchange(item.data, bilinear_parts(item.data, item.color_by->field));
     if (item.data != whole && !item.edge_lines) item.edge_lines = whole;
   }
-  if (p.material) {
-    item.made_of = preset_material(*p.material, p.body > 0 ? p.body : input->bounds().diagonal());
+  if (p.material.any() || p.material_fields.any()) item.made_of = p.material.made(p.body > 0 ? p.body : input->bounds().diagonal());
+  if (p.material.material) {
     const Vec3f own(item.made_of->base_color);
     item.color = {srgb_encode(own.x), srgb_encode(own.y), srgb_encode(own.z)};
   }
-  if (p.picture.any() && !p.material) item.color = {1, 1, 1};
+  if (p.picture.any() && !p.material.material) item.color = {1, 1, 1};
   if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
   item.pictures = pictures_of(*item.data, p.picture);
+  if (p.material_fields.any()) {
+    auto pictures = item.pictures ? std::make_shared<SurfacePictures>(*item.pictures) : std::make_shared<SurfacePictures>();
+    apply(p.material_fields, p.material, *item.data, *item.made_of, *pictures, context);
+    item.pictures = std::move(pictures);
+  }
   item.opacity = p.opacity;
   item.edges = p.edges;
   item.flat = p.flat;

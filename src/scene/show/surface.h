@@ -6,6 +6,7 @@
 #include "scene/scene.h"
 #include "scene/show/isoline_words.h"
 #include "scene/show/lic.h"
+#include "scene/show/material_words.h"
 #include "scene/show/picture.h"
 
 namespace sg {
@@ -27,7 +28,8 @@ struct SurfaceShow {
   FieldName texture;
   PictureShow picture;
   IsolineShow isolines;
-  std::optional<MaterialPreset> material;
+  MaterialShow material;
+  MaterialFields material_fields;
   double body = 0;  ///< diagonal of all parts of a collection; 0: that of the data
   bool own_materials = true;
 };

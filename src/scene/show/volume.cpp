@@ -275,8 +275,8 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const VolumeSho
   } else if (!p.opacity) choose_transfer(p, *fields.opacity, item, context);
   else item.opacity = parse_opacity(*p.opacity, item.color);
   bool own_colors = !p.colors.empty() || !p.coloring.color.empty();
-  if (p.material) {
-    item.made_of = preset_material(*p.material, stated.body > 0 ? stated.body : input->bounds().diagonal());
+  if (p.material.any()) item.made_of = p.material.made(stated.body > 0 ? stated.body : input->bounds().diagonal());
+  if (p.material.material) {
     if (!p.opacity) item.opacity.points = {{item.color.lo, 1}};
     if (!own_colors && !p.coloring.map && p.coloring.range.empty() && p.color_by.empty()) {
       const Vec3f own(item.made_of->base_color);

@@ -4,6 +4,7 @@
 #include "color/legend_content.h"
 #include "scene/choose/coloring.h"
 #include "scene/scene.h"
+#include "scene/show/material_words.h"
 
 namespace sg {
 
@@ -35,7 +36,7 @@ struct VolumeShow {
   RayFunction mode = RayFunction::composite;
   std::vector<double> levels;
   bool shaded = true;
-  std::optional<MaterialPreset> material;
+  MaterialShow material;
   double body = 0;  ///< diagonal of all parts of a collection; 0: that of the data
   VolumeSampling sampling;
   VolumeLight light;

@@ -57,9 +57,7 @@ void describe(Schema& s, VolumeShow& p) {
     "Values for first_hit, distance and accumulate (one) and isosurface (any number); default: the strongest material boundary.")
       .unit("@field");
   s("shaded", p.shaded, "Light the volume by the gradient of the field.");
-  s("material", p.material,
-    "What the surfaces of mode=isosurface are made of, where the picture has an integrator; its own colour takes the place of colours that "
-    "are not stated. sightglass lookdev shows all. Default: plastic of the data's colours.");
+  describe(s, p.material);
   describe(s, p.sampling);
   describe(s, p.light);
   describe(s, p.scattering);
@@ -122,8 +120,8 @@ void check(const VolumeShow& p) {
     const bool second = value_of_word<SecondAxis>(p.second) != SecondAxis::none;
     if (by == 1 && second)
       fail_usage("the second field already is the second axis", "second", "leave out second=, or opacity_by and color_by");
-    if (p.material && p.mode != RayFunction::isosurface)
-      fail_usage("material= is of surfaces", "material", "use mode=isosurface with it, or leave it out");
+    if (p.material.any() && p.mode != RayFunction::isosurface)
+      fail_usage("materials are of surfaces", "material", "use mode=isosurface with material= and its parameters, or leave them out");
     if (!second && p.second_opacity && p.widgets.empty() && by == 0)
       fail_usage("there is no second axis", "second_opacity", "give one, e.g. second=gradient");
   });

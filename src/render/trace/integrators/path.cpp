@@ -27,13 +27,14 @@ float opening_of(float pdf) { return std::min(0.1f / std::sqrt(std::max(pdf, 1e-
 /// A path on its way.
 struct Path {
   Ray ray;
-  Vec3f throughput{1, 1, 1}, absorption;  // of the matter around it
-  float pdf = infinite;                   // of the last turn; of deltas and the camera infinite: lights are met by chance alone
-  bool straight = true;                   // from the camera on, through what is translucent
-  Vec3f turned_at;                        // where the direction was drawn
-  float since = 0;                        // and how far the path has come
-  int turns = 0, turns_in_media = 0;      // of these
-  float share = 1;                        // of the pixel that it stands for
+  Vec3f throughput{1, 1, 1};
+  Insides insides;                    // the bodies that it is in
+  float pdf = infinite;               // of the last turn; of deltas and the camera infinite: lights are met by chance alone
+  bool straight = true;               // from the camera on, through what is translucent
+  Vec3f turned_at;                    // where the direction was drawn
+  float since = 0;                    // and how far the path has come
+  int turns = 0, turns_in_media = 0;  // of these
+  float share = 1;                    // of the pixel that it stands for
 
   RayFootprint footprint;
   Path(const Ray& first, const RayFootprint& pixel) : ray(first), turned_at(first.origin), footprint(pixel) {}
@@ -54,6 +55,7 @@ class PathIntegrator : public Integrator {
     const Media::Borrowed media = world.borrow_media();
     Estimate out;
     Path path(first, footprint);
+    path.insides = world.insides_of_viewer();
     const bool split = media && media->exact();
     if (split) {
       // What the viewer sees of matter, and what is seen through it: both, as far as there is of each.
@@ -97,15 +99,22 @@ class PathIntegrator : public Integrator {
         out.passed = luminance(path.throughput);
       }
       if (!met && !matter) break;
-      if (!is_dark(path.absorption))
-        for (int c = 0; c < 3; ++c) path.throughput[c] *= std::exp(-path.absorption[c] * path.ray.t_max);
+      if (const Vec3f absorption = path.insides.absorption(); !is_dark(absorption))
+        for (int c = 0; c < 3; ++c) path.throughput[c] *= std::exp(-absorption[c] * path.ray.t_max);
       if (!(matter ? scatter(world, media, *matter, path, sampler, out) : meet(world, media, hit, path, sampler, out))) break;
     }
   }
 
   /// On from a surface; false where the path ends.
   bool meet(const World& world, MediaWalk* media, const Hit& hit, Path& path, Sampler& sampler, Estimate& out) const {
-    const Vertex v = world.at(path.ray, hit, path.footprint, !mirrors_only_);
+    const Vertex v = world.at(path.ray, hit, path.footprint, !mirrors_only_, path.insides);
+    const Vec3f along = path.ray.direction;
+    if (v.hidden) {
+      path.insides = v.onward(path.insides, along, along);
+      path.footprint = path.footprint.after(hit.t);
+      path.go_straight(leave(v.point, along), hit.t);
+      return true;
+    }
     if (!is_dark(v.emission)) {
       const float p =
           world.lamps().triangle_pdf(hit.object, hit.primitive, path.since + hit.t, dot(path.ray.direction, v.point.face_normal));
@@ -121,7 +130,7 @@ class PathIntegrator : public Integrator {
           if ((dot(direction, v.point.face_normal) > 0) != (wi.z > 0)) return {};
           return {v.bsdf.evaluate(wo, wi) * std::abs(wi.z), mirrors_only_ ? 0 : v.bsdf.pdf(wo, wi)};
         };
-        const auto from = [&](Vec3f direction) { return leave(v.point, direction); };
+        const auto from = [&](Vec3f direction) { return Start{leave(v.point, direction), v.onward(path.insides, along, direction)}; };
         out.radiance += path.throughput * direct(world, mirrors_only_ ? world.lights() : world.lamps(), media, v.point.position, from,
                                                  scattered, choice, u, sampler);
       }
@@ -157,9 +166,9 @@ class PathIntegrator : public Integrator {
       if (s->delta && !s->transmitted) path.footprint = path.footprint.mirrored(v.point.shading_normal);
       else if (!passes) path.footprint = path.footprint.turned(direction, s->delta ? 0 : opening_of(s->pdf));
     }
+    if (s->crossed) path.insides = v.onward(path.insides, along, direction);
     if (passes) path.go_straight(from, hit.t);
     else path.turn(from, direction, s->delta ? infinite : s->pdf);
-    if (s->transmitted && v.material->has_inside() && !passes) path.absorption = s->direction.z < 0 ? v.material->absorption() : Vec3f();
     return path.turns <= 3 || survives(path, 0.95f, roulette);
   }
 
@@ -171,7 +180,7 @@ class PathIntegrator : public Integrator {
       const float density = wi.z / std::numbers::pi_v<float>, share = v.bsdf.leaving(wi) * density;
       return {{share, share, share}, density};
     };
-    const auto from = [&](Vec3f direction) { return leave(v.point, direction); };
+    const auto from = [&](Vec3f direction) { return Start{leave(v.point, direction), path.insides}; };
     const float choice = sampler.next();
     const Vec2f u = sampler.next2();
     out.radiance += path.throughput * direct(world, world.lamps(), media, v.point.position, from, scattered, choice, u, sampler);
@@ -201,8 +210,11 @@ class PathIntegrator : public Integrator {
     const float choice = sampler.next();
     const Vec2f u = sampler.next2();
     out.radiance += path.throughput * direct(
-                                          world, last ? world.lights() : world.lamps(), media, from, [&](Vec3f) { return from; }, scattered,
-                                          choice, u, sampler);
+                                          world, last ? world.lights() : world.lamps(), media, from,
+                                          [&](Vec3f) {
+                                            return Start{from, path.insides};
+                                          },
+                                          scattered, choice, u, sampler);
 
     const Vec2f v = sampler.next2();
     const float roulette = sampler.next();
@@ -233,6 +245,11 @@ class PathIntegrator : public Integrator {
     Vec3f share;  ///< with the cosine of a surface
     float pdf = 0;
   };
+  /// Of a ray to a light.
+  struct Start {
+    Vec3f origin;
+    Insides insides;
+  };
   /// One of the lights, chosen by its power, if nothing is in the way. `from(direction)`: where rays to it start.
   template <class From, class F>
   Vec3f direct(const World& world, const Lights& lights, MediaWalk* media, Vec3f position, From&& from, F&& scattered, float choice,
@@ -245,8 +262,9 @@ class PathIntegrator : public Integrator {
     const Vec3f contribution = s.share * light->radiance * (1 / light->pdf);
     if (is_dark(contribution)) return {};
     // Up to the light's own surface, which is an item or is not.
-    const Ray ray{from(light->direction), light->direction, light->distance * (1 - 1e-4f)};
-    Vec3f passes = world.passes(ray);
+    const Start start = from(light->direction);
+    const Ray ray{start.origin, light->direction, light->distance * (1 - 1e-4f)};
+    Vec3f passes = world.passes(ray, start.insides);
     if (is_dark(passes)) return {};
     if (media) {
       RandomStream random(stream);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/trace/integrators/world.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "render/prepare/picture_set.h"
@@ -76,6 +77,58 @@ World::World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_
   }
   for (const auto& m : materials_) translucent_ = translucent_ || m->passes_straight();
   for (const auto& p : palettes_) translucent_ = translucent_ || (p && p->passes_straight());
+  find_boundaries();
+}
+
+void World::find_boundaries() {
+  const auto orders = [](const Material& m) { return m.priority() > 0 && m.has_inside(); };
+  const size_t items = scene_->items.size();
+  for (size_t i = 0; i < materials_.size(); ++i) {
+    const Material& of = *materials_[i];
+    const std::optional<SurfaceMaterial>& made_of = i < items ? scene_->items[i].made_of : isosurfaces_[i - items].made_of;
+    if (!orders(of) || !made_of) continue;
+    translucent_ = true;  // light passes hidden surfaces
+    for (size_t k = 0; k < materials_.size(); ++k) {
+      const Material& in = *materials_[k];
+      if (i == k || !orders(in) || in.priority() > of.priority() || &boundary(of, in) != &of) continue;
+      boundaries_.push_back({&of, in.ior(), std::make_unique<const Material>(*made_of, geometry_.placement().scale, double(in.ior()))});
+    }
+  }
+}
+
+const Material& World::boundary(const Material& of, const Material& in) const {
+  for (const Boundary& b : boundaries_)
+    if (b.of == &of && b.ior == in.ior()) return *b.material;
+  return of;
+}
+
+Insides World::insides_at(Vec3f place, Vec3f direction) const {
+  std::vector<ClearBody> entered, around;
+  Hit hit;
+  for (Ray ray{place, direction}; geometry_.nearest(ray, hit); hit = Hit()) {
+    const SurfacePoint point = geometry_.at(ray, hit);
+    const Material* material = materials_[hit.object].get();
+    if (material->has_inside()) {
+      const bool in = dot(direction, point.face_normal) < 0;
+      const auto match = std::find_if(entered.begin(), entered.end(), [&](const ClearBody& b) { return b.object == hit.object; });
+      if (in) entered.push_back({material, hit.object});
+      else if (match != entered.end()) entered.erase(match);
+      else around.push_back({material, hit.object});
+    }
+    ray.origin = leave(point, direction);
+  }
+  Insides insides;
+  for (auto b = around.rbegin(); b != around.rend(); ++b) insides.enter(*b);
+  return insides;
+}
+
+Insides Vertex::onward(const Insides& around, Vec3f from, Vec3f to) const {
+  Insides next = around;
+  const bool in = dot(to, point.face_normal) < 0;
+  if (!body.material || (dot(from, point.face_normal) < 0) != in) return next;
+  if (in) next.enter(body);
+  else next.leave(body);
+  return next;
 }
 
 Vec4f World::color(const Ray& ray, const Hit& hit, const RayFootprint& footprint) const {
@@ -114,7 +167,7 @@ void World::take_pictures(const raster::PreparedItem& item, const Ray& ray, cons
   }
 }
 
-Vertex World::at(const Ray& ray, const Hit& hit, const RayFootprint& footprint, bool walks) const {
+Vertex World::at(const Ray& ray, const Hit& hit, const RayFootprint& footprint, bool walks, const Insides& around) const {
   Vertex v;
   v.point = geometry_.at(ray, hit);
   v.material = materials_[hit.object].get();
@@ -122,6 +175,10 @@ Vertex World::at(const Ray& ray, const Hit& hit, const RayFootprint& footprint, 
   const Vec4f color = this->color(ray, hit, footprint);
   if (hit.object < scene_->items.size() && scene_->items[hit.object].pictures)
     take_pictures(scene_->items[hit.object], ray, hit, footprint, v);
+  if (v.material->has_inside()) {
+    v.body = {v.material, hit.object}, v.hidden = around.hides(v.body);
+    if (const Material* in = around.around(v.body)) v.material = &boundary(*v.material, *in);
+  }
   // At a silhouette the shading normal may look away from a viewer who sees the face.
   const bool above = dot(ray.direction, v.point.face_normal) < 0, shaded_above = dot(ray.direction, v.point.shading_normal) < 0;
   v.frame = LocalFrame::about(above == shaded_above ? v.point.shading_normal : v.point.face_normal, v.point.tangent);
@@ -129,12 +186,26 @@ Vertex World::at(const Ray& ray, const Hit& hit, const RayFootprint& footprint, 
   return v;
 }
 
-Vec3f World::passes(Ray ray) const {
-  if (!translucent_) return geometry_.blocked(ray) ? Vec3f() : Vec3f(1, 1, 1);
+Vec3f World::passes(Ray ray, Insides insides) const {
   Vec3f share{1, 1, 1};
-  for (Hit hit; !(share == Vec3f()) && geometry_.nearest(ray, hit); hit = Hit()) {
-    const Vertex v = at(ray, hit);
-    share = share * v.bsdf.straight_on(v.frame.to_local(-ray.direction));
+  const auto fade = [&](float length) {
+    const Vec3f absorption = insides.absorption();
+    for (int c = 0; c < 3; ++c)
+      if (absorption[c] > 0) share[c] *= std::exp(-absorption[c] * length);
+  };
+  if (!translucent_) {
+    if (geometry_.blocked(ray)) return {};
+    fade(ray.t_max);
+    return share;
+  }
+  while (!(share == Vec3f())) {
+    Hit hit;
+    const bool met = geometry_.nearest(ray, hit);
+    fade(met ? hit.t : ray.t_max);
+    if (!met) break;
+    const Vertex v = at(ray, hit, {}, false, insides);
+    if (!v.hidden) share = share * v.bsdf.straight_on(v.frame.to_local(-ray.direction));
+    if (v.hidden || v.material->passes_straight()) insides = v.onward(insides, ray.direction, ray.direction);
     ray.t_max -= hit.t;
     ray.origin = leave(v.point, ray.direction);
     if (!(ray.t_max > 0)) break;

@@ -12,6 +12,7 @@
 #include "render/trace/isosurface/isosurface.h"
 #include "render/trace/light/lights.h"
 #include "render/trace/material/bsdf.h"
+#include "render/trace/material/insides.h"
 #include "render/trace/material/material_palette.h"
 #include "render/trace/media/media.h"
 #include "render/trace/sampling/local_frame.h"
@@ -25,6 +26,11 @@ struct Vertex {
   Bsdf bsdf;
   Vec3f emission;  ///< radiance that the surface gives off itself, to both sides
   const Material* material = nullptr;
+  ClearBody body;       ///< behind the surface; without a material: none
+  bool hidden = false;  ///< the surface lies within another body: rays pass it
+
+  /// The bodies of a path that came through `around` along `from`, and goes on along `to`.
+  Insides onward(const Insides& around, Vec3f from, Vec3f to) const;
 };
 
 class World {
@@ -49,19 +55,28 @@ class World {
   Media::Borrowed borrow_media() const { return media_ ? media_->borrow() : Media::Borrowed(); }
   bool has_media() const { return media_ && media_->any(); }
   bool empty() const { return geometry_.bounds().empty() && !has_media(); }
-  /// With `walks` the part of light that wanders below a surface which is met from outside is the integrator's (walk_below()).
-  Vertex at(const Ray& ray, const Hit& hit, const RayFootprint& footprint = {}, bool walks = false) const;
+  /// With `walks` the part of light that wanders below a surface which is met from outside is the integrator's (walk_below()). `around`:
+  /// the bodies that the ray came through.
+  Vertex at(const Ray& ray, const Hit& hit, const RayFootprint& footprint = {}, bool walks = false, const Insides& around = {}) const;
+  /// The bodies that are around a place: those that a ray from there comes out of before it has entered them.
+  Insides insides_at(Vec3f place, Vec3f direction) const;
+  /// Where paths from the camera begin. What is there: insides_of_viewer().
+  void look_from(const Ray& ray) { insides_of_viewer_ = insides_at(ray.origin, ray.direction); }
+  const Insides& insides_of_viewer() const { return insides_of_viewer_; }
   /// Whether an item lets some light pass straight on, so that shadows have shades.
   bool translucent() const { return translucent_; }
   /// Whether colours depend on what a ray stands for.
   bool has_pictures() const { return pictures_; }
-  /// Share of light that surfaces let pass along the ray up to t_max: 0 behind anything opaque.
-  Vec3f passes(Ray ray) const;
+  /// Share of light that surfaces let pass along the ray up to t_max, and clear bodies from those on that it begins in: 0 behind anything
+  /// opaque.
+  Vec3f passes(Ray ray, Insides insides = {}) const;
 
  private:
   bool is_line(uint32_t object) const {
     return object < scene_->items.size() && scene_->items[object].kind != raster::PreparedItem::Kind::surface;
   }
+  void find_boundaries();
+  const Material& boundary(const Material& of, const Material& in) const;
   void take_pictures(const raster::PreparedItem& item, const Ray& ray, const Hit& hit, const RayFootprint& footprint, Vertex& v) const;
 
   PreparedScenePtr scene_;
@@ -73,6 +88,13 @@ class World {
   std::shared_ptr<const Media> media_;
   std::vector<Isosurfaces::Look> isosurfaces_;
   std::vector<uint32_t> shows_;
+  struct Boundary {
+    const Material* of;
+    float ior;  ///< of what it is in
+    std::unique_ptr<const Material> material;
+  };
+  Insides insides_of_viewer_;
+  std::vector<Boundary> boundaries_;  ///< of bodies with priorities, against each other
   bool translucent_ = false, pictures_ = false;
 };
 

@@ -24,6 +24,7 @@ struct BsdfSample {
   float pdf = 0;             ///< per solid angle, of all ways to this direction together; of a delta the chance that it is chosen
   bool delta = false;        ///< one direction alone, which evaluate() and pdf() know nothing of
   bool transmitted = false;  ///< to the other side
+  bool crossed = false;      ///< into a body, or out of it: not where the surface is not, by its opacity
   float eta = 1;             ///< index of refraction beyond, by that on this side, if a boundary was crossed; of sheets 1
 };
 

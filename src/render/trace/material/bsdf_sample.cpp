@@ -112,10 +112,10 @@ float Bsdf::pdf(Vec3f wo, Vec3f wi) const {
 
 std::optional<BsdfSample> Bsdf::sample_delta(Way way, Vec3f o, bool inside, float chance, float choice, Transport transport) const {
   const Material& m = *material_;
-  if (way == straight) return BsdfSample{grey((1 - opacity_) / chance), -o, chance, true, true, 1};
+  if (way == straight) return BsdfSample{grey((1 - opacity_) / chance), -o, chance, true, true};
   const float under_retro = 1 - m.retro;
   const Vec3f mirrored = turned_back(o);
-  BsdfSample s{{}, mirrored, chance, true, false, 1};
+  BsdfSample s{{}, mirrored, chance, true};
   if (way == of_coat) s.weight = grey(m.coat * fresnel_dielectric(o.z, m.coat_eta).reflected());
   if (way == of_metal) s.weight = m.metal_fresnel(o.z, base_) * through_coat(o, mirrored, inside) * (under_retro * m.metalness);
   if (way == of_retro) s.direction = o, s.weight = m.metal_fresnel(o.z, base_) * through_coat(o, o, inside) * m.retro;
@@ -125,7 +125,7 @@ std::optional<BsdfSample> Bsdf::sample_delta(Way way, Vec3f o, bool inside, floa
     if (choice < reflects) {
       s.weight = through_coat(o, mirrored, inside) * (rest * r), s.pdf *= reflects;
     } else {
-      s.transmitted = true, s.pdf *= 1 - reflects;
+      s.transmitted = true, s.crossed = !m.thin(), s.pdf *= 1 - reflects;
       if (m.thin()) s.direction = -o;
       else s.direction = refracted(o, {0, 0, 1}, eta, fresnel_dielectric(o.z, eta).cosine_through), s.eta = eta;
       const float scale = transport == Transport::radiance && !m.thin() ? 1 / (eta * eta) : 1;
@@ -193,8 +193,8 @@ std::optional<BsdfSample> Bsdf::sample(Vec3f wo, float choice, Vec2f u, Transpor
     const float pdf = pdf_facing(o, *i, inside, s);
     if (!(pdf > 0)) return std::nullopt;
     drawn = BsdfSample{evaluate_facing(o, *i, inside, transport) * (std::abs(i->z) / pdf), *i, pdf};
-    drawn->transmitted = i->z < 0;
-    if (drawn->transmitted && !material_->thin()) drawn->eta = material_->side[inside].eta;
+    drawn->transmitted = i->z < 0, drawn->crossed = drawn->transmitted && !material_->thin();
+    if (drawn->crossed) drawn->eta = material_->side[inside].eta;
   }
   if (drawn) drawn->direction.z *= turn;
   return drawn;

@@ -23,8 +23,9 @@ AlbedoCurve lost_by(const BoundaryAlbedo& albedo) {
 
 }  // namespace
 
-Material::Material(const SurfaceMaterial& m, double length) {
+Material::Material(const SurfaceMaterial& m, double length, double around) {
   check(m);
+  priority_ = m.dielectric_priority;
   base_color_ = Vec3f(m.base_color), emission_ = Vec3f(m.emission), subsurface_radius_ = Vec3f(m.subsurface_radius * length);
   subsurface_anisotropy_ = float(m.subsurface_anisotropy), thin_ = m.thin_walled;
   coat = float(m.coat_weight), retro = float(m.retro_weight), metalness = float(m.base_metalness), clear = float(m.transmission_weight);
@@ -44,7 +45,9 @@ Material::Material(const SurfaceMaterial& m, double length) {
   if (metalness > 0 || retro > 0) mirror = mirror_albedo(ggx);
   mirror_lost = AlbedoCurve::of([&](float cosine) { return 1 - mirror.white(cosine); });
   if (metalness < 1 && retro < 1) {
-    side[0].eta = weighted_ior(m.specular_ior, m.specular_weight);
+    ior_ = weighted_ior(m.specular_ior, m.specular_weight);
+    const float eta = ior_ / float(around);
+    side[0].eta = std::abs(eta - 1) < 0.001f ? 1 : eta;
     side[1].eta = 1 / side[0].eta;
     for (int i = 0; i < (clear > 0 && !thin_ ? 2 : 1); ++i) {
       side[i].albedo = boundary_albedo(ggx, side[i].eta, thin_);

@@ -21,8 +21,8 @@ struct BoundarySide {
 class Material {
  public:
   /// Some ten milliseconds: albedos of rough boundaries are integrated. Throws Error(usage) for values out of range (check()).
-  /// `length`: of a length of the description, in those of rays.
-  explicit Material(const SurfaceMaterial& described, double length = 1);
+  /// `length`: of a length of the description, in those of rays. `around`: index of refraction of what a clear body is in.
+  explicit Material(const SurfaceMaterial& described, double length = 1, double around = 1);
 
   Vec3f base_color() const { return base_color_; }
   Vec3f emission() const { return emission_; }
@@ -30,7 +30,9 @@ class Material {
   bool thin() const { return thin_; }
   /// Whether rays go on inside: a body behind the surface, with an index of refraction and absorption of its own.
   bool has_inside() const { return clear > 0 && metalness < 1 && retro < 1 && !thin_; }
-  float ior() const { return side[0].eta; }
+  float ior() const { return ior_; }
+  /// Of clear bodies that overlap; 0: none (insides.h).
+  int priority() const { return priority_; }
   /// Per length inside the clear body: light fades by exp(-absorption length).
   Vec3f absorption() const { return absorption_; }
   /// Mean free paths, share and mean cosine of scattering below the surface (subsurface.h).
@@ -72,7 +74,8 @@ class Material {
 
  private:
   Vec3f base_color_, emission_, absorption_, subsurface_radius_;
-  float subsurface_anisotropy_ = 0;
+  float subsurface_anisotropy_ = 0, ior_ = 1;
+  int priority_ = 0;
   bool thin_ = false;
   Vec3f conductor_average_;
 };

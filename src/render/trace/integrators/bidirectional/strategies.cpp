@@ -127,7 +127,7 @@ std::optional<Contribution> Strategies::asked(const SubPath& camera, int i, Numb
   if (!shines(value)) return {};
   const Vec3f from = leave(v.at.point, light->direction);
   // Up to the light's own surface, which is an item or is not.
-  value = value * scene_.world.passes({from, light->direction, light->distance * (1 - 1e-4f)});
+  value = value * scene_.world.passes({from, light->direction, light->distance * (1 - 1e-4f)}, v.insides_along(light->direction));
   if (!shines(value)) return {};
   densities_.reset(size_t(v.level) + 2);
   take_camera(camera, i);
@@ -154,10 +154,7 @@ std::optional<Contribution> Strategies::joined(const SubPath& light, int i, cons
   if (!shines(value)) return {};
   const Vec3f from = leave(y.at.point, direction), to = leave(z.at.point, -direction), between = to - from;
   const float free = length(between);
-  if (free > 0) value = value * scene_.world.passes({from, between / free, free * (1 - 1e-4f)});
-  const Vec3f absorption = y.absorption_along(direction);
-  for (int c = 0; c < 3; ++c)
-    if (absorption[c] > 0) value[c] *= std::exp(-absorption[c] * d);
+  if (free > 0) value = value * scene_.world.passes({from, between / free, free * (1 - 1e-4f)}, y.insides_along(direction));
   if (!shines(value)) return {};
   densities_.reset(size_t(y.level) + size_t(z.level) + 2);
   take_light(light, i), take_camera(camera, j);
@@ -177,7 +174,8 @@ std::optional<Contribution> Strategies::onto_picture(const SubPath& light, int i
   if (!t) return {};
   Vec3f value = y.throughput * t->scattered * (sight->importance / float(scene_.camera.pixels()));
   if (!shines(value)) return {};
-  value = value * scene_.world.passes({leave(y.at.point, sight->direction), sight->direction, sight->distance});
+  value = value *
+          scene_.world.passes({leave(y.at.point, sight->direction), sight->direction, sight->distance}, y.insides_along(sight->direction));
   if (!shines(value)) return {};
   densities_.reset(size_t(y.level) + 2);
   take_light(light, i);

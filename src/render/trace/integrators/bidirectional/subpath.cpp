@@ -23,7 +23,8 @@ class Walk {
   void go(Ray ray, Vec3f throughput) {
     const World& world = scene_.world;
     const bool from_camera = transport_ == Transport::radiance;
-    Vec3f absorption, turned_at = ray.origin;
+    Insides insides = from_camera ? world.insides_of_viewer() : Insides();
+    Vec3f turned_at = ray.origin;
     float since = 0;
     double pdf = 0;  // of the direction since the last turn
     for (int last = -1;;) {
@@ -37,14 +38,20 @@ class Walk {
         if (from_camera && last < 0) path_.passed = luminance(throughput);
         return;
       }
-      if (carries(absorption))
+      if (const Vec3f absorption = insides.absorption(); carries(absorption))
         for (int c = 0; c < 3; ++c) throughput[c] *= std::exp(-absorption[c] * hit.t);
 
       PathVertex v;
-      v.at = world.at(ray, hit);
+      v.at = world.at(ray, hit, {}, false, insides);
+      if (v.at.hidden) {
+        insides = v.at.onward(insides, ray.direction, ray.direction);
+        since += hit.t;
+        ray = {leave(v.at.point, ray.direction), ray.direction, end - hit.t};
+        continue;
+      }
       v.parent = last, v.level = last < 0 ? 1 : path_.vertex(last).level + 1;
       v.to_parent = -ray.direction, v.distance = since + hit.t;
-      v.throughput = throughput, v.around = absorption;
+      v.throughput = throughput, v.around = insides;
       v.forward = forward_density(v, pdf);
       if (last < 0 && from_camera) path_.straight += throughput * v.at.emission;
       const int here = int(path_.vertices.size());
@@ -61,6 +68,7 @@ class Walk {
       if ((dot(direction, v.at.point.face_normal) > 0) != (s->direction.z > 0)) return;
       throughput = throughput * s->weight;
       const Vec3f from = leave(v.at.point, direction);
+      if (s->crossed) insides = v.insides_along(direction);
       if (passes) {
         since += hit.t;
         ray = {from, direction, end - hit.t};
@@ -70,7 +78,6 @@ class Walk {
         set_reverse(v, s->delta ? double(std::abs(wo.z)) : double(v.at.bsdf.pdf(s->direction, wo)));
         pdf = s->delta ? double(s->eta) * double(s->eta) * double(std::abs(s->direction.z)) : double(s->pdf);
         last = here, since = 0, turned_at = from;
-        if (s->transmitted && v.at.material->has_inside()) absorption = s->direction.z < 0 ? v.at.material->absorption() : Vec3f();
         ray = {from, direction, no_end};
       }
       if (scene_.roulette && v.level > 3) {
@@ -118,12 +125,6 @@ void clear(SubPath& path) {
 }
 
 }  // namespace
-
-Vec3f PathVertex::absorption_along(Vec3f direction) const {
-  const float here = at.frame.to_local(to_parent).z, there = at.frame.to_local(direction).z;
-  if ((here > 0) == (there > 0) || !at.material->has_inside()) return around;
-  return there < 0 ? at.material->absorption() : Vec3f();
-}
 
 double per_area(double per_solid_angle, Vec3f normal, Vec3f direction, float distance) {
   const double cosine = normal == Vec3f() ? 1 : double(std::abs(dot(normal, direction)));

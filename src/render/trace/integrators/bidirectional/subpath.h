@@ -30,13 +30,13 @@ struct PathVertex {
   Vec3f to_parent;     ///< unit
   float distance = 0;  ///< from the parent, or infinite: a light
   Vec3f throughput;    ///< of all before this vertex
-  Vec3f around;        ///< absorption of the matter that the path came through
+  Insides around;      ///< the bodies that the path came through
   double forward = 0;  ///< density with which it was drawn
   double reverse = 0;  ///< density with which the path the other way would draw it, if this one goes on for two vertices or more
 
   Vec3f local_parent() const { return at.frame.to_local(to_parent); }
-  /// Absorption on the side of a direction.
-  Vec3f absorption_along(Vec3f direction) const;
+  /// The bodies on the side of a direction.
+  Insides insides_along(Vec3f direction) const { return at.onward(around, -to_parent, direction); }
 };
 
 /// A stretch after a turn, in which lights that are no items may be met.

@@ -115,6 +115,19 @@ TEST_CASE("all the same: rough glass that absorbs, with something in it") {
   check_all(s, true, 0.06);
 }
 
+TEST_CASE("all the same: rough glass that stands in rough water, both of which absorb") {
+  LightScene s = on_floor();
+  SurfaceMaterial glass = preset_material(MaterialPreset::frosted_glass), water = glass;
+  glass.dielectric_priority = 2, glass.transmission_color = {0.9, 0.5, 0.3}, glass.transmission_depth = 0.4;
+  water.dielectric_priority = 1, water.transmission_color = {0.3, 0.6, 0.9}, water.transmission_depth = 0.4, water.specular_ior = 1.33;
+  s.scene.items.emplace_back(ball({-0.1f, 0.1f, -0.4f}, 0.4f, 24, water, 1));
+  s.scene.items.emplace_back(ball({0.2f, 0.1f, -0.4f}, 0.3f, 24, glass, 1));
+  s.scene.items.emplace_back(ball({0.05f, 0.1f, -0.4f}, 0.1f, 12, diffuse(), 0.7));
+  s.lights = {DiscLight{{0, -0.5f, 0.8f}, normalize(Vec3f{0, 0.4f, -1}), 0.4f, white * 6}};
+  s.bounces = 6;
+  check_all(s, true, 0.06);
+}
+
 TEST_CASE("all the same: rough metal, and a coarse ball with rounded normals") {
   LightScene s = on_floor();
   SurfaceMaterial metal = preset_material(MaterialPreset::copper);
