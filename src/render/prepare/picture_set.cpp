@@ -36,6 +36,8 @@ std::optional<PlacedPicture> placed(const std::optional<SurfacePicture>& picture
   const Field& f = field(picture->coordinates);
   const Field* second = picture->second_coordinates.empty() ? nullptr : &field(picture->second_coordinates);
   const auto& p = picture->place;
+  if (!second && f.components() < 2 && (p[1] != 0 || p[4] != 0))
+    fail_usage(fmt::format("field '{}' has {} component, texture coordinates have 2", f.name, f.components()), "picture");
   const std::string key =
       fmt::format("picture/{}/{}/{},{},{},{},{},{}", f.name, picture->second_coordinates, p[0], p[1], p[2], p[3], p[4], p[5]);
   return PlacedPicture{picture->texture, picture->lookup,

@@ -7,6 +7,7 @@
 
 #include "render/trace/integrators/integrator.h"
 #include "render/trace/integrators/subsurface_walk.h"
+#include "render/trace/light/fade.h"
 #include "render/trace/light/luminance.h"
 #include "render/trace/sampling/mis.h"
 #include "render/trace/sampling/warp.h"
@@ -92,15 +93,15 @@ class PathIntegrator : public Integrator {
         matter = media->collide(path.ray, u, random);
         if (matter) path.ray.t_max = matter->t;
       }
+      const Vec3f absorption = path.insides.absorption();
       if (!path.straight) {
         const Ray seen{path.turned_at, path.ray.direction, path.since + path.ray.t_max};
-        out.radiance += path.throughput * world.lamps().seen(seen, path.since, path.pdf);
+        out.radiance += path.throughput * world.lamps().seen(seen, path.since, path.pdf, absorption);
       } else if (!met && !matter) {
         out.passed = luminance(path.throughput);
       }
       if (!met && !matter) break;
-      if (const Vec3f absorption = path.insides.absorption(); !is_dark(absorption))
-        for (int c = 0; c < 3; ++c) path.throughput[c] *= std::exp(-absorption[c] * path.ray.t_max);
+      path.throughput = path.throughput * fade(absorption, path.ray.t_max);
       if (!(matter ? scatter(world, media, *matter, path, sampler, out) : meet(world, media, hit, path, sampler, out))) break;
     }
   }

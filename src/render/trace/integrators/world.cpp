@@ -6,6 +6,7 @@
 
 #include "render/prepare/picture_set.h"
 #include "render/trace/integrators/surface_color.h"
+#include "render/trace/light/fade.h"
 #include "render/trace/light/luminance.h"
 
 namespace sg::trace {
@@ -83,6 +84,8 @@ World::World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_
 void World::find_boundaries() {
   const auto orders = [](const Material& m) { return m.priority() > 0 && m.has_inside(); };
   const size_t items = scene_->items.size();
+  for (const auto& m : materials_)
+    insides_matter_ = insides_matter_ || (m->has_inside() && (m->absorption() != Vec3f() || m->priority() > 0));
   for (size_t i = 0; i < materials_.size(); ++i) {
     const Material& of = *materials_[i];
     const std::optional<SurfaceMaterial>& made_of = i < items ? scene_->items[i].made_of : isosurfaces_[i - items].made_of;
@@ -103,6 +106,7 @@ const Material& World::boundary(const Material& of, const Material& in) const {
 }
 
 Insides World::insides_at(Vec3f place, Vec3f direction) const {
+  if (!insides_matter_) return {};
   std::vector<ClearBody> entered, around;
   Hit hit;
   for (Ray ray{place, direction}; geometry_.nearest(ray, hit); hit = Hit()) {
@@ -188,20 +192,11 @@ Vertex World::at(const Ray& ray, const Hit& hit, const RayFootprint& footprint, 
 
 Vec3f World::passes(Ray ray, Insides insides) const {
   Vec3f share{1, 1, 1};
-  const auto fade = [&](float length) {
-    const Vec3f absorption = insides.absorption();
-    for (int c = 0; c < 3; ++c)
-      if (absorption[c] > 0) share[c] *= std::exp(-absorption[c] * length);
-  };
-  if (!translucent_) {
-    if (geometry_.blocked(ray)) return {};
-    fade(ray.t_max);
-    return share;
-  }
+  if (!translucent_) return geometry_.blocked(ray) ? Vec3f() : fade(insides.absorption(), ray.t_max);
   while (!(share == Vec3f())) {
     Hit hit;
     const bool met = geometry_.nearest(ray, hit);
-    fade(met ? hit.t : ray.t_max);
+    share = share * fade(insides.absorption(), met ? hit.t : ray.t_max);
     if (!met) break;
     const Vertex v = at(ray, hit, {}, false, insides);
     if (!v.hidden) share = share * v.bsdf.straight_on(v.frame.to_local(-ray.direction));

@@ -58,7 +58,8 @@ class World {
   /// With `walks` the part of light that wanders below a surface which is met from outside is the integrator's (walk_below()). `around`:
   /// the bodies that the ray came through.
   Vertex at(const Ray& ray, const Hit& hit, const RayFootprint& footprint = {}, bool walks = false, const Insides& around = {}) const;
-  /// The bodies that are around a place: those that a ray from there comes out of before it has entered them.
+  /// The bodies that are around a place: those that a ray from there comes out of before it has entered them. Nothing where it does not
+  /// matter to light: where no body absorbs or has a priority.
   Insides insides_at(Vec3f place, Vec3f direction) const;
   /// Where paths from the camera begin. What is there: insides_of_viewer().
   void look_from(const Ray& ray) { insides_of_viewer_ = insides_at(ray.origin, ray.direction); }
@@ -94,6 +95,7 @@ class World {
     std::unique_ptr<const Material> material;
   };
   Insides insides_of_viewer_;
+  bool insides_matter_ = false;
   std::vector<Boundary> boundaries_;  ///< of bodies with priorities, against each other
   bool translucent_ = false, pictures_ = false;
 };

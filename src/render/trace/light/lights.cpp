@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/overloaded.h"
 #include "render/prepare/picture_set.h"
+#include "render/trace/light/fade.h"
 #include "render/trace/light/luminance.h"
 #include "render/trace/sampling/local_frame.h"
 #include "render/trace/sampling/mis.h"
@@ -234,13 +235,14 @@ std::optional<uint32_t> Lights::choose(float choice) const {
   return uint32_t(choice_->sample(choice).cell);
 }
 
-Vec3f Lights::seen(const Ray& ray, float t_min, float pdf) const {
+Vec3f Lights::seen(const Ray& ray, float t_min, float pdf, Vec3f absorption) const {
   Vec3f sum;
   for (const uint32_t i : met_)
     if (const auto s = std::visit([&](const auto& l) { return seen_one(l, ray, t_min); }, lights_[i]))
-      sum += s->radiance * power_weight(pdf, choice_->probability(i) * s->pdf);
+      sum += s->radiance * fade(absorption, s->t - t_min) * power_weight(pdf, choice_->probability(i) * s->pdf);
   if (ray.t_max == infinite && !environment_.dark())
-    sum += environment_.radiance(ray.direction) * power_weight(pdf, chance(uint32_t(lights_.size())) * environment_.pdf(ray.direction));
+    sum += environment_.radiance(ray.direction) * fade(absorption, infinite) *
+           power_weight(pdf, chance(uint32_t(lights_.size())) * environment_.pdf(ray.direction));
   return sum;
 }
 

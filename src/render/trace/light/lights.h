@@ -99,8 +99,8 @@ class Lights {
   std::optional<LightSample> sample(Vec3f from, float choice, Vec2f u) const;
   /// Radiance of all lights that are no items along the ray between t_min and t_max, and of what is infinitely far if that is infinite.
   /// Lights hide nothing, each other neither. `pdf`: with which the ray's direction was drawn at its origin; each light gets the share of
-  /// that way (power heuristic) beside sample() from there. Infinite: all of it.
-  Vec3f seen(const Ray& ray, float t_min, float pdf) const;
+  /// that way (power heuristic) beside sample() from there. Infinite: all of it. `absorption`: of the matter from t_min on.
+  Vec3f seen(const Ray& ray, float t_min, float pdf, Vec3f absorption = {}) const;
   /// The density with which sample() draws a triangle that is an item, seen from that far at that cosine; 0 for others.
   float triangle_pdf(uint32_t object, uint32_t primitive, float distance, float cosine) const;
   const Environment& environment() const { return environment_; }

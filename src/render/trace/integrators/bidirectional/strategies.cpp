@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "render/trace/light/fade.h"
+
 namespace sg::trace {
 
 namespace {
@@ -101,7 +103,7 @@ const std::vector<MetLight>& Strategies::met_in(const Stretch& stretch) {
 }
 
 std::optional<Contribution> Strategies::met(const SubPath& camera, const Stretch& stretch, const MetLight& m) {
-  const Vec3f value = stretch.throughput * m.radiance, way = stretch.ray.direction;
+  const Vec3f way = stretch.ray.direction, value = stretch.throughput * m.radiance * fade(stretch.absorption, m.distance - stretch.t_min);
   if (!shines(value)) return {};
   const PathVertex& next = camera.vertex(stretch.after);
   densities_.reset(size_t(next.level) + 2);

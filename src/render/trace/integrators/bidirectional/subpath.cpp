@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "render/trace/light/fade.h"
 #include "render/trace/light/luminance.h"
 
 namespace sg::trace {
@@ -20,10 +21,9 @@ class Walk {
   Walk(const PathScene& scene, Transport transport, int levels, Numbers& numbers, SubPath& path)
       : scene_(scene), transport_(transport), levels_(levels), numbers_(numbers), path_(path) {}
 
-  void go(Ray ray, Vec3f throughput) {
+  void go(Ray ray, Vec3f throughput, Insides insides) {
     const World& world = scene_.world;
     const bool from_camera = transport_ == Transport::radiance;
-    Insides insides = from_camera ? world.insides_of_viewer() : Insides();
     Vec3f turned_at = ray.origin;
     float since = 0;
     double pdf = 0;  // of the direction since the last turn
@@ -33,13 +33,12 @@ class Walk {
       const bool met = world.geometry().nearest(ray, hit);
       ray.t_max = met ? hit.t : end;
       if (from_camera && last >= 0)
-        path_.stretches.push_back({last, {turned_at, ray.direction, since + ray.t_max}, since, pdf, throughput});
+        path_.stretches.push_back({last, {turned_at, ray.direction, since + ray.t_max}, since, pdf, throughput, insides.absorption()});
       if (!met) {
         if (from_camera && last < 0) path_.passed = luminance(throughput);
         return;
       }
-      if (const Vec3f absorption = insides.absorption(); carries(absorption))
-        for (int c = 0; c < 3; ++c) throughput[c] *= std::exp(-absorption[c] * hit.t);
+      throughput = throughput * fade(insides.absorption(), hit.t);
 
       PathVertex v;
       v.at = world.at(ray, hit, {}, false, insides);
@@ -141,7 +140,7 @@ float rounded_normal_factor(const Vertex& v, Vec3f local_to_light, Vec3f to_ligh
 void walk_from_camera(const PathScene& scene, Vec2f pixel, int levels, Numbers& numbers, SubPath& path) {
   clear(path);
   path.pixel = pixel;
-  Walk(scene, Transport::radiance, levels, numbers, path).go(scene.camera.ray(pixel), {1, 1, 1});
+  Walk(scene, Transport::radiance, levels, numbers, path).go(scene.camera.ray(pixel), {1, 1, 1}, scene.world.insides_of_viewer());
 }
 
 void walk_from_light(const PathScene& scene, int levels, Numbers& numbers, SubPath& path) {
@@ -152,7 +151,8 @@ void walk_from_light(const PathScene& scene, int levels, Numbers& numbers, SubPa
   if (!path.emitted || levels < 1) return;
   Walk walk(scene, Transport::importance, levels, numbers, path);
   walk.starts_with(path.emitted->weight);
-  walk.go({path.emitted->leaves, path.emitted->direction, path.emitted->t_max}, path.emitted->weight);
+  const EmittedRay& e = *path.emitted;
+  walk.go({e.leaves, e.direction, e.t_max}, e.weight, e.at_infinity ? Insides() : scene.world.insides_at(e.leaves, e.direction));
   // Of lights at infinity the disc that their rays start from is no place that anything is at.
   if (path.emitted->at_infinity)
     for (PathVertex& v : path.vertices)

@@ -46,6 +46,7 @@ struct Stretch {
   float t_min;  ///< where it begins
   double pdf;   ///< density of the direction, per solid angle
   Vec3f throughput;
+  Vec3f absorption;  ///< of the matter there
 };
 
 struct SubPath {

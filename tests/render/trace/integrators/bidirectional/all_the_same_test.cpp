@@ -128,6 +128,17 @@ TEST_CASE("all the same: rough glass that stands in rough water, both of which a
   check_all(s, true, 0.06);
 }
 
+TEST_CASE("all the same: lamps in matter that absorbs, which are met and asked for") {
+  LightScene s = on_floor();
+  SurfaceMaterial matter = preset_material(MaterialPreset::glass);
+  matter.specular_ior = 1, matter.transmission_color = {0.3, 0.5, 0.7}, matter.transmission_depth = 0.5;
+  s.scene.items.emplace_back(ball({0, 0, 0}, 0.85f, 24, matter, 1));
+  s.scene.items.emplace_back(ball({0, 0.1f, -0.3f}, 0.3f, 12, diffuse(), 0.7));
+  s.lights = {SphereLight{{0.2f, -0.2f, 0.3f}, 0.25f, white * 6},
+              DiscLight{{-0.9f, -0.5f, 0.6f}, normalize(Vec3f{1, 0.5f, -0.8f}), 0.3f, white * 6}};
+  check_all(s, true, 0.06);
+}
+
 TEST_CASE("all the same: rough metal, and a coarse ball with rounded normals") {
   LightScene s = on_floor();
   SurfaceMaterial metal = preset_material(MaterialPreset::copper);

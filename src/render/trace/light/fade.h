@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cmath>
+
+#include "base/vec.h"
+
+namespace sg::trace {
+
+/// What is left of light after a length in matter that absorbs (Beer, Lambert): exp(-absorption length). The length may be infinite.
+inline Vec3f fade(Vec3f absorption, float length) {
+  Vec3f left{1, 1, 1};
+  for (int c = 0; c < 3; ++c)
+    if (absorption[c] > 0) left[c] = std::exp(-absorption[c] * length);
+  return left;
+}
+
+}  // namespace sg::trace
