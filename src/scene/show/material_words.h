@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The words for what a surface is made of: a preset, and parameters that replace those of it, as numbers or by a field.
 #pragma once
+#include "base/context.h"
 #include "base/schema/schema.h"
 #include "data/dataset.h"
 #include "scene/items/surface_material.h"

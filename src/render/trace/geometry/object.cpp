@@ -22,8 +22,36 @@ using raster::PreparedItem;
 struct PlacedTriangles {
   Placement placement;
   Triangles triangles;
+  bool inside_out = false;  ///< closed, with triangles that wind so that their normals look into the body
   size_t bytes() const { return triangles.bytes(); }
 };
+
+/// A closed surface encloses a volume of sum a . (b x c) / 6, negative where its normals look inward, and its areas as vectors add up to 0.
+bool inside_out(const raster::TriangleSet& set, Vec3 middle) {
+  struct Sums {
+    double volume = 0, area = 0;
+    Vec3 areas;
+  };
+  const auto* corners = set.indices();
+  const Sums sums = parallel_reduce(
+      set.count, size_t(1) << 14, Sums{},
+      [&](size_t begin, size_t end) {
+        Sums s;
+        for (size_t t = begin; t < end; ++t) {
+          Vec3 p[3];
+          for (size_t k = 0; k < 3; ++k) p[k] = world_point(set.positions, set.origin, corners[3 * t + k]) - middle;
+          const Vec3 area = cross(p[1] - p[0], p[2] - p[0]);
+          if (!std::isfinite(dot(area, area))) continue;
+          s.volume += dot(p[0], cross(p[1], p[2])), s.areas += area, s.area += length(area);
+        }
+        return s;
+      },
+      [](Sums a, const Sums& b) {
+        a.volume += b.volume, a.areas += b.areas, a.area += b.area;
+        return a;
+      });
+  return sums.volume < 0 && length(sums.areas) < 1e-3 * sums.area;
+}
 
 std::shared_ptr<const PlacedTriangles> tree_of(const DatasetPtr& data, const raster::TriangleSet& set, Context& context) {
   return raster::derived(data, "traced triangles", [&] {
@@ -31,6 +59,7 @@ std::shared_ptr<const PlacedTriangles> tree_of(const DatasetPtr& data, const ras
     const auto* corners = set.indices();
     t.placement = Placement::of(box_of(set.positions, set.origin, 3 * set.count, [&](size_t i) { return corners[i]; }));
     t.triangles = Triangles({set.xyz(), corners, set.count, t.placement.middle - set.origin, t.placement.scale}, context);
+    t.inside_out = inside_out(set, t.placement.middle);
     return t;
   });
 }
@@ -51,7 +80,7 @@ class SurfaceObject : public Geometry::Object {
     const Vec3 a(c[0]), ab = Vec3(c[1]) - a, ac = Vec3(c[2]) - a;
     Place p;
     p.place = a + ab * double(hit.u) + ac * double(hit.v);
-    p.normal = normalize(cross(ab, ac)), p.along = ab;
+    p.normal = outer(normalize(cross(ab, ac))), p.along = ab;
     p.shading = smooth(hit, p.normal);
     return p;
   }
@@ -59,6 +88,7 @@ class SurfaceObject : public Geometry::Object {
   size_t bytes() const override { return kept_->bytes(); }
 
  protected:
+  Vec3 outer(Vec3 normal) const { return kept_->inside_out ? -normal : normal; }
   Vec3 smooth(const Hit& hit, Vec3 otherwise) const {
     if (normals_.normals.empty()) return otherwise;
     const uint32_t* corner = normals_.corners.empty() ? set_.indices() : reinterpret_cast<const uint32_t*>(normals_.corners.raw());
@@ -106,7 +136,7 @@ class CopyObject final : public SurfaceObject {
     const auto c = kept_->triangles.corners(hit.primitive);
     const Vec3 ab = out_.linear * (Vec3(c[1]) - Vec3(c[0])), ac = out_.linear * (Vec3(c[2]) - Vec3(c[0]));
     Place p;
-    p.place = out_(inner.place), p.along = ab, p.normal = normalize(cross(ab, ac));
+    p.place = out_(inner.place), p.along = ab, p.normal = outer(normalize(cross(ab, ac)));
     // A ray that starts there is rounded in the tree's coordinates, too.
     for (int r = 0; r < 3; ++r)
       for (int k = 0; k < 3; ++k) p.error[r] += std::abs(out_.linear.m[r][k]) * (std::abs(inner.place[k]) * half_unit + 0x1p-42);

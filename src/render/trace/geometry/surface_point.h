@@ -10,7 +10,7 @@ namespace sg::trace {
 struct SurfacePoint {
   Vec3f position;        ///< traced coordinates
   Vec3f error;           ///< the surface lies within that of the position, along each axis
-  Vec3f face_normal;     ///< unit; of the side that the surface's winding calls outer, whichever the ray met
+  Vec3f face_normal;     ///< unit; of the outer side, whichever the ray met: of closed surfaces the one out of the body, else by winding
   Vec3f shading_normal;  ///< unit, on the side of face_normal
   Vec3f tangent;         ///< unit, across shading_normal: along a triangle's first edge, a tube's axis; anywhere on balls and discs
   uint32_t object = 0, primitive = 0;

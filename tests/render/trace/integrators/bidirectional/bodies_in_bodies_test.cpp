@@ -101,6 +101,21 @@ TEST_CASE("bodies in bodies: light fades by the one that is there, on paths and 
   }
 }
 
+TEST_CASE("bodies in bodies: closed surfaces have their inside within, whichever way their triangles wind") {
+  SurfaceItem turned = slab(-0.6f, 0.5f, clear(1.5, 0));
+  SurfaceMesh mesh = std::get<SurfaceMesh>(turned.data->mesh());
+  const Array given = mesh.polygons.connectivity;
+  std::vector<int32_t> indices;
+  for (size_t i = given.count(); i-- > 0;) indices.push_back(int32_t(given.get(i)));
+  mesh.polygons.connectivity = Array::from_vector(std::move(indices));
+  turned.data = make_dataset(Mesh(std::move(mesh)));
+  const LitWorld w = over_light({turned});
+  Hit hit;
+  REQUIRE(w.world.geometry().nearest(down, hit));
+  CHECK(w.world.at(down, hit).point.face_normal == Vec3f(0, 0, 1));
+  check_seen(w, passed({1, 1.5, 1}));
+}
+
 TEST_CASE("bodies in bodies: a camera in a clear body sees through what is there of it") {
   LitWorld w = over_light({slab(-0.6f, 0.5f, clear(1, 0, {0.5, 0.5, 0.5}, 1)), slab(-0.4f, -0.2f, clear(1, 0, {0.1, 0.1, 0.1}, 1))});
   const Ray from_inside{{0.1f, 0.07f, 0.3f}, {0, 0, -1}};
