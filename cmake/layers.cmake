@@ -7,7 +7,7 @@ set(SG_QUICK_LAYERS io scene pipeline api serve cli)
 # Folders whose loops are worth all that the optimiser has (-O3), as is vector code everywhere: their benchmarks (bench/) are slower without.
 # Other files of layers that are not quick to compile get -O2, in a fifth less time.
 set(SG_FAST_FOLDERS
-    filter/field filter/glyph filter/mesh/clip filter/mesh/faces filter/mesh/slice index io/bytes io/surface io/text io/vtk simulate)
+    filter/field filter/flow filter/glyph filter/mesh/clip filter/mesh/faces filter/mesh/slice index io/bytes io/surface io/text io/vtk simulate)
 
 # base and image know no data; all others start from the headers of data, which nearly every file includes. GCC takes the level of
 # optimisation from the precompiled header, so each level has one of its own: of base and data, and of targets that are made before others.
