@@ -93,7 +93,7 @@ function(sg_joined out)
   set(${out} ${result} PARENT_SCOPE)
 endfunction()
 
-# sg_fast_sources(REST FAST sources...): divides them by SG_FAST_FOLDERS and by whether they are vector code. Layers below data have one level.
+# sg_fast_sources(REST FAST sources...): divides them by SG_FAST_FOLDERS and by whether they are vector code. base, image and data have one level.
 function(sg_fast_sources rest fast)
   set(fast_files)
   set(rest_files)

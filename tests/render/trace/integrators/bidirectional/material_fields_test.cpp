@@ -57,7 +57,7 @@ TEST_CASE("materials by fields: roughness, metal and light are what the fields s
       check_alpha(*v.material, rough);
       CHECK(double(v.emission.y) == Approx(std::max(0.0, 8 * rough - 2)).epsilon(1e-4));
     }
-  // The light is one that surfaces ask for: as much is sent out as the field says, pi times its mean over the square.
+  // Other surfaces ask for this light.
   CHECK(w.world.lights().any());
 }
 
