@@ -26,7 +26,8 @@ struct PlacedTriangles {
   size_t bytes() const { return triangles.bytes(); }
 };
 
-/// A closed surface encloses a volume of sum a . (b x c) / 6, negative where its normals look inward, and its areas as vectors add up to 0.
+/// A closed surface encloses a volume of sum a . (b x c) / 6, negative where its normals look inward, and its areas as vectors add up to 0;
+/// small holes, as scanners leave them, change little.
 bool inside_out(const raster::TriangleSet& set, Vec3 middle) {
   struct Sums {
     double volume = 0, area = 0;
@@ -50,7 +51,7 @@ bool inside_out(const raster::TriangleSet& set, Vec3 middle) {
         a.volume += b.volume, a.areas += b.areas, a.area += b.area;
         return a;
       });
-  return sums.volume < 0 && length(sums.areas) < 1e-3 * sums.area;
+  return sums.volume < 0 && length(sums.areas) < 0.1 * sums.area;
 }
 
 std::shared_ptr<const PlacedTriangles> tree_of(const DatasetPtr& data, const raster::TriangleSet& set, Context& context) {
