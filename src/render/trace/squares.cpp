@@ -10,6 +10,7 @@
 #include "data/memory/memory_budget.h"
 #include "render/prepare/shared_progress.h"
 #include "render/trace/light/luminance.h"
+#include "render/trace/integrators/first_met.h"
 #include "render/trace/progress/pixel_noise.h"
 #include "render/trace/sampling/random_stream.h"
 #include "render/trace/sampling/warp.h"
@@ -94,21 +95,7 @@ class Drawing {
   /// What the middle of each pixel sees.
   void look(size_t square, MediaWalk* media) {
     const Place at = place(square);
-    for (int p = 0; p < at.w * at.h; ++p) {
-      const size_t i = pixel(at, p);
-      const Vec2f middle{float(at.x + p % at.w) + 0.5f, float(at.y + p / at.w) + 0.5f};
-      const Ray ray = picture_.camera.ray(middle);
-      Hit hit;
-      if (picture_.world.geometry().nearest(ray, hit)) frame_.ids[i] = picture_.world.id(hit);
-      if (media) {
-        // Where half of the light is gone; of several volumes at one place, about there.
-        RandomStream random(i);
-        const float passes = media->passes_exactly({ray.origin, ray.direction, hit.t});
-        const auto matter = passes <= 0.5f ? media->collide_surely(0.5f / (1 - passes), random) : std::nullopt;
-        if (matter) hit.t = matter->t, frame_.ids[i] = matter->item + 1;
-      }
-      if (frame_.ids[i] != 0) frame_.depth[i] = float(picture_.camera.depth(middle, hit.t));
-    }
+    for (int p = 0; p < at.w * at.h; ++p) see_first_met(picture_.world, picture_.camera, media, pixel(at, p), frame_);
   }
 
   void report(TraceReport& r) const {

@@ -64,6 +64,11 @@ World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Proje
           media,    std::move(isosurfaces.looks), scene.shows};
 }
 
+bool shows_surfaces_within(const Item& item) {
+  const auto* v = std::get_if<VolumeItem>(&item);
+  return v && v->mode == RayFunction::composite && v->shaded && v->scattering.light != VolumeLighting::emission;
+}
+
 /// What is around the scene, as the middle of each pixel sees it.
 void put_behind(Frame& frame, const PictureCamera& camera, const Backdrop& backdrop) {
   for (int y = 0; y < frame.height; ++y)
@@ -108,15 +113,14 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
   Plane<float> variance;
   variance.assign(frame.pixels(), 0);
   if (lights_whole_picture(options.integrator)) {
-    if (world.has_media())
-      fail_usage(fmt::format("integrator={} does not light volumes", word_of(options.integrator)), "integrator", "use integrator=path");
-    if (projection.lens > 0)
-      fail_usage(fmt::format("integrator={} sees through a pinhole", word_of(options.integrator)), "aperture",
-                 "leave out aperture=, or use integrator=path");
     if (std::any_of(prepared->items.begin(), prepared->items.end(), [](const auto& i) { return i.pictures && i.pictures->isolines; }))
       context.info(
           "lines of equal value are left out: their width is one of pixels, which paths from the lights do not know; "
           "integrator=path draws them");
+    if (options.integrator == IntegratorKind::light && std::any_of(scene.items.begin(), scene.items.end(), shows_surfaces_within))
+      context.info(
+          "surfaces within volumes are left out, which paths from the lights do not find: shaded=no shows them as matter, integrator=bdpt as "
+          "they are");
     draw_whole_picture(world, camera, options, sweeps, frame, variance, report, context);
   } else {
     LitPicture picture{world, camera, backdrop, {}, options};

@@ -15,7 +15,7 @@ namespace sg {
 /// paths may end in any pixel finish the picture as a whole (integrators/bidirectional/whole_picture.h). The report has the pixels' errors,
 /// before `denoise`. The same bytes for any number of threads, with `watch` and without; options.seconds alone makes a picture that depends
 /// on the machine, and report.stopped tells how to have it again. `watch` gets pictures that are not denoised. Throws Error(usage) for
-/// volumes that are no matter (another mode than composite) or in front of such integrators, and for options out of range.
+/// volumes that are no matter (another mode than composite), and for options out of range.
 Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Projection& projection, const LightOptions& options,
                   TraceReport& report, Context& context, const LightWatch& watch = {});
 

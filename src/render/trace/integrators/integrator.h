@@ -15,6 +15,9 @@ struct Estimate {
   float passed = 0;  ///< share that went straight on to the background, which is not in the radiance
 };
 
+/// Most turns of a path in media for each one at a surface that it may make: matter turns light much more often.
+constexpr int matter_turns = 128;
+
 class Integrator {
  public:
   virtual ~Integrator() = default;
@@ -22,9 +25,9 @@ class Integrator {
   virtual Estimate along(const World& world, const Ray& ray, Sampler& sampler, const RayFootprint& footprint = {}) const = 0;
 };
 
-/// Paths from the camera that turn at surfaces, at most `bounces` times, and in media, at most 128 times as often. At each turn one light
-/// is asked for directly (next-event estimation), and weighed against meeting it by chance (Veach 1997); paths that carry little are ended
-/// at random (Russian roulette).
+/// Paths from the camera that turn at surfaces, at most `bounces` times, and in media, at most matter_turns times as often. At each turn one
+/// light is asked for directly (next-event estimation), and weighed against meeting it by chance (Veach 1997); paths that carry little are
+/// ended at random (Russian roulette).
 std::unique_ptr<Integrator> path_integrator(int bounces);
 /// The same where only mirrors and clear glass send paths on.
 std::unique_ptr<Integrator> whitted_integrator(int bounces);

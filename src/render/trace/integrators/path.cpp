@@ -17,8 +17,6 @@ namespace sg::trace {
 namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
-/// Matter turns light much more often than surfaces do.
-constexpr int turns_per_bounce = 128;
 
 bool is_dark(Vec3f c) { return !(c.x > 0 || c.y > 0 || c.z > 0); }
 float most(Vec3f c) { return std::max({c.x, c.y, c.z}); }
@@ -200,37 +198,25 @@ class PathIntegrator : public Integrator {
   bool scatter(const World& world, MediaWalk* media, const Collision& c, Path& path, Sampler& sampler, Estimate& out) const {
     out.radiance += path.throughput * c.emission;
     path.throughput = path.throughput * c.albedo;
-    if (is_dark(path.throughput) || path.turns_in_media >= turns_per_bounce * bounces_) return false;
+    if (is_dark(path.throughput) || path.turns_in_media >= matter_turns * bounces_) return false;
     const bool last = c.last || mirrors_only_;
-    const Vec3f along = path.ray.direction, at = path.ray.origin + along * c.t, from = c.on_surface ? at + c.normal * c.clear : at;
+    const Vec3f along = path.ray.direction, from = c.start(path.ray.origin + along * c.t);
     const auto scattered = [&](Vec3f direction) -> Scattered {
-      const float density =
-          c.on_surface ? std::max(0.f, dot(direction, c.normal)) / std::numbers::pi_v<float> : c.phase.density(dot(along, direction));
+      const float density = c.density(along, direction);
       return {{density, density, density}, last ? 0 : density};
     };
+    const auto start = [&](Vec3f) { return Start{from, path.insides}; };
     const float choice = sampler.next();
     const Vec2f u = sampler.next2();
-    out.radiance += path.throughput * direct(
-                                          world, last ? world.lights() : world.lamps(), media, from,
-                                          [&](Vec3f) {
-                                            return Start{from, path.insides};
-                                          },
-                                          scattered, choice, u, sampler);
+    out.radiance += path.throughput * direct(world, last ? world.lights() : world.lamps(), media, from, start, scattered, choice, u, sampler);
 
     const Vec2f v = sampler.next2();
     const float roulette = sampler.next();
     if (last) return false;
-    Vec3f direction;
-    if (c.on_surface) {
-      direction = LocalFrame::about(c.normal).to_world(cosine_hemisphere(v));
-    } else {
-      const float cosine = c.phase.sample(v.x), sine = std::sqrt(std::max(0.f, 1 - cosine * cosine));
-      const float turn = 2 * std::numbers::pi_v<float> * v.y;
-      direction = LocalFrame::about(along).to_world({sine * std::cos(turn), sine * std::sin(turn), cosine});
-    }
-    direction = normalize(direction);
-    if (!path.footprint.none()) path.footprint = path.footprint.after(c.t).turned(direction, opening_of(scattered(direction).pdf));
-    path.turn(from, direction, scattered(direction).pdf), ++path.turns_in_media;
+    const Vec3f direction = c.sample(along, v);
+    const float pdf = c.density(along, direction);
+    if (!path.footprint.none()) path.footprint = path.footprint.after(c.t).turned(direction, opening_of(pdf));
+    path.turn(from, direction, pdf), ++path.turns_in_media;
     return path.turns <= 3 || survives(path, 1, roulette);
   }
 

@@ -12,13 +12,23 @@ double PictureCamera::start(const Projection::Ray& r) const {
   return std::max(dot(placement_.middle - r.origin, r.direction) - 2 / placement_.scale, projection_.near_plane * r.per_depth);
 }
 
-Ray PictureCamera::ray(Vec2f pixel, Vec2f on_lens) const {
+Vec3 PictureCamera::off_middle(Vec2f on_lens) const {
+  return (projection_.right * double(on_lens.x) + projection_.up * double(on_lens.y)) * (projection_.lens / 2);
+}
+
+// From the lens to where the ray through its middle is sharp.
+Projection::Ray PictureCamera::inner_ray(Vec2f pixel, Vec2f on_lens) const {
   Projection::Ray r = projection_.ray(double(pixel.x), double(pixel.y));
-  if (has_lens()) {
-    const Vec3 sharp = r.origin + r.direction * (projection_.focus * r.per_depth);
-    r.origin += (projection_.right * double(on_lens.x) + projection_.up * double(on_lens.y)) * (projection_.lens / 2);
-    r.direction = normalize(sharp - r.origin);
-  }
+  if (!has_lens()) return r;
+  const Vec3 sharp = r.origin + r.direction * (projection_.focus * r.per_depth);
+  r.origin += off_middle(on_lens);
+  r.per_depth = length(sharp - r.origin) / projection_.focus;
+  r.direction = normalize(sharp - r.origin);
+  return r;
+}
+
+Ray PictureCamera::ray(Vec2f pixel, Vec2f on_lens) const {
+  const Projection::Ray r = inner_ray(pixel, on_lens);
   return {placement_.traced(r.origin + r.direction * start(r)), normalize(Vec3f(r.direction))};
 }
 
@@ -36,23 +46,39 @@ double PictureCamera::depth(Vec2f pixel, float t) const {
   return (start(r) + double(t) / placement_.scale) / r.per_depth;
 }
 
-std::optional<Sight> PictureCamera::sees(Vec3f point) const {
-  const Vec3 world = placement_.world(point), at = projection_.to_pixel(world);
-  if (!(at.z >= projection_.near_plane) || !(at.z > 0 || projection_.parallel)) return {};
+std::optional<Sight> PictureCamera::sees(Vec3f point, Vec2f on_lens) const {
+  const Vec3 world = placement_.world(point);
+  // Through the lens's middle it is a point in focus, on the same ray from the place on the lens, that is seen in that pixel.
+  Vec3 sharp = world;
+  if (has_lens()) {
+    const double depth = projection_.to_eye(world).z;
+    if (!(depth > 0)) return {};
+    const Vec3 off = off_middle(on_lens);
+    if (projection_.parallel) sharp = world + off * (depth / projection_.focus - 1);
+    else sharp = projection_.eye + off + (world - projection_.eye - off) * (projection_.focus / depth);
+  }
+  const Vec3 at = projection_.to_pixel(sharp);
+  if (!(projection_.to_eye(world).z >= projection_.near_plane) || !(at.z > 0 || projection_.parallel)) return {};
   if (!(at.x >= 0 && at.x < projection_.width && at.y >= 0 && at.y < projection_.height)) return {};
-  const Projection::Ray r = projection_.ray(at.x, at.y);
+  const Projection::Ray r = inner_ray({float(at.x), float(at.y)}, on_lens);
   const double before = dot(world - r.origin, r.direction) - start(r);
   if (!(before > 0)) return {};
-  return Sight{Vec2f{float(at.x), float(at.y)}, -normalize(Vec3f(r.direction)), float(before * placement_.scale), float(importance(point))};
+  return Sight{Vec2f{float(at.x), float(at.y)}, -normalize(Vec3f(r.direction)), float(before * placement_.scale),
+               float(importance(point, on_lens))};
 }
 
-double PictureCamera::importance(Vec3f point) const {
-  const double per_traced = projection_.scale / placement_.scale;
-  if (projection_.parallel) return per_traced * per_traced;
+double PictureCamera::importance(Vec3f point, Vec2f on_lens) const {
+  const double per_traced = projection_.scale / placement_.scale, pixels = per_traced * per_traced;  // at depth 1, or at any in parallel
+  const Vec3 off = off_middle(on_lens);
+  if (projection_.parallel) {
+    if (!has_lens()) return pixels;
+    const double f = projection_.focus;
+    return pixels * std::sqrt(f * f + dot(off, off)) / f;  // across a ray that is not square to the picture
+  }
   // Pixels are scale^2 / cos^3 to the solid angle, that 1 / distance^2 to the area across.
-  const Vec3 way = placement_.world(point) - projection_.eye;
+  const Vec3 way = placement_.world(point) - projection_.eye - off;
   const double d2 = dot(way, way), cosine = dot(way, projection_.forward) / std::sqrt(d2);
-  return per_traced * per_traced / (cosine * cosine * cosine * d2);
+  return pixels / (cosine * cosine * cosine * d2);
 }
 
 }  // namespace sg::trace

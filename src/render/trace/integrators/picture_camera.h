@@ -18,8 +18,8 @@ struct Sight {
                      ///< radiance * |cos| * importance over the surfaces that it sees
 };
 
-/// A pinhole, a parallel projection or a thin lens; the way back is that of the pinhole in its middle. Rays begin where they enter a ball
-/// about the scene, so that they lose no digits on the way there.
+/// A pinhole, a parallel projection or a thin lens, of which each place is a pinhole by itself. Rays begin where they enter a ball about the
+/// scene, so that they lose no digits on the way there.
 class PictureCamera {
  public:
   PictureCamera(const Projection& projection, const Placement& placement);
@@ -34,12 +34,14 @@ class PictureCamera {
   RayFootprint footprint(Vec2f pixel) const;
   /// Of a place along such a ray, t in traced coordinates: the distance along the viewing axis in the world.
   double depth(Vec2f pixel, float t) const;
-  /// Nothing for points beside the picture, behind the eye or nearer than the near plane. O(1).
-  std::optional<Sight> sees(Vec3f point) const;
+  /// By light through a place on the lens. Nothing for points beside the picture, behind the eye or nearer than the near plane. O(1).
+  std::optional<Sight> sees(Vec3f point, Vec2f on_lens = {}) const;
   /// As of Sight, of a point that is seen.
-  double importance(Vec3f point) const;
+  double importance(Vec3f point, Vec2f on_lens = {}) const;
 
  private:
+  Projection::Ray inner_ray(Vec2f pixel, Vec2f on_lens) const;
+  Vec3 off_middle(Vec2f on_lens) const;
   double start(const Projection::Ray& ray) const;
 
   Projection projection_;

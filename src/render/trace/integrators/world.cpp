@@ -38,13 +38,20 @@ std::vector<AnyLight> with_emitters(const PreparedScene& scene, const std::vecto
   return lights;
 }
 
-// Of all that light may meet.
+Box3f bounds_of(const Geometry& geometry, const Media* media) {
+  Box3f all = geometry.bounds();
+  if (media && media->any() && !media->bounds().empty())
+    for (const Vec3 corner : {media->bounds().lo, media->bounds().hi}) {
+      const Vec3f c = geometry.placement().traced(corner);
+      for (int a = 0; a < 3; ++a) all.lo[a] = std::min(all.lo[a], c[a]), all.hi[a] = std::max(all.hi[a], c[a]);
+    }
+  return all;
+}
+
+// Half of the diagonal.
 float reach_of(const Geometry& geometry, const Media* media) {
-  Box3 box;
-  if (const Box3f& b = geometry.bounds(); !b.empty()) box.add(Vec3(b.lo)), box.add(Vec3(b.hi));
-  if (media && media->any())
-    for (const Vec3 corner : {media->bounds().lo, media->bounds().hi}) box.add(Vec3(geometry.placement().traced(corner)));
-  return box.empty() ? 1 : float(box.diagonal() / 2);
+  const Box3f all = bounds_of(geometry, media);
+  return all.empty() ? 1 : float(length(Vec3(all.hi) - Vec3(all.lo)) / 2);
 }
 
 }  // namespace
@@ -80,6 +87,8 @@ World::World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_
   for (const auto& p : palettes_) translucent_ = translucent_ || (p && p->passes_straight());
   find_boundaries();
 }
+
+Box3f World::bounds() const { return bounds_of(geometry_, media_.get()); }
 
 void World::find_boundaries() {
   const auto orders = [](const Material& m) { return m.priority() > 0 && m.has_inside(); };

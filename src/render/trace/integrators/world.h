@@ -54,6 +54,8 @@ class World {
   /// Null where there are none.
   Media::Borrowed borrow_media() const { return media_ ? media_->borrow() : Media::Borrowed(); }
   bool has_media() const { return media_ && media_->any(); }
+  /// Of all that light may meet, traced.
+  Box3f bounds() const;
   bool empty() const { return geometry_.bounds().empty() && !has_media(); }
   /// With `walks` the part of light that wanders below a surface which is met from outside is the integrator's (walk_below()). `around`:
   /// the bodies that the ray came through.

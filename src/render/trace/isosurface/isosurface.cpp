@@ -35,6 +35,36 @@ std::optional<Stretch> around(RayField& field, Vec3 from, Vec3 direction, double
   return longest;
 }
 
+/// What rays find first that come into the box from all six sides, in a grid.
+std::vector<float> values_around(RayField& field, const Box3& box) {
+  constexpr int n = 8;
+  std::vector<float> values;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double way : {1.0, -1.0})
+      for (int i = 0; i < n * n; ++i) {
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        Vec3 from = way > 0 ? box.lo : box.hi, direction;
+        direction[axis] = way, from[axis] -= way * box.size()[axis];
+        from[u] = box.lo[u] + (i % n + 0.5) / n * box.size()[u], from[v] = box.lo[v] + (i / n + 0.5) / n * box.size()[v];
+        field.start(from, direction, 0, 3 * box.size()[axis]);
+        Stretch first[8];
+        if (field.next(first) > 0) values.push_back(first[0].value(first[0].from));
+      }
+  return values;
+}
+
+/// Levels whose surfaces lie around smaller values, as those of distances that are negative within: larger ones are around nearly all of the
+/// volume. Surfaces that end at its border are no bodies.
+std::vector<bool> around_smaller(RayField& field, const Box3& box, const std::vector<double>& levels) {
+  const std::vector<float> values = values_around(field, box);
+  std::vector<bool> out;
+  for (const double level : levels) {
+    const auto larger = std::count_if(values.begin(), values.end(), [&](float v) { return double(v) > level; });
+    out.push_back(double(larger) > 0.75 * double(values.size()));
+  }
+  return out;
+}
+
 class IsosurfaceObject : public Geometry::Object {
  public:
   /// `length`: of a world length in the volume's units. Keeps the scene that the volume's item belongs to.
@@ -49,6 +79,7 @@ class IsosurfaceObject : public Geometry::Object {
     const double beyond = place_error_ / length_;
     const Box3 reach = grown(box, beyond);
     bounds_ = {local.traced(reach.lo), local.traced(reach.hi)};
+    around_smaller_ = around_smaller(*fields_.borrow(), volume_.source->bounds, *volume_.levels);
   }
 
   bool nearest(const Ray& ray, Hit& hit) const override {
@@ -90,10 +121,11 @@ class IsosurfaceObject : public Geometry::Object {
     const double steepness = sg::length(gradient);
     Place p;
     p.place = (place / length_ - local.middle) * local.scale;
-    p.normal = p.shading = steepness > 0 ? gradient / -steepness : -direction;
+    const double outward = around_smaller_[hit.primitive] ? 1 : -1;  // of the gradient
+    p.normal = p.shading = steepness > 0 ? gradient * (outward / steepness) : -direction;
     if (volume_.item->shaded) {
       const auto s = around(*field, place - direction * reach, direction, 2 * reach);
-      const Vec3 smooth = s ? normalize(-Vec3(field->gradient(*s, std::clamp(reach, s->from, s->to)))) : Vec3();
+      const Vec3 smooth = s ? normalize(Vec3(field->gradient(*s, std::clamp(reach, s->from, s->to))) * outward) : Vec3();
       if (dot(smooth, p.normal) > 0) p.shading = smooth;
     }
     p.along = std::abs(p.normal.x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
@@ -123,6 +155,7 @@ class IsosurfaceObject : public Geometry::Object {
   volume::CastVolume volume_;
   double length_, per_local_ = 1, place_error_ = 0;
   Box3f bounds_;
+  std::vector<bool> around_smaller_;  // of the levels
   Lending<RayField> fields_;
 };
 

@@ -13,7 +13,8 @@
 namespace sg::trace {
 
 /// All volumes of a scene with the ray function isosurface: objects for GeometryOptions::more, and how they look, in the same order. The
-/// number of a level is the primitive of its hits. The surface's outer side is that of smaller values, as of contours.
+/// number of a level is the primitive of its hits. The surface's outer side is that of smaller values, as of contours; of larger ones where
+/// these are around nearly all of the volume, as of signed distances.
 struct Isosurfaces {
   struct Look {
     uint32_t id = 0;            ///< item number + 1

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/shade/phase_function.h"
 #include "render/trace/geometry/ray.h"
+#include "render/trace/media/collision.h"
 #include "render/volume/rays/cast.h"
 
 namespace sg::trace {
@@ -16,20 +16,6 @@ enum class Tracking {
   exact,  ///< through every cell, by the integral of the extinction (regular tracking): the reference
   delta,  ///< by majorants alone, of bricks or cells (Woodcock et al. 1965; ratio tracking: Novak et al. 2014): unbiased
   march,  ///< fixed steps with one factor exp(-tau(middle) length) each: what textbooks show, of second order in the step
-};
-
-/// Where a path turns or ends in a medium.
-struct Collision {
-  float t = 0;        ///< along the ray, traced
-  uint32_t item = 0;  ///< number in the scene
-  Vec3f albedo;       ///< share of the light that is scattered
-  Vec3f emission;     ///< radiance that the place adds to the light, by all of the extinction
-  PhaseFunction phase;
-  bool last = false;  ///< light is scattered once only
-  /// A surface rather than matter: what is opaque within a cell and has a gradient reflects light as a diffuse surface.
-  bool on_surface = false;
-  Vec3f normal;     ///< of that surface, unit, towards where the ray came from
-  float clear = 0;  ///< traced length along the normal from which on it no longer hides itself
 };
 
 class ParticipatingMedium {

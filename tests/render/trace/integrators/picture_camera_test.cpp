@@ -44,10 +44,33 @@ TEST_CASE("picture camera: a point on a pixel's ray is seen there, from as far a
   }
 }
 
+TEST_CASE("picture camera: through any place on a lens a point is seen in the pixel whose ray meets it") {
+  const Placement placement{{1, 2, 3}, 0.125};
+  for (Projection p : each_projection()) {
+    p.lens = 3, p.focus = 40;
+    const PictureCamera camera(p, placement);
+    for (uint64_t i = 0; i < 200; ++i) {
+      const Vec2f pixel{float(random_unit(1, i) * p.width), float(random_unit(2, i) * p.height)};
+      const Vec2f on_lens{float(random_unit(4, i)) - 0.5f, float(random_unit(5, i)) - 0.5f};
+      const Ray ray = camera.ray(pixel, on_lens);
+      const float t = 0.1f + 3 * float(random_unit(3, i));
+      const auto sight = camera.sees(ray.origin + ray.direction * t, on_lens);
+      REQUIRE(sight);
+      CHECK(sight->pixel.x == Approx(pixel.x).epsilon(1e-3));
+      CHECK(sight->pixel.y == Approx(pixel.y).epsilon(1e-3));
+      CHECK(sight->distance == Approx(t).epsilon(1e-4));
+      CHECK(dot(sight->direction, ray.direction) == Approx(-1));
+    }
+  }
+}
+
 TEST_CASE("picture camera: importance over a plane that fills the picture adds up to its pixels") {
   // A plane across the view, and one that is tilted: the integral of importance |cos|, by a fine grid over a part that is more than seen.
   const Placement placement{{1, 2, 3}, 0.125};
-  for (const Projection& p : each_projection())
+  const Vec2f on_lens{0.6f, -0.3f};
+  std::vector<Projection> all = each_projection();
+  for (const Projection& without : each_projection()) all.push_back(without), all.back().lens = 6, all.back().focus = 40;
+  for (const Projection& p : all)
     for (const double tilt : {0.0, 0.4}) {
       const PictureCamera camera(p, placement);
       const Vec3 middle = p.eye + p.forward * 60;
@@ -59,7 +82,7 @@ TEST_CASE("picture camera: importance over a plane that fills the picture adds u
       for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i) {
           const Vec3 world = middle + across * ((2 * (i + 0.5) / n - 1) * half) + p.up * ((2 * (j + 0.5) / n - 1) * half);
-          if (const auto sight = camera.sees(placement.traced(world)))
+          if (const auto sight = camera.sees(placement.traced(world), on_lens))
             sum += double(sight->importance) * std::abs(double(dot(sight->direction, Vec3f(normal))));
         }
       const double cell = 2 * half / n * placement.scale;

@@ -90,6 +90,21 @@ TEST_CASE("isosurface: no ray gets out of a closed one, and the nearest level is
   }
 }
 
+TEST_CASE("isosurface: the inside of a body is within it, whether values grow inwards or outwards") {
+  for (const double sign : {1.0, -1.0}) {
+    const auto f = [&](Vec3 p) { return sign * to_middle(p); };
+    for (const DatasetPtr& data : {grid(cube(24, -1, 1), f), tets_of(f)}) {
+      const World world = isosurface_world(scene_of({levels_of(data, {0})}), matte(), {});
+      const Ray ray = ray_of(world.geometry().placement(), {0.1, -0.2, 3}, {0, 0, -1});
+      Hit hit;
+      REQUIRE(world.geometry().nearest(ray, hit));
+      const SurfacePoint p = world.geometry().at(ray, hit);
+      CHECK(p.face_normal.z > 0.9f);
+      CHECK(p.shading_normal.z > 0.9f);
+    }
+  }
+}
+
 TEST_CASE("isosurface: of two volumes the nearer one is met, whichever comes first") {
   const DatasetPtr data = grid(cube(24, -1, 1), to_middle);
   for (const double first : {0.1, 0.4}) {

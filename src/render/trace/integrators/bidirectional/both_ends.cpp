@@ -37,14 +37,15 @@ class BothEnds : public PictureIntegrator {
                 sampler.start(uint32_t(x), uint32_t(y), k);
                 const Vec2f in_pixel = sampler.next2();
                 // The camera alone sees what shines itself, and the background.
-                walk_from_camera(scene_, {float(x) + in_pixel.x, float(y) + in_pixel.y}, joins_ ? scene_.bounces + 1 : 1, numbers,
+                MediaWalk* media = halves.strategies.media();
+                walk_from_camera(scene_, media, {float(x) + in_pixel.x, float(y) + in_pixel.y}, joins_ ? scene_.turns + 1 : 1, numbers,
                                  halves.camera);
-                walk_from_light(scene_, scene_.bounces, numbers, halves.light);
+                walk_from_light(scene_, media, scene_.turns, numbers, halves.light);
                 const size_t pixel = y * size_t(width) + size_t(x);
                 film.own[pixel] += Vec3(halves.camera.straight) + (joins_ ? join(halves, numbers) : Vec3());
                 film.passed[pixel] += halves.camera.passed;
                 for (int i = 0; i < int(halves.light.vertices.size()); ++i)
-                  if (const auto c = halves.strategies.onto_picture(halves.light, i))
+                  if (const auto c = halves.strategies.onto_picture(halves.light, i, numbers))
                     film.splats.add(c->pixel, Vec3(c->value) * (joins_ ? halves.strategies.weight(*c) : 1));
               }
         },
@@ -63,10 +64,10 @@ class BothEnds : public PictureIntegrator {
     for (int j = 0; j < int(h.camera.vertices.size()); ++j) {
       const int level = h.camera.vertex(j).level;
       add(h.strategies.shining(h.camera, j));
-      if (level > scene_.bounces) continue;
+      if (level > scene_.turns) continue;
       add(h.strategies.asked(h.camera, j, numbers));
       for (int i = 0; i < int(h.light.vertices.size()); ++i)
-        if (level + h.light.vertex(i).level <= scene_.bounces) add(h.strategies.joined(h.light, i, h.camera, j));
+        if (level + h.light.vertex(i).level <= scene_.turns) add(h.strategies.joined(h.light, i, h.camera, j, numbers));
     }
     return sum;
   }

@@ -14,6 +14,7 @@ namespace sg::trace {
 namespace {
 
 constexpr double large_share = 0.3;   // of the steps
+constexpr int most_turns = 48;                // of a path, in media
 constexpr size_t chains_a_pass = 64;  // fixed, so that pictures depend on no number of threads
 // Of the bootstrap, over all numbers of turns: an eighth of all, within bounds.
 constexpr double least_draws = 1 << 12, most_draws = 1 << 17;
@@ -85,7 +86,7 @@ class Metropolis : public PictureIntegrator {
   // Independent points of every number of turns: how bright the picture is, and where chains start.
   void bootstrap(Context& context) {
     started_ = true;
-    const auto kinds = size_t(scene_.bounces);
+    const auto kinds = size_t(std::min(scene_.turns, most_turns));
     known_.assign(kinds, {});
     if (kinds == 0) return;
     const double draws = std::clamp(scene_.camera.pixels() * options_.paths / 8, least_draws, most_draws);
@@ -159,13 +160,14 @@ class Metropolis : public PictureIntegrator {
         [&](size_t begin, size_t end) {
           Sampler sampler(options_.sampler, options_.seed, options_.paths);
           SamplerNumbers numbers(sampler);
+          const Media::Borrowed media = scene_.world.borrow_media();
           SubPath path;
           for (size_t y = begin; y < end; ++y)
             for (int x = 0; x < width; ++x)
               for (uint32_t k = from; k < to; ++k) {
                 sampler.start(uint32_t(x), uint32_t(y), k);
                 const Vec2f in_pixel = sampler.next2();
-                walk_from_camera(scene_, {float(x) + in_pixel.x, float(y) + in_pixel.y}, 1, numbers, path);
+                walk_from_camera(scene_, media.get(), {float(x) + in_pixel.x, float(y) + in_pixel.y}, 1, numbers, path);
                 film.own[y * size_t(width) + size_t(x)] += Vec3(path.straight);
                 film.passed[y * size_t(width) + size_t(x)] += path.passed;
               }

@@ -13,7 +13,7 @@ namespace {
 
 using Part = PrimarySpace::Part;
 
-// The vertices of a half that are surface number `level` of it.
+// The vertices of a half that are turn number `level` of it.
 template <class F>
 void each(const SubPath& path, int level, F&& f) {
   for (int i = 0; i < int(path.vertices.size()); ++i)
@@ -34,15 +34,15 @@ void PathOfPoint::trace(PrimarySpace& numbers, int turns, Lit& lit) {
     if (!(y > 0) || !std::isfinite(y)) return;
     lit.splats.push_back({c->pixel, value}), lit.brightness += y;
   };
-  const int of_light = std::max(s - 1, 0), of_camera = s == 0 ? turns + 1 : turns - of_light;  // surfaces
+  const int of_light = std::max(s - 1, 0), of_camera = s == 0 ? turns + 1 : turns - of_light;  // vertices
   if (of_camera > 0) {
     numbers.begin(Part::camera);
     const Vec2f u = numbers.next2();
-    walk_from_camera(scene_, {u.x * float(scene_.camera.width()), u.y * float(scene_.camera.height())}, of_camera, numbers, camera_);
+    walk_from_camera(scene_, strategies_.media(), {u.x * float(scene_.camera.width()), u.y * float(scene_.camera.height())}, of_camera, numbers, camera_);
   }
   if (of_light > 0) {
     numbers.begin(Part::light);
-    walk_from_light(scene_, of_light, numbers, light_);
+    walk_from_light(scene_, strategies_.media(), of_light, numbers, light_);
   }
   if (s == 0) {
     for (const Stretch& stretch : camera_.stretches)
@@ -53,9 +53,11 @@ void PathOfPoint::trace(PrimarySpace& numbers, int turns, Lit& lit) {
     numbers.begin(Part::light);
     each(camera_, turns, [&](int j) { add(strategies_.asked(camera_, j, numbers)); });
   } else if (of_camera == 0) {
-    each(light_, turns, [&](int i) { add(strategies_.onto_picture(light_, i)); });
+    numbers.begin(Part::between);
+    each(light_, turns, [&](int i) { add(strategies_.onto_picture(light_, i, numbers)); });
   } else {
-    each(light_, of_light, [&](int i) { each(camera_, of_camera, [&](int j) { add(strategies_.joined(light_, i, camera_, j)); }); });
+    numbers.begin(Part::between);
+    each(light_, of_light, [&](int i) { each(camera_, of_camera, [&](int j) { add(strategies_.joined(light_, i, camera_, j, numbers)); }); });
   }
 }
 

@@ -2,9 +2,11 @@
 // A point of the space of all random numbers that a path is made of, and steps from it (Kelemen et al. 2002).
 #pragma once
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
+#include "base/random.h"
 #include "render/trace/integrators/bidirectional/numbers.h"
 
 namespace sg::trace {
@@ -14,7 +16,7 @@ namespace sg::trace {
 class PrimarySpace : public Numbers {
  public:
   /// The parts of a path, each with its own numbers, so that one that grows leaves the others as they are.
-  enum class Part { way, camera, light };
+  enum class Part { way, camera, light, between };
 
   /// `first`: of the first point; `chain`: of the steps.
   PrimarySpace(uint64_t first, uint64_t chain) : first_(first), chain_(chain) {}
@@ -31,6 +33,8 @@ class PrimarySpace : public Numbers {
     const float x = next();
     return {x, next()};
   }
+  /// The same for as long as its number is: that moves by small steps, of which every one makes another stream.
+  uint64_t stream() override { return random_bits(first_, std::bit_cast<uint32_t>(next())); }
 
  private:
   struct Number {
@@ -47,7 +51,7 @@ class PrimarySpace : public Numbers {
   uint32_t asked_ = 0;                  // the step of which numbers are asked for
   bool large_ = false;                  // it is one
   size_t part_ = 0, at_ = 0;
-  std::array<std::vector<Number>, 3> numbers_;
+  std::array<std::vector<Number>, 4> numbers_;
 };
 
 }  // namespace sg::trace

@@ -5,37 +5,17 @@
 #include <cmath>
 #include <limits>
 
+#include "render/trace/integrators/bidirectional/turn.h"
 #include "render/trace/light/fade.h"
+#include "render/trace/sampling/warp.h"
 
 namespace sg::trace {
 
 namespace {
 
-bool shines(Vec3f c) { return (c.x > 0 || c.y > 0 || c.z > 0) && std::isfinite(c.x + c.y + c.z); }
-
-// What the shading normal calls one side and the surface the other is no way for light.
-bool is_way(const Vertex& v, Vec3f local, Vec3f direction) { return (dot(direction, v.point.face_normal) > 0) == (local.z > 0); }
-
-/// A vertex at the end of a half, which goes on into a direction.
-struct Turn {
-  Vec3f scattered;      ///< f |cos|
-  double onward = 0;    ///< density of the direction, per solid angle
-  double backward = 0;  ///< that of the one to its parent, from there
-};
-std::optional<Turn> turn(const PathVertex& v, Vec3f direction, Transport transport) {
-  if (v.at.bsdf.delta_only()) return {};
-  const Vec3f wo = v.local_parent(), wi = v.at.frame.to_local(direction);
-  if (!is_way(v.at, wi, direction)) return {};
-  Turn t;
-  t.scattered = v.at.bsdf.evaluate(wo, wi, transport) * std::abs(wi.z);
-  if (transport == Transport::importance) t.scattered *= rounded_normal_factor(v.at, wo, v.to_parent, wi, direction);
-  if (!shines(t.scattered)) return {};
-  t.onward = double(v.at.bsdf.pdf(wo, wi)), t.backward = double(v.at.bsdf.pdf(wi, wo));
-  return t;
-}
-
+// The density of the place that a direction leads to, drawn from the other end.
 double to_vertex(double per_solid_angle, const PathVertex& v, Vec3f direction, float distance) {
-  return per_area(per_solid_angle, v.at.point.face_normal, direction, distance);
+  return v.seen_only() ? 0 : per_area(per_solid_angle, v.normal(), direction, distance);
 }
 
 }  // namespace
@@ -74,9 +54,19 @@ void Strategies::set_light(uint32_t light, Vec3f normal, Vec3f towards_light, co
   PathDensities& d = densities_;
   const Emission::Densities e = scene_.emission.pdf(light, normal, -towards_light);
   d.from_light[0] = double(e.first);
-  d.from_light[1] = scene_.emission.at_infinity(light) ? double(e.second) * double(std::abs(dot(next.at.point.face_normal, towards_light)))
-                                                       : to_vertex(double(e.second), next, towards_light, distance);
+  if (next.seen_only()) d.from_light[1] = 0;
+  else if (scene_.emission.at_infinity(light)) d.from_light[1] = double(e.second) * across(next.normal(), towards_light);
+  else d.from_light[1] = per_area(double(e.second), next.normal(), towards_light, distance);
   d.light_can_be_met = scene_.emission.can_be_met(light);
+}
+
+// Light that passes from a vertex along a ray.
+Vec3f Strategies::passes(const PathVertex& from, const Ray& ray, Numbers& numbers) {
+  const uint64_t stream = media_ ? numbers.stream() : 0;
+  const Vec3f share = scene_.world.passes(ray, from.insides_along(ray.direction));
+  if (!media_ || !shines(share)) return share;
+  RandomStream random(stream);
+  return share * media_->passes(ray, random);
 }
 
 std::optional<Contribution> Strategies::shining(const SubPath& camera, int i) {
@@ -87,7 +77,7 @@ std::optional<Contribution> Strategies::shining(const SubPath& camera, int i) {
   take_camera(camera, i);
   const PathVertex& next = camera.vertex(v.parent);
   if (const auto light = scene_.world.lights().number_of(v.at.point.object, v.at.point.primitive)) {
-    const Vec3f normal = v.at.point.face_normal;
+    const Vec3f normal = v.normal();
     set_light(*light, normal, -v.to_parent, next, v.distance);
     densities_.asked = asked_density(*light, normal, next.at.point.position, -v.to_parent, v.distance);
   } else {
@@ -119,6 +109,7 @@ std::optional<Contribution> Strategies::met(const SubPath& camera, const Stretch
 
 std::optional<Contribution> Strategies::asked(const SubPath& camera, int i, Numbers& numbers) {
   const PathVertex& v = camera.vertex(i);
+  if (v.surfaces > scene_.bounces) return {};
   const float choice = numbers.next();
   const Vec2f u = numbers.next2();
   const auto light = scene_.world.lights().sample(v.at.point.position, choice, u);
@@ -127,9 +118,8 @@ std::optional<Contribution> Strategies::asked(const SubPath& camera, int i, Numb
   if (!t) return {};
   Vec3f value = v.throughput * t->scattered * light->radiance / light->pdf;
   if (!shines(value)) return {};
-  const Vec3f from = leave(v.at.point, light->direction);
   // Up to the light's own surface, which is an item or is not.
-  value = value * scene_.world.passes({from, light->direction, light->distance * (1 - 1e-4f)}, v.insides_along(light->direction));
+  value = value * passes(v, {v.start(light->direction), light->direction, light->distance * (1 - 1e-4f)}, numbers);
   if (!shines(value)) return {};
   densities_.reset(size_t(v.level) + 2);
   take_camera(camera, i);
@@ -142,8 +132,9 @@ std::optional<Contribution> Strategies::asked(const SubPath& camera, int i, Numb
   return Contribution{camera.pixel, value, 1};
 }
 
-std::optional<Contribution> Strategies::joined(const SubPath& light, int i, const SubPath& camera, int j) {
+std::optional<Contribution> Strategies::joined(const SubPath& light, int i, const SubPath& camera, int j, Numbers& numbers) {
   const PathVertex &y = light.vertex(i), &z = camera.vertex(j);
+  if (y.surfaces + z.surfaces > scene_.bounces || (z.matter && z.matter->last)) return {};
   const Vec3f way = z.at.point.position - y.at.point.position;
   const float d = length(way);
   if (!(d > 0)) return {};
@@ -154,9 +145,9 @@ std::optional<Contribution> Strategies::joined(const SubPath& light, int i, cons
   if (!at_z) return {};
   Vec3f value = y.throughput * at_y->scattered * z.throughput * at_z->scattered / (d * d);
   if (!shines(value)) return {};
-  const Vec3f from = leave(y.at.point, direction), to = leave(z.at.point, -direction), between = to - from;
+  const Vec3f from = y.start(direction), between = z.start(-direction) - from;
   const float free = length(between);
-  if (free > 0) value = value * scene_.world.passes({from, between / free, free * (1 - 1e-4f)}, y.insides_along(direction));
+  if (free > 0) value = value * passes(y, {from, between / free, free * (1 - 1e-4f)}, numbers);
   if (!shines(value)) return {};
   densities_.reset(size_t(y.level) + size_t(z.level) + 2);
   take_light(light, i), take_camera(camera, j);
@@ -168,23 +159,23 @@ std::optional<Contribution> Strategies::joined(const SubPath& light, int i, cons
   return Contribution{camera.pixel, value, y.level + 1};
 }
 
-std::optional<Contribution> Strategies::onto_picture(const SubPath& light, int i) {
+std::optional<Contribution> Strategies::onto_picture(const SubPath& light, int i, Numbers& numbers) {
   const PathVertex& y = light.vertex(i);
-  const auto sight = scene_.camera.sees(y.at.point.position);
+  if (y.surfaces > scene_.bounces) return {};
+  const Vec2f on_lens = scene_.camera.has_lens() ? concentric_disc(numbers.next2()) : Vec2f();
+  const auto sight = scene_.camera.sees(y.at.point.position, on_lens);
   if (!sight) return {};
   const auto t = turn(y, sight->direction, Transport::importance);
   if (!t) return {};
   Vec3f value = y.throughput * t->scattered * (sight->importance / float(scene_.camera.pixels()));
   if (!shines(value)) return {};
-  value = value *
-          scene_.world.passes({leave(y.at.point, sight->direction), sight->direction, sight->distance}, y.insides_along(sight->direction));
+  value = value * passes(y, {y.start(sight->direction), sight->direction, sight->distance}, numbers);
   if (!shines(value)) return {};
   densities_.reset(size_t(y.level) + 2);
   take_light(light, i);
   const auto a = size_t(y.level);
   densities_.from_camera[a + 1] = 1;
-  densities_.from_camera[a] =
-      double(sight->importance) * double(std::abs(dot(y.at.point.face_normal, sight->direction))) / scene_.camera.pixels();
+  densities_.from_camera[a] = double(sight->importance) * across(y.normal(), sight->direction) / scene_.camera.pixels();
   end_light(light, i, t->backward);
   return Contribution{sight->pixel, value, y.level + 1};
 }

@@ -21,7 +21,10 @@ struct Contribution {
 /// of the halves.
 class Strategies {
  public:
-  explicit Strategies(const PathScene& scene) : scene_(scene) {}
+  explicit Strategies(const PathScene& scene) : scene_(scene), media_(scene.world.borrow_media()) {}
+
+  /// Of the thread that makes the paths; null without media.
+  MediaWalk* media() { return media_.get(); }
 
   /// s = 0: vertex i, not the first surface, gives off light.
   std::optional<Contribution> shining(const SubPath& camera, int i);
@@ -32,9 +35,9 @@ class Strategies {
   /// s = 1: a light is asked for from vertex i.
   std::optional<Contribution> asked(const SubPath& camera, int i, Numbers& numbers);
   /// s > 1: two vertices see each other.
-  std::optional<Contribution> joined(const SubPath& light, int i, const SubPath& camera, int j);
+  std::optional<Contribution> joined(const SubPath& light, int i, const SubPath& camera, int j, Numbers& numbers);
   /// s > 1, and the camera alone at the other end.
-  std::optional<Contribution> onto_picture(const SubPath& light, int i);
+  std::optional<Contribution> onto_picture(const SubPath& light, int i, Numbers& numbers);
 
   const PathDensities& densities() const { return densities_; }
   double weight(const Contribution& c) const { return strategy_weight(densities_, size_t(c.from_light)); }
@@ -46,7 +49,10 @@ class Strategies {
   double asked_density(uint32_t light, Vec3f normal, Vec3f from, Vec3f direction, float distance) const;
   void set_light(uint32_t light, Vec3f normal, Vec3f towards_light, const PathVertex& next, float distance);
 
+  Vec3f passes(const PathVertex& from, const Ray& ray, Numbers& numbers);
+
   const PathScene& scene_;
+  Media::Borrowed media_;
   PathDensities densities_;
   std::vector<MetLight> met_;
 };

@@ -12,6 +12,8 @@
 #include "base/parallel.h"
 #include "data/memory/memory_budget.h"
 #include "render/trace/integrators/bidirectional/picture_integrator.h"
+#include "render/trace/integrators/first_met.h"
+#include "render/trace/integrators/integrator.h"
 #include "render/trace/progress/pixel_noise.h"
 
 namespace sg::trace {
@@ -113,16 +115,10 @@ class Gathering {
   double paths_ = 0, passes_ = 0;
 };
 
-// What the middle of each pixel sees.
 void depths_and_ids(const World& world, const PictureCamera& camera, Frame& frame) {
   parallel_for(frame.pixels(), size_t(frame.width), [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const Vec2f middle{float(i % size_t(frame.width)) + 0.5f, float(i / size_t(frame.width)) + 0.5f};
-      Hit hit;
-      if (!world.geometry().nearest(camera.ray(middle), hit)) continue;
-      frame.depth[i] = float(camera.depth(middle, hit.t));
-      frame.ids[i] = world.id(hit);
-    }
+    const Media::Borrowed media = world.borrow_media();
+    for (size_t i = begin; i < end; ++i) see_first_met(world, camera, media.get(), i, frame);
   });
 }
 
@@ -134,8 +130,9 @@ bool lights_whole_picture(IntegratorKind kind) {
 
 void draw_whole_picture(const World& world, const PictureCamera& camera, const LightOptions& options, Sweeps& sweeps, Frame& frame,
                         Plane<float>& variances, TraceReport& report, Context& context) {
-  const Emission emission(world.lights(), world.geometry().bounds());
-  const PathScene scene{world, emission, camera, options.bounces, true};
+  const Emission emission(world.lights(), world.bounds());
+  const int turns = world.has_media() ? options.bounces * (1 + matter_turns) : options.bounces;
+  const PathScene scene{world, emission, camera, options.bounces, true, turns};
   const double pixels = camera.pixels();
   need_memory(pixels * double(sizeof(Gathered) + 2 * sizeof(Vec3) + sizeof(float)),
               fmt::format("{}x{} pixels lit as a whole", frame.width, frame.height), "render", "make a smaller picture: --size");

@@ -195,3 +195,63 @@ TEST_CASE("all the same: seen without perspective, under several lamps") {
   s.environment = Environment(white * 0.2f);
   check_all(s);
 }
+
+TEST_CASE("all the same: fog in a room") {
+  for (const PhaseKind phase : {PhaseKind::isotropic, PhaseKind::henyey_greenstein}) {
+    LightScene s = room();
+    s.lights = {on_ceiling};
+    VolumeItem fog = matter(0.8f, 0.8, [](Vec3) { return 1.0; }, {0.9f, 0.9f, 0.9f});
+    fog.scattering.phase = phase, fog.scattering.anisotropy = 0.7;
+    s.scene.items.emplace_back(fog);
+    check_all(s, true, 0.04);
+  }
+}
+
+TEST_CASE("all the same: a cloud that is uneven, over a floor, under a sky and a sun") {
+  LightScene s = on_floor();
+  s.scene.items.emplace_back(matter(0.6f, 6, [](Vec3 p) { return std::max(0.0, 1 - length(p) / 0.6); }));
+  s.lights = {DistantLight{normalize(Vec3f{0.3f, -0.5f, 1}), white * 2, 0.01f}};
+  s.environment = Environment(white * 0.3f);
+  check_all(s, true, 0.04);
+}
+
+TEST_CASE("all the same: matter that scatters once, and matter that glows, lit by a lamp that may be met in it") {
+  for (const double glow : {0.0, 0.5}) {
+    LightScene s = on_floor();
+    VolumeItem cloud = matter(0.6f, 4, [](Vec3 p) { return std::max(0.0, 1 - length(p) / 0.6); });
+    cloud.scattering.light = glow > 0 ? VolumeLighting::path : VolumeLighting::single;
+    cloud.scattering.glow = glow;
+    s.scene.items.emplace_back(cloud);
+    s.lights = {SphereLight{{0.3f, -0.3f, 0.3f}, 0.2f, white * 4}};
+    check_all(s, glow == 0, 0.04);  // what glows is no lamp that paths begin at
+  }
+}
+
+TEST_CASE("all the same: surfaces within a volume") {
+  LightScene s = on_floor();
+  VolumeItem body = matter(0.6f, 60, [](Vec3 p) { return length(p) < 0.4 ? 1.0 : 0.0; });
+  body.shaded = true;
+  s.scene.items.emplace_back(body);
+  s.lights = {DiscLight{{0, -0.5f, 0.8f}, normalize(Vec3f{0, 0.4f, -1}), 0.3f, white * 4}};
+  check_all(s, false, 0.04);
+}
+
+TEST_CASE("all the same: smoke in a ball of rough glass") {
+  LightScene s = on_floor();
+  s.scene.items.emplace_back(ball({0, 0, -0.2f}, 0.6f, 24, preset_material(MaterialPreset::frosted_glass), 1));
+  s.scene.items.emplace_back(matter(0.3f, 5, [](Vec3) { return 1.0; }, {0.8f, 0.8f, 0.8f}));
+  s.lights = {DiscLight{{0, -0.5f, 0.8f}, normalize(Vec3f{0, 0.4f, -1}), 0.4f, white * 6}};
+  s.bounces = 6;
+  check_all(s, true, 0.06);
+}
+
+TEST_CASE("all the same: through a lens, with perspective and without") {
+  for (const bool parallel : {false, true}) {
+    LightScene s = room();
+    s.scene.items.emplace_back(ball({0.2f, -0.3f, -0.3f}, 0.25f, 12, diffuse(), 0.6));
+    s.lights = {on_ceiling};
+    s.camera.lens = 0.5, s.camera.focus = 2.8;
+    if (parallel) s.camera.parallel = true, s.camera.parallel_height = 1.6;
+    check_all(s);
+  }
+}

@@ -11,6 +11,8 @@
 #include "render/trace/integrators/bidirectional/whole_picture.h"
 #include "render/trace/integrators/integrator.h"
 #include "render/trace/integrators/picture_camera.h"
+#include "render/trace/sampling/warp.h"
+#include "render/volume/volume_support.h"
 #include "support/statistics.h"
 #include "support/test.h"
 
@@ -40,6 +42,15 @@ inline SurfaceItem ball(Vec3f middle, float radius, int n, const SurfaceMaterial
   SurfaceItem item = sg::test::item(make_dataset(Mesh(std::move(mesh))), {srgb, srgb, srgb});
   item.made_of = made_of, item.flat = flat, item.feature_angle = 180;
   return item;
+}
+
+/// Matter in [-side, side]^3 with an extinction of `tau` times f, which is 0 to 1.
+inline VolumeItem matter(float side, double tau, const std::function<double(Vec3)>& f, Vec3f color = {1, 1, 1}) {
+  VolumeItem v = sg::test::item(sg::test::grid(sg::test::cube(9, -double(side), double(side)), f), sg::test::one_color(color),
+                                sg::test::constant_opacity(tau));
+  v.opacity.points.clear();
+  for (int i = 0; i <= 100; ++i) v.opacity.points.push_back({i / 100.0, 1 - std::exp(-tau * i / 100)});
+  return v;
 }
 
 struct LightScene {
@@ -93,12 +104,15 @@ class LitWorld {
   static World make(const LightScene& s) {
     Context context;
     const PreparedScenePtr prepared = prepare_scene(s.scene, context);
+    const std::shared_ptr<Media> media = Media::make(s.scene, make_projection(s.camera, side, side), context);
     std::vector<std::shared_ptr<const trace::Material>> materials;
     for (const raster::PreparedItem& item : prepared->items)
       materials.push_back(std::make_shared<const trace::Material>(item.made_of ? *item.made_of : diffuse()));
     GeometryOptions options;
-    options.point_radius = s.point_radius;
-    return {prepared, Geometry::make(*prepared, options, context), std::move(materials), s.lights, s.environment};
+    options.point_radius = s.point_radius, options.around = media->bounds();
+    Geometry geometry = Geometry::make(*prepared, options, context);
+    media->place(geometry.placement());
+    return {prepared, std::move(geometry), std::move(materials), s.lights, s.environment, media};
   }
 };
 
@@ -150,8 +164,8 @@ inline Means pictures_by(const LitWorld& w, IntegratorKind kind, int seeds, int 
         for (int k = 0; k < paths; ++k) {
           const auto x = uint32_t(i % size_t(frame.width)), y = uint32_t(i / size_t(frame.width));
           sampler.start(x, y, uint32_t(k));
-          const Vec2f u = sampler.next2();
-          const Estimate e = integrator->along(w.world, camera.ray({float(x) + u.x, float(y) + u.y}), sampler);
+          const Vec2f u = sampler.next2(), on_lens = camera.has_lens() ? concentric_disc(sampler.next2()) : Vec2f();
+          const Estimate e = integrator->along(w.world, camera.ray({float(x) + u.x, float(y) + u.y}, on_lens), sampler);
           for (int c = 0; c < 3; ++c) frame.rgba[4 * i + size_t(c)] += e.radiance[c] / float(paths);
           frame.rgba[4 * i + 3] += (1 - e.passed) / float(paths);
         }

@@ -76,35 +76,38 @@ double onward(const PathVertex& at, Vec3f before, const PathVertex& to) {
 }  // namespace
 
 TEST_CASE("strategies: the shares of all ways to make a path add up to one") {
-  for (const bool smooth : {false, true}) {
-    const LitWorld w(furnished(smooth));
+  for (int kind = 0; kind < 3; ++kind) {
+    const bool smooth = kind == 1, foggy = kind == 2;
+    LightScene s = furnished(smooth);
+    if (foggy) s.scene.items.emplace_back(matter(0.8f, 1, [](Vec3) { return 1.0; }));
+    const LitWorld w(s);
     const PictureCamera camera(w.projection, w.world.geometry().placement());
-    const Emission emission(w.world.lights(), w.world.geometry().bounds());
-    const PathScene scene{w.world, emission, camera, 6, true};
+    const Emission emission(w.world.lights(), w.world.bounds());
+    const PathScene scene{w.world, emission, camera, 6, true, foggy ? 20 : 6};
     Strategies strategies(scene);
     SubPath a, b;
     Sampler sampler(SamplerKind::independent, 5, 4096);
     SamplerNumbers numbers(sampler);
-    int of[5] = {0, 0, 0, 0, 0}, with_delta = 0;
-    const auto check = [&](const std::optional<Contribution>& c, int kind) {
+    int of[4] = {0, 0, 0, 0}, with_delta = 0;
+    const auto check = [&](const std::optional<Contribution>& c, int way) {
       if (!c || !(strategies.weight(*c) > 1e-12)) return;
       check_shares(strategies.densities(), size_t(c->from_light));
-      ++of[kind];
+      ++of[way];
       for (const uint8_t delta : strategies.densities().delta) with_delta += delta != 0;
     };
     for (uint32_t k = 0; k < 300; ++k) {
       sampler.start(0, 0, k);
-      walk_from_camera(scene, {float(k % 12) + 0.5f, float(k / 12 % 12) + 0.5f}, 7, numbers, a);
-      walk_from_light(scene, 6, numbers, b);
+      walk_from_camera(scene, strategies.media(), {float(k % 12) + 0.5f, float(k / 12 % 12) + 0.5f}, 7, numbers, a);
+      walk_from_light(scene, strategies.media(), 6, numbers, b);
       for (const Stretch& stretch : a.stretches)
         for (const MetLight& m : std::vector<MetLight>(strategies.met_in(stretch))) check(strategies.met(a, stretch, m), 0);
-      for (int i = 0; i < int(b.vertices.size()); ++i) check(strategies.onto_picture(b, i), 1);
+      for (int i = 0; i < int(b.vertices.size()); ++i) check(strategies.onto_picture(b, i, numbers), 1);
       for (int j = 0; j < int(a.vertices.size()); ++j) {
         check(strategies.asked(a, j, numbers), 2);
-        for (int i = 0; i < int(b.vertices.size()); ++i) check(strategies.joined(b, i, a, j), 3);
+        for (int i = 0; i < int(b.vertices.size()); ++i) check(strategies.joined(b, i, a, j, numbers), 3);
       }
     }
-    for (int kind = 0; kind < 4; ++kind) CHECK(of[kind] > 20);
+    for (const int count : of) CHECK(count > 20);
     CHECK((with_delta > 100) == smooth);
   }
 }
@@ -123,11 +126,11 @@ TEST_CASE("strategies: the densities that walks leave are those of the path's po
   int paths = 0;
   for (uint32_t k = 0; k < 200; ++k) {
     sampler.start(0, 0, k);
-    walk_from_camera(scene, {float(k % 12) + 0.5f, float(k / 12 % 12) + 0.5f}, 7, numbers, a);
-    walk_from_light(scene, 6, numbers, b);
+    walk_from_camera(scene, strategies.media(), {float(k % 12) + 0.5f, float(k / 12 % 12) + 0.5f}, 7, numbers, a);
+    walk_from_light(scene, strategies.media(), 6, numbers, b);
     for (int i = 0; i < int(b.vertices.size()); ++i)
       for (int j = 0; j < int(a.vertices.size()); ++j) {
-        if (!strategies.joined(b, i, a, j)) continue;
+        if (!strategies.joined(b, i, a, j, numbers)) continue;
         const PathDensities& d = strategies.densities();
         const std::vector<const PathVertex*> x = points_of(b, i, a, j);
         // In corners points lie so close that rounding decides their direction.
