@@ -11,6 +11,9 @@ namespace sg::trace {
 
 namespace {
 
+/// Vertices of a path from a light that each one of the camera's is joined with: those of paths through media are many.
+constexpr int most_joined = 16;
+
 /// What a sample needs, kept from one to the next.
 struct Halves {
   SubPath camera, light;
@@ -56,8 +59,8 @@ class BothEnds : public PictureIntegrator {
   // Of all ways with two vertices or more from the camera.
   Vec3 join(Halves& h, Numbers& numbers) const {
     Vec3 sum;
-    const auto add = [&](const std::optional<Contribution>& c) {
-      if (c) sum += Vec3(c->value) * h.strategies.weight(*c);
+    const auto add = [&](const std::optional<Contribution>& c, double times = 1) {
+      if (c) sum += Vec3(c->value) * (h.strategies.weight(*c) * times);
     };
     for (const Stretch& stretch : h.camera.stretches)
       for (const MetLight& m : h.strategies.met_in(stretch)) add(h.strategies.met(h.camera, stretch, m));
@@ -66,8 +69,12 @@ class BothEnds : public PictureIntegrator {
       add(h.strategies.shining(h.camera, j));
       if (level > scene_.turns) continue;
       add(h.strategies.asked(h.camera, j, numbers));
-      for (int i = 0; i < int(h.light.vertices.size()); ++i)
-        if (level + h.light.vertex(i).level <= scene_.turns) add(h.strategies.joined(h.light, i, h.camera, j, numbers));
+      // One of each part of a long path.
+      const int all = int(h.light.vertices.size()), parts = std::min(all, most_joined);
+      for (int k = 0; k < parts; ++k) {
+        const int i = all == parts ? k : std::min(int((float(k) + numbers.next()) * float(all) / float(parts)), all - 1);
+        if (level + h.light.vertex(i).level <= scene_.turns) add(h.strategies.joined(h.light, i, h.camera, j, numbers), double(all) / parts);
+      }
     }
     return sum;
   }

@@ -14,10 +14,9 @@ namespace sg::trace {
 namespace {
 
 constexpr double large_share = 0.3;   // of the steps
-constexpr int most_turns = 48;                // of a path, in media
 constexpr size_t chains_a_pass = 64;  // fixed, so that pictures depend on no number of threads
-// Of the bootstrap, over all numbers of turns: an eighth of all, within bounds.
-constexpr double least_draws = 1 << 12, most_draws = 1 << 17;
+// Of the bootstrap, over all kinds: an eighth of all, within bounds.
+constexpr double least_draws = 1 << 14, most_draws = 1 << 17;
 
 /// Sums of independent values.
 struct Sum {
@@ -44,11 +43,11 @@ class Metropolis : public PictureIntegrator {
     const double steps_in_all = scene_.camera.pixels() * (to - from);
     const auto steps = std::max<uint32_t>(1, uint32_t(std::ceil(steps_in_all / double(chains_a_pass))));
     const double weight = steps_in_all / (double(steps) * double(chains_a_pass));
-    // By how much each number of turns counts more than its share of the first points.
+    // By how much each kind counts more than its share of the first points.
     std::vector<double> more;
     const double now = brightness();
     for (size_t i = 0; i < known_.size(); ++i)
-      more.push_back(first_.of_turns[i] > 0 ? known_[i].mean() / first_.of_turns[i] * (first_.total / now) : 0);
+      more.push_back(first_.of_kind[i] > 0 ? known_[i].mean() / first_.of_kind[i] * (first_.total / now) : 0);
     std::vector<std::vector<Sum>> found(chains_a_pass, std::vector<Sum>(known_.size()));
     parallel_for(
         chains_a_pass, 1,
@@ -81,12 +80,12 @@ class Metropolis : public PictureIntegrator {
     for (const Sum& s : known_) b += s.mean();
     return b;
   }
-  uint64_t key_of(size_t turns, size_t draw) const { return random_bits(random_bits(seed_, ~uint64_t(turns)), draw); }
+  uint64_t key_of(size_t kind, size_t draw) const { return random_bits(random_bits(seed_, ~uint64_t(kind)), draw); }
 
-  // Independent points of every number of turns: how bright the picture is, and where chains start.
+  // Independent points of every kind: how bright the picture is, and where chains start.
   void bootstrap(Context& context) {
     started_ = true;
-    const auto kinds = size_t(std::min(scene_.turns, most_turns));
+    const auto kinds = size_t(PathOfPoint(scene_).kinds());
     known_.assign(kinds, {});
     if (kinds == 0) return;
     const double draws = std::clamp(scene_.camera.pixels() * options_.paths / 8, least_draws, most_draws);
@@ -106,13 +105,13 @@ class Metropolis : public PictureIntegrator {
         &context);
     for (size_t i = 0; i < bright.size(); ++i) known_[i / each].add(double(bright[i]));
     first_.each = each;
-    for (const Sum& s : known_) first_.of_turns.push_back(s.mean()), first_.total += s.mean();
+    for (const Sum& s : known_) first_.of_kind.push_back(s.mean()), first_.total += s.mean();
     if (first_.total > 0) first_.points = Distribution1D(bright);
   }
 
   struct FirstPoint {
     uint64_t key;
-    size_t turns;
+    size_t kind;
   };
   FirstPoint first_point(double at) const {
     const size_t i = first_.points.sample(float(at)).cell;
@@ -123,9 +122,9 @@ class Metropolis : public PictureIntegrator {
             PassFilm& film, std::vector<Sum>& found) const {
     PrimarySpace point(first.key, key);
     Lit now, next;
-    tracer.trace(point, int(first.turns), now);
+    tracer.trace(point, int(first.kind), now);
     if (!(now.brightness > 0)) return;
-    const double scale = weight * more[first.turns - 1];
+    const double scale = weight * more[first.kind - 1];
     double waited = 0;  // what the present point is due
     const auto splat = [&](const Lit& lit, double share) {
       if (share > 0)
@@ -134,8 +133,8 @@ class Metropolis : public PictureIntegrator {
     for (uint32_t k = 0; k < steps; ++k) {
       const bool large = random_unit(key, 2 * uint64_t(k)) < large_share;
       point.propose(large);
-      tracer.trace(point, int(first.turns), next);
-      if (large) found[first.turns - 1].add(next.brightness);
+      tracer.trace(point, int(first.kind), next);
+      if (large) found[first.kind - 1].add(next.brightness);
       // Both points count, each by the chance to be the next one.
       const double accepts = std::min(1.0, next.brightness / now.brightness);
       waited += 1 - accepts;
@@ -179,10 +178,10 @@ class Metropolis : public PictureIntegrator {
   LightOptions options_;
   uint64_t seed_;
   bool started_ = false;
-  std::vector<Sum> known_;  // of each number of turns, from independent points
+  std::vector<Sum> known_;  // of each kind, from independent points
   struct {
-    size_t each = 0;  // of one number of turns
-    std::vector<double> of_turns;
+    size_t each = 0;  // of one kind
+    std::vector<double> of_kind;
     double total = 0;
     Distribution1D points;
   } first_;

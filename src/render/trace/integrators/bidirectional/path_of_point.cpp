@@ -20,16 +20,30 @@ void each(const SubPath& path, int level, F&& f) {
     if (path.vertex(i).level == level) f(i);
 }
 
+// How many more turns, of which there may be any number: n or more with the chance typical / (typical + n). Light in dense white matter
+// falls more slowly with n than any geometric distribution.
+struct More {
+  int turns;
+  double chance;
+};
+More draw_more(float u) {
+  constexpr double typical = 8;
+  const double n = std::floor(typical * double(u) / (1 - double(u)));
+  return {int(std::min(n, 1e6)), typical / ((typical + n) * (typical + n + 1))};
+}
+
 }  // namespace
 
-void PathOfPoint::trace(PrimarySpace& numbers, int turns, Lit& lit) {
+void PathOfPoint::trace(PrimarySpace& numbers, int kind, Lit& lit) {
   lit.splats.clear(), lit.brightness = 0;
-  const int ways = turns + 2;
   numbers.begin(Part::way);
+  const More more = kind > scene_.bounces ? draw_more(numbers.next()) : More{0, 1};
+  const int turns = kind + more.turns, ways = turns + 2;
+  if (turns > scene_.turns) return;
   const int s = std::min(int(numbers.next() * float(ways)), ways - 1);
   const auto add = [&](const std::optional<Contribution>& c) {
     if (!c) return;
-    const Vec3 value = Vec3(c->value) * (strategies_.weight(*c) * ways);
+    const Vec3 value = Vec3(c->value) * (strategies_.weight(*c) * ways / more.chance);
     const double y = double(luminance(Vec3f(value)));
     if (!(y > 0) || !std::isfinite(y)) return;
     lit.splats.push_back({c->pixel, value}), lit.brightness += y;

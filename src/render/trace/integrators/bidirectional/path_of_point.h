@@ -23,9 +23,13 @@ class PathOfPoint {
   /// Of a scene that stays.
   explicit PathOfPoint(const PathScene& scene) : scene_(scene), strategies_(scene) {}
 
-  /// All paths with so many turns (1 or more) by one of the turns + 2 ways to make them, each weighed up by that number and by its share:
-  /// over all points their mean is what such paths add to the picture, by the number of its pixels.
-  void trace(PrimarySpace& numbers, int turns, Lit& lit);
+  /// Kinds of paths, from 1 on: by their number of turns, and where there are media one more for all that turn more often than surfaces let
+  /// them.
+  int kinds() const { return scene_.bounces + (scene_.turns > scene_.bounces); }
+  /// All paths of a kind, of one number of turns, by one of the turns + 2 ways to make them, each weighed up by that number, by the chance
+  /// of the number of turns, and by its share: over all points their mean is what such paths add to the picture, by the number of its
+  /// pixels.
+  void trace(PrimarySpace& numbers, int kind, Lit& lit);
 
  private:
   const PathScene& scene_;

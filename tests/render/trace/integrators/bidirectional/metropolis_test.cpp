@@ -106,10 +106,10 @@ TEST_CASE("metropolis: its b is the mean brightness of the picture by paths, and
   const PictureCamera camera(w.projection, w.world.geometry().placement());
   const Emission emission(w.world.lights(), w.world.geometry().bounds());
   const PathScene scene{w.world, emission, camera, s.bounces, true};
-  const auto integrator = metropolis_integrator(scene, options_of(w, IntegratorKind::metropolis, 256, 3));
+  const auto integrator = metropolis_integrator(scene, options_of(w, IntegratorKind::metropolis, 768, 3));
   PassFilm film(w.projection.width, w.projection.height);
   double before = 0;
-  for (uint32_t n = 0; n < 256; n += 16) {
+  for (uint32_t n = 0; n < 768; n += 16) {
     integrator->pass(n, n + 16, film, context);
     if (n == 0) before = integrator->factor_error();
   }
@@ -125,7 +125,7 @@ TEST_CASE("metropolis: its b is the mean brightness of the picture by paths, and
     const Vec3 v = film.splats.sum(p);
     sum += 0.2126 * v.x + 0.7152 * v.y + 0.0722 * v.z;
   }
-  CHECK(sum / (256.0 * LitWorld::side * LitWorld::side) == Approx(1).epsilon(0.05));
+  CHECK(sum / (768.0 * LitWorld::side * LitWorld::side) == Approx(1).epsilon(0.05));
 }
 
 TEST_CASE("metropolis: the brightness of points, by number of turns, is that of paths cut after as many") {
