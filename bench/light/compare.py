@@ -6,7 +6,7 @@ mean of that. Times are those of the picture alone, without the tree.
 
     bench/light/compare.py --mesh mesh_1M.raw --program build/bench/sg_light --ospray 'COMMAND' --blender 'COMMAND' [--scene even,lamp,metal]
 
-The scene `occlusion` is ambient occlusion, PATHS then rays to the open (Sightglass: four for each from the camera), in OSPRay by its renderer
+The scene `occlusion` is ambient occlusion, PATHS then rays to the open (Sightglass: 16 for each from the camera), in OSPRay by its renderer
 `scivis`; Cycles has none.
 
 mesh_1M.raw is made by `sg_bench --only embree`; COMMANDs are what stands in front of the arguments: the program that ospray.cpp becomes,

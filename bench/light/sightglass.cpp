@@ -81,9 +81,9 @@ int main(int argc, char** argv) {
   Context context;
   LightOptions options;
   options.paths = std::atoi(argv[3]), options.noise = 1e-9;
-  if (std::string(argv[2]) == "occlusion") {  // of so many rays to the open, four for each from the camera
+  if (std::string(argv[2]) == "occlusion") {  // of so many rays to the open, 16 for each from the camera
     options.integrator = trace::IntegratorKind::ambient_occlusion;
-    options.paths = std::max(1, options.paths / 4);
+    options.paths = std::max(1, options.paths / 16);
   }
   const PreparedScenePtr prepared = prepare_scene(scene, context);
   const Projection projection = make_projection(camera, width, height);

@@ -119,7 +119,8 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
           "integrator=path draws them");
     if (options.integrator == IntegratorKind::light && std::any_of(scene.items.begin(), scene.items.end(), shows_surfaces_within))
       context.info(
-          "surfaces within volumes are left out, which paths from the lights do not find: shaded=no shows them as matter, integrator=bdpt as "
+          "surfaces within volumes are left out, which paths from the lights do not find: shaded=no shows them as matter, integrator=bdpt "
+          "as "
           "they are");
     draw_whole_picture(world, camera, options, sweeps, frame, variance, report, context);
   } else {

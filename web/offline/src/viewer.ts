@@ -13,7 +13,7 @@ import { Camera, centerOf } from "./view/camera";
 import type { Vec3 } from "./view/vec";
 
 const leastLevel = 2 ** -3.5, firstStride = 2, mostStride = 6;  // while it moves: samples per pixel along an axis, steps in those of the still picture
-const movingTime = 15, restAfter = 180, bandTime = 40;  // milliseconds
+const frameTime = 28, leastDrawing = 5, mostDrawing = 15, restAfter = 180, bandTime = 40;  // milliseconds
 
 export class Viewer {
   readonly camera: Camera;
@@ -39,6 +39,9 @@ export class Viewer {
   private level = 1;   // the one that is used
   private lastLevel = 0;
   private stride = firstStride;  // longer steps where fewer samples would show nothing
+  private lastStart = 0;
+  private lastDrawing = 0;
+  private beside = frameTime - mostDrawing;  // milliseconds of a moving picture in which it is not drawn: overlay, the browser's own work
   private asked = 0;
   private rest = 0;
   private generation = 0;
@@ -139,11 +142,16 @@ export class Viewer {
     drawOverlay(c, { annotation: this.step.annotation, layout: this.layout, projection: this.projection(), box: this.step.box, scales: this.scales, opacity: this.step.volumes[0]?.points ?? null, axes: this.axes, moving: this.moving && !this.still }, this.legends);
   }
 
+  /** Milliseconds in which a moving picture is to be drawn, so that they follow each other by frameTime, if the browser lets them. */
+  private drawingTime(): number {
+    return Math.min(mostDrawing, Math.max(leastDrawing, frameTime - this.beside));
+  }
+
   private drawMoving(): void {
     if (this.coarse === 0) this.coarse = this.level = this.step.volumes.length ? 2 ** -2.5 : 1;
     // Few sizes, and those kept for a while: targets of other sizes take time to make.
     if (this.coarse > 1.5 * this.level || this.coarse < 0.9 * this.level) this.level = 2 ** (Math.floor(2 * Math.log2(this.coarse)) / 2);
-    const start = performance.now(), samples = this.level, same = samples === this.lastLevel;
+    const start = performance.now(), since = start - this.lastStart, samples = this.level, same = samples === this.lastLevel;
     const { pass, drawables } = this.pass(samples, true);
     this.composer.finish();  // of what the browser itself had to do
     const drawing = performance.now();
@@ -153,15 +161,17 @@ export class Viewer {
     const time = performance.now() - drawing;
     this.present(samples);
     this.frameTimes.push(performance.now() - start);
+    if (since < restAfter) this.beside += 0.2 * (since - this.lastDrawing - this.beside);
+    this.lastStart = start, this.lastDrawing = time;
     if (this.frameTimes.length > 120) this.frameTimes.shift();
     this.lastLevel = samples;
     if (!same) return;  // new targets had to be made
-    const wanted = this.level * Math.min(2, Math.max(0.25, Math.sqrt(movingTime / time)));
-    const slow = time / movingTime;
+    const allowed = this.drawingTime(), slow = time / allowed;
+    const wanted = this.level * Math.min(2, Math.max(0.25, 1 / Math.sqrt(slow)));
     if (slow > 1.2 && this.level <= leastLevel * 1.01 && this.step.volumes.length) this.stride = Math.min(mostStride, this.stride * Math.min(1.5, slow));
     else if (slow < 0.8 && this.stride > firstStride) this.stride = Math.max(firstStride, this.stride * Math.max(0.8, slow));
     if (this.stride > firstStride) return;
-    this.coarse = Math.min(1, Math.max(leastLevel, this.coarse + (time > 2 * movingTime ? 1 : 0.3) * (wanted - this.coarse)));
+    this.coarse = Math.min(1, Math.max(leastLevel, this.coarse + (slow > 2 ? 1 : 0.3) * (wanted - this.coarse)));
   }
 
   private stillQuality(): Quality {

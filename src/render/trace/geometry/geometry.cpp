@@ -136,6 +136,26 @@ bool Geometry::blocked(const Ray& ray) const {
   return false;
 }
 
+uint32_t Geometry::blocked(const Ray* rays, int count) const {
+  if (count < 0 || count > several_rays) fail_internal("at most 8 rays are followed in turn");
+  uint32_t stopped = 0;
+  if (tree_) {
+    for (int i = 0; i < count; ++i) stopped |= uint32_t(blocked(rays[i])) << i;
+    return stopped;
+  }
+  for (const auto& o : objects_) {
+    Ray inner[several_rays];
+    int number[several_rays], going = 0;
+    for (int i = 0; i < count; ++i) {
+      const bool meets = BoxRay(rays[i]).enter(&o->box().lo.x, &o->box().hi.x, rays[i].t_max) <= rays[i].t_max;
+      if (meets && !(stopped >> i & 1)) inner[going] = o->inward(rays[i]), number[going++] = i;
+    }
+    const uint32_t here = o->blocked_rays(inner, going);
+    for (int k = 0; k < going; ++k) stopped |= (here >> k & 1) << number[k];
+  }
+  return stopped;
+}
+
 SurfacePoint Geometry::at(const Ray& ray, const Hit& hit) const {
   const auto object =
       std::lower_bound(objects_.begin(), objects_.end(), hit.object, [](const auto& o, uint32_t item) { return o->item < item; });

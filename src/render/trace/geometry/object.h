@@ -17,6 +17,7 @@ class Geometry::Object {
   /// As of Geometry, in the object's coordinates; t in their unit. What is farther than hit.t is no hit either.
   virtual bool nearest(const Ray& ray, Hit& hit) const = 0;
   virtual bool blocked(const Ray& ray) const = 0;
+  virtual uint32_t blocked_rays(const Ray* rays, int count) const;
   virtual uint32_t nearest_packet(const Ray* rays, int count, Hit* hits) const;
   /// A place on the surface in double, and its directions.
   struct Place {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One ray against a tree of triangles: eight boxes, then eight triangles at once. No fused multiply-add: the same bytes for every width of
+// Rays against a tree of triangles: eight boxes, then eight triangles at once. No fused multiply-add: the same bytes for every width of
 // vectors (triangle_test.h is the reference).
 #include "render/trace/geometry/triangles.h"
 
@@ -111,6 +111,59 @@ bool any_triangle(const Triangles& in, const Ray& ray) {
   return found;
 }
 
+/// One of several rays on their way, each of which does a node or a leaf in its turn: what it needs next is fetched while the others are at
+/// work.
+struct Walker {
+  Walker(const Ray& ray, int i) : sheared(ray), leaf(sheared), nodes(BoxRay(ray)), t_max(ray.t_max), number(i) {}
+  ShearedRay sheared;
+  LeafRay leaf;
+  NodeRay<false> nodes;
+  float t_max;
+  int number;
+  uint32_t at = 0;
+  size_t top = 0;
+  uint32_t stack[WideBvh::stack_size];
+};
+
+enum class Way { goes_on, stopped, free };
+
+HWY_INLINE Way step(const Triangles& in, Walker& w) {
+  const WideNode* nodes = in.tree().nodes().data();
+  const TriangleBlock* blocks = in.blocks().data();
+  if (w.at & leaf_bit) {
+    if (any_in(w.leaf, blocks[w.at & ~leaf_bit], w.t_max)) return Way::stopped;
+  } else {
+    const WideNode& n = nodes[w.at];
+    HWY_ALIGN float near[wide];
+    for (uint32_t bits = w.nodes.meet(n, w.t_max, near); bits; bits &= bits - 1) w.stack[w.top++] = n.child[std::countr_zero(bits)];
+  }
+  if (w.top == 0) return Way::free;
+  w.at = w.stack[--w.top];
+  if (w.at & leaf_bit) prefetch_lines(blocks + (w.at & ~leaf_bit), 5);
+  else prefetch_node(nodes + w.at);
+  return Way::goes_on;
+}
+
+uint32_t blocked_rays(const Triangles& in, const Ray* rays, int count) {
+  alignas(Walker) unsigned char room[several_rays * sizeof(Walker)];
+  Walker* walkers[several_rays];
+  int going = 0;
+  for (int i = 0; i < count; ++i)
+    if (can_trace(rays[i])) walkers[going] = new (room + size_t(going) * sizeof(Walker)) Walker(rays[i], i), ++going;
+  uint32_t stopped = 0;
+  while (going > 0)
+    for (int k = 0; k < going;) {
+      const Way way = step(in, *walkers[k]);
+      if (way == Way::goes_on) {
+        ++k;
+        continue;
+      }
+      if (way == Way::stopped) stopped |= 1u << walkers[k]->number;
+      walkers[k] = walkers[--going];
+    }
+  return stopped;
+}
+
 }  // namespace sg::trace::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -119,11 +172,16 @@ namespace sg::trace {
 
 HWY_EXPORT(nearest_triangle);
 HWY_EXPORT(any_triangle);
+HWY_EXPORT(blocked_rays);
 
 bool Triangles::nearest(const Ray& ray, Hit& hit) const {
   return can_trace(ray) && !tree_.empty() && HWY_DYNAMIC_DISPATCH(nearest_triangle)(*this, ray, hit);
 }
 bool Triangles::blocked(const Ray& ray) const { return can_trace(ray) && !tree_.empty() && HWY_DYNAMIC_DISPATCH(any_triangle)(*this, ray); }
+
+uint32_t Triangles::blocked(const Ray* rays, int count) const {
+  return tree_.empty() ? 0 : HWY_DYNAMIC_DISPATCH(blocked_rays)(*this, rays, count);
+}
 
 }  // namespace sg::trace
 #endif

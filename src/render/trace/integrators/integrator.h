@@ -25,9 +25,9 @@ class Integrator {
   virtual Estimate along(const World& world, const Ray& ray, Sampler& sampler, const RayFootprint& footprint = {}) const = 0;
 };
 
-/// Paths from the camera that turn at surfaces, at most `bounces` times, and in media, at most matter_turns times as often. At each turn one
-/// light is asked for directly (next-event estimation), and weighed against meeting it by chance (Veach 1997); paths that carry little are
-/// ended at random (Russian roulette).
+/// Paths from the camera that turn at surfaces, at most `bounces` times, and in media, at most matter_turns times as often. At each turn
+/// one light is asked for directly (next-event estimation), and weighed against meeting it by chance (Veach 1997); paths that carry little
+/// are ended at random (Russian roulette).
 std::unique_ptr<Integrator> path_integrator(int bounces);
 /// The same where only mirrors and clear glass send paths on.
 std::unique_ptr<Integrator> whitted_integrator(int bounces);

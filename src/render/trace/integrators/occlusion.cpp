@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <bit>
 #include <limits>
 
 #include "render/trace/integrators/integrator.h"
@@ -9,7 +10,7 @@ namespace sg::trace {
 namespace {
 
 /// Rays to the open for each from the camera, in as many strata of the hemisphere along each axis: edges of pixels need fewer.
-constexpr int strata = 2;
+constexpr int strata = 4;
 
 class OcclusionIntegrator : public Integrator {
  public:
@@ -45,12 +46,19 @@ class OcclusionIntegrator : public Integrator {
       const Vec3f normal = below ? -point.shading_normal : point.shading_normal;
       const LocalFrame frame = LocalFrame::about(normal);
       const float side = below ? -1.f : 1.f;
+      // At the same place in each stratum: systematic sampling, whose places samples of a pixel spread over the stratum.
+      const Vec2f in = sampler.next2();
       int open = 0;
-      for (int i = 0; i < strata * strata; ++i) {
-        const Vec2f in = sampler.next2(), u{(float(i % strata) + in.x) / strata, (float(i / strata) + in.y) / strata};
-        const Vec3f direction = normalize(frame.to_world(cosine_hemisphere(u)));
-        // Directions below the face are those that the rounded normal would have, not the surface.
-        open += dot(direction, point.face_normal) * side > 0 && !world.geometry().blocked({leave(point, direction), direction, reach_});
+      for (int row = 0; row < strata; row += strata / 2) {
+        Ray rays[strata * strata / 2];
+        int above = 0;
+        for (int i = row * strata; i < row * strata + strata * strata / 2; ++i) {
+          const Vec2f u{(float(i % strata) + in.x) / strata, (float(i / strata) + in.y) / strata};
+          const Vec3f direction = normalize(frame.to_world(cosine_hemisphere(u)));
+          // Directions below the face are those that the rounded normal would have, not the surface.
+          if (dot(direction, point.face_normal) * side > 0) rays[above++] = {leave(point, direction), direction, reach_};
+        }
+        open += above - std::popcount(world.geometry().blocked(rays, above));
       }
       out.radiance += Vec3f(color.x, color.y, color.z) * (share * color.w * float(open) / (strata * strata));
       share *= 1 - color.w;

@@ -208,7 +208,8 @@ class PathIntegrator : public Integrator {
     const auto start = [&](Vec3f) { return Start{from, path.insides}; };
     const float choice = sampler.next();
     const Vec2f u = sampler.next2();
-    out.radiance += path.throughput * direct(world, last ? world.lights() : world.lamps(), media, from, start, scattered, choice, u, sampler);
+    out.radiance +=
+        path.throughput * direct(world, last ? world.lights() : world.lamps(), media, from, start, scattered, choice, u, sampler);
 
     const Vec2f v = sampler.next2();
     const float roulette = sampler.next();

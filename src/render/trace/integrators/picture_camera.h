@@ -18,8 +18,8 @@ struct Sight {
                      ///< radiance * |cos| * importance over the surfaces that it sees
 };
 
-/// A pinhole, a parallel projection or a thin lens, of which each place is a pinhole by itself. Rays begin where they enter a ball about the
-/// scene, so that they lose no digits on the way there.
+/// A pinhole, a parallel projection or a thin lens, of which each place is a pinhole by itself. Rays begin where they enter a ball about
+/// the scene, so that they lose no digits on the way there.
 class PictureCamera {
  public:
   PictureCamera(const Projection& projection, const Placement& placement);

@@ -53,8 +53,8 @@ std::vector<float> values_around(RayField& field, const Box3& box) {
   return values;
 }
 
-/// Levels whose surfaces lie around smaller values, as those of distances that are negative within: larger ones are around nearly all of the
-/// volume. Surfaces that end at its border are no bodies.
+/// Levels whose surfaces lie around smaller values, as those of distances that are negative within: larger ones are around nearly all of
+/// the volume. Surfaces that end at its border are no bodies.
 std::vector<bool> around_smaller(RayField& field, const Box3& box, const std::vector<double>& levels) {
   const std::vector<float> values = values_around(field, box);
   std::vector<bool> out;

@@ -92,16 +92,24 @@ uint32_t Sampler::block_index(uint64_t key) const {
   return owen_scrambled(block, upper(key)) << block_bits_ | permuted(in_block, 1u << block_bits_, random_bits(key, block));
 }
 
+uint64_t Sampler::shuffled_digit(uint64_t key, int shift) const {
+  const uint64_t digit = along_curve_ >> shift & 3, above = along_curve_ >> (shift + 2);
+  const uint64_t drawn = random_bits(key + uint64_t(shift), above) >> 32;
+  return uint64_t(orders_of_four.to[drawn * 24 >> 32][digit]) << shift;
+}
+
 // The place along the curve in an order that is shuffled within every square of 2^k pixels; blocks of samples of a pixel as above.
-uint64_t Sampler::curve_index(uint64_t key) const {
+uint64_t Sampler::curve_index(uint64_t key) {
+  const int in_square = curve_bits_ + 6;
+  OfSquare& of_square = of_square_[size_t(key) % of_square_.size()];
+  if (const uint64_t square = along_curve_ >> in_square; of_square.key != key || of_square.square != square) {
+    of_square = {key, square, 0};
+    for (int shift = curve_bits_ + 30; shift >= in_square; shift -= 2) of_square.shuffled |= shuffled_digit(key, shift);
+  }
   const uint64_t block = along_curve_ >> block_bits_;
   const uint32_t in_block = uint32_t(along_curve_) & ((1u << block_bits_) - 1);
-  uint64_t shuffled = permuted(in_block, 1u << block_bits_, random_bits(key + 64, block));
-  for (int shift = curve_bits_ + 30; shift >= block_bits_; shift -= 2) {
-    const uint64_t digit = along_curve_ >> shift & 3, above = along_curve_ >> (shift + 2);
-    const uint64_t drawn = random_bits(key + uint64_t(shift), above) >> 32;
-    shuffled |= uint64_t(orders_of_four.to[drawn * 24 >> 32][digit]) << shift;
-  }
+  uint64_t shuffled = of_square.shuffled | permuted(in_block, 1u << block_bits_, random_bits(key + 64, block));
+  for (int shift = in_square - 2; shift >= block_bits_; shift -= 2) shuffled |= shuffled_digit(key, shift);
   return shuffled;
 }
 

@@ -10,6 +10,7 @@
 // All kinds are unbiased: each value by itself is uniform, those of different calls of next() and next2() are independent. What
 // they differ in is how the samples of a pixel lie to each other.
 #pragma once
+#include <array>
 #include <cstdint>
 
 #include "base/schema/enum_words.h"
@@ -49,8 +50,14 @@ class Sampler {
   uint32_t dimension() const { return dimension_; }
 
  private:
+  /// Along the curve: what a square of 8 x 8 pixels has in common, for a dimension.
+  struct OfSquare {
+    uint64_t key = 0, square = ~uint64_t(0), shuffled = 0;
+  };
+
   uint32_t block_index(uint64_t key) const;
-  uint64_t curve_index(uint64_t key) const;
+  uint64_t curve_index(uint64_t key);
+  uint64_t shuffled_digit(uint64_t key, int shift) const;
 
   SamplerKind kind_;
   uint32_t count_;            // samples of a pattern
@@ -60,7 +67,8 @@ class Sampler {
   uint64_t seed_;             // mixed
   uint64_t key_ = 0;          // of pixel and pattern; independent: of the sample; blue noise: of the pattern
   uint64_t along_curve_ = 0;  // blue noise: pixel and sample as one number
-  uint32_t index_ = 0;        // of the sample in its pattern
+  std::array<OfSquare, 32> of_square_;
+  uint32_t index_ = 0;  // of the sample in its pattern
   uint32_t dimension_ = 0;
 };
 

@@ -187,3 +187,28 @@ TEST_CASE("trace: sixteen rays at once find what each finds, in scenes of severa
   CHECK(found > 2000);
   CHECK(wrong == 0);
 }
+
+TEST_CASE("trace: several rays in turn are blocked as each is, wherever they go") {
+  Scene one, several;
+  one.items.emplace_back(sg::test::item(sg::test::torus(60, 40, false, {3, 0, 0})));
+  several = one;
+  several.items.emplace_back(line({-3, 0, 0, 4, 1, 0, 4, -2, 1}, 4));
+  several.items.emplace_back(sg::test::item(sg::test::sphere(30, 1)));
+  for (const Scene* scene : {&one, &several}) {
+    const Geometry g = geometry_of(*scene, {.pixel = 0.05});
+    size_t blocked = 0, wrong = 0;
+    for (size_t i = 0; i < 2000; ++i) {
+      Ray rays[8];
+      const int n = int(i % 9);
+      for (int k = 0; k < n; ++k) {
+        rays[k] = {any_place(4, 8 * i + size_t(k), 1), any_direction(5, 8 * i + size_t(k)), uniform(6, 8 * i + size_t(k), 0.1, 2)};
+        if (i % 50 == 7 && k == 1) rays[k].direction.x = NAN;
+      }
+      const uint32_t bits = g.blocked(rays, n);
+      for (int k = 0; k < n; ++k) blocked += bits >> k & 1, wrong += bool(bits >> k & 1) != g.blocked(rays[k]);
+      wrong += bits >> n != 0;
+    }
+    CHECK(blocked > 200);
+    CHECK(wrong == 0);
+  }
+}

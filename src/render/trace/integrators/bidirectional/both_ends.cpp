@@ -73,7 +73,8 @@ class BothEnds : public PictureIntegrator {
       const int all = int(h.light.vertices.size()), parts = std::min(all, most_joined);
       for (int k = 0; k < parts; ++k) {
         const int i = all == parts ? k : std::min(int((float(k) + numbers.next()) * float(all) / float(parts)), all - 1);
-        if (level + h.light.vertex(i).level <= scene_.turns) add(h.strategies.joined(h.light, i, h.camera, j, numbers), double(all) / parts);
+        if (level + h.light.vertex(i).level <= scene_.turns)
+          add(h.strategies.joined(h.light, i, h.camera, j, numbers), double(all) / parts);
       }
     }
     return sum;

@@ -52,7 +52,8 @@ void PathOfPoint::trace(PrimarySpace& numbers, int kind, Lit& lit) {
   if (of_camera > 0) {
     numbers.begin(Part::camera);
     const Vec2f u = numbers.next2();
-    walk_from_camera(scene_, strategies_.media(), {u.x * float(scene_.camera.width()), u.y * float(scene_.camera.height())}, of_camera, numbers, camera_);
+    walk_from_camera(scene_, strategies_.media(), {u.x * float(scene_.camera.width()), u.y * float(scene_.camera.height())}, of_camera,
+                     numbers, camera_);
   }
   if (of_light > 0) {
     numbers.begin(Part::light);
@@ -71,7 +72,8 @@ void PathOfPoint::trace(PrimarySpace& numbers, int kind, Lit& lit) {
     each(light_, turns, [&](int i) { add(strategies_.onto_picture(light_, i, numbers)); });
   } else {
     numbers.begin(Part::between);
-    each(light_, of_light, [&](int i) { each(camera_, of_camera, [&](int j) { add(strategies_.joined(light_, i, camera_, j, numbers)); }); });
+    each(light_, of_light,
+         [&](int i) { each(camera_, of_camera, [&](int j) { add(strategies_.joined(light_, i, camera_, j, numbers)); }); });
   }
 }
 

@@ -31,10 +31,10 @@ struct PathVertex {
   int surfaces = 0;                 ///< those at surfaces
   bool delta = false;               ///< the path went on by a delta
   Vec3f to_parent;                  ///< unit
-  float distance = 0;  ///< from the parent, or infinite: a light
-  Vec3f throughput;    ///< of all before this vertex
-  Insides around;      ///< the bodies that the path came through
-  double forward = 0;  ///< density with which it was drawn
+  float distance = 0;               ///< from the parent, or infinite: a light
+  Vec3f throughput;                 ///< of all before this vertex
+  Insides around;                   ///< the bodies that the path came through
+  double forward = 0;               ///< density with which it was drawn
   double reverse = 0;  ///< density with which the path the other way would draw it, if this one goes on for two vertices or more
 
   /// Zero in a medium.
