@@ -22,6 +22,11 @@ void check_share(double value, const char* name) {
 
 bool scatters_by_map(const VolumeItem& item) { return item.scattering.light == VolumeLighting::map; }
 
+bool scatters_alone(const LightEffects& e) {
+  const auto one_map = [](const LampShadows& l) { return l.volumes.size() == 1 && !l.surfaces; };
+  return e.scatters && e.depth_cue == 0 && e.shadows == 1 && std::all_of(e.lamps.begin(), e.lamps.end(), one_map);
+}
+
 bool has_effects(const VolumeItem& item) {
   const VolumeLight& l = item.light;
   return l.shadows > 0 || l.occlusion > 0 || l.depth_cue > 0 || l.style != LightStyle::none || scatters_by_map(item);

@@ -58,12 +58,14 @@ struct LightEffects {
 
 /// Whether the light of the lamps is scattered once, by their maps.
 bool scatters_by_map(const VolumeItem& item);
+/// Whether these are nothing but one map for each lamp, of a volume that is alone.
+bool scatters_alone(const LightEffects& effects);
 /// Whether the item uses any of them.
 bool has_effects(const VolumeItem& item);
 /// Throws Error(usage) for shares outside 0..1, and shadows or occlusion of what is not composited.
 void check_light(const VolumeItem& item);
 
-/// The light that the volume takes from each lamp. Kept with its dataset: those of one picture, at most 32 MiB per lamp (8 MiB where a
+/// The light that the volume takes from each lamp. Kept with its dataset: those of one picture, at most 16 MiB per lamp (8 MiB where a
 /// second axis makes every sample expensive).
 std::vector<std::shared_ptr<const LightMap>> light_maps(const VolumeItem& item, const RaySource& source, const Extinction& extinction,
                                                         std::span<const Vec3> lamps, const Context* context);

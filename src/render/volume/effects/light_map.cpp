@@ -78,7 +78,7 @@ float LightMap::at(Vec3 place) const {
   size_t cell[3];
   float f[3];
   for (int a = 0; a < 3; ++a) {
-    const double at = (dot(axis_[a], place) - first_[a]) * per_length_[a];
+    const double at = coordinate(a, place);
     if (a < 2 && !(at > -0.5 && at < double(n_[a]) - 0.5)) return 1;  // beside the volume
     const double x = std::clamp(at, 0.0, double(n_[a] - 1));
     cell[a] = std::min(size_t(x), n_[a] - 2), f[a] = float(x - double(cell[a]));

@@ -21,7 +21,7 @@ class LightMap {
  public:
   struct Plan {
     double spacing = 0;                     ///< world length; 0 = the smallest edge of a cell
-    size_t most_samples = size_t(1) << 24;  ///< 2 bytes each; the spacing grows until this many suffice
+    size_t most_samples = size_t(1) << 23;  ///< 2 bytes each; the spacing grows until this many suffice
   };
   /// `towards` is the direction to the lamp. Clipped parts cast no shadow.
   LightMap(const RaySource& source, Extinction extinction, const std::vector<ClipPlane>& clip, Vec3 towards, const Plan& plan,
@@ -29,6 +29,14 @@ class LightMap {
 
   /// Share of the light that arrives at a point in world space, 0..1: behind the volume what it transmits, outside its shadow all.
   float at(Vec3 place) const;
+
+  /// The samples as they lie, the last axis fastest, and where a place is along an axis in them (not clamped).
+  struct Samples {
+    const uint16_t* values;  ///< 65535 = all light
+    const size_t* n;
+  };
+  Samples samples() const { return {values_.data(), n_}; }
+  double coordinate(int axis, Vec3 place) const { return (dot(axis_[axis], place) - first_[axis]) * per_length_[axis]; }
 
   double spacing() const { return spacing_; }
   size_t bytes() const { return values_.size() * sizeof(uint16_t); }

@@ -43,11 +43,12 @@ class TileEngine {
 
 /// Null where the engine cannot draw this volume.
 using EngineFactory = std::unique_ptr<TileEngine> (*)(const EngineInput&);
-std::unique_ptr<TileEngine> tolerant_packets(const EngineInput& input);   ///< lattices within the tolerance
-std::unique_ptr<TileEngine> marching_packets(const EngineInput& input);   ///< lattices in fixed steps
-std::unique_ptr<TileEngine> maximum_packets(const EngineInput& input);    ///< maxima of lattices
-std::unique_ptr<TileEngine> brick_engine(const EngineInput& input);       ///< volumes larger than memory
-std::unique_ptr<TileEngine> tetrahedra_engine(const EngineInput& input);  ///< meshes of cells
+std::unique_ptr<TileEngine> tolerant_packets(const EngineInput& input);    ///< lattices within the tolerance
+std::unique_ptr<TileEngine> scattering_packets(const EngineInput& input);  ///< the same, in light that is scattered once
+std::unique_ptr<TileEngine> marching_packets(const EngineInput& input);    ///< lattices in fixed steps
+std::unique_ptr<TileEngine> maximum_packets(const EngineInput& input);     ///< maxima of lattices
+std::unique_ptr<TileEngine> brick_engine(const EngineInput& input);        ///< volumes larger than memory
+std::unique_ptr<TileEngine> tetrahedra_engine(const EngineInput& input);   ///< meshes of cells
 
 /// The first of all engines that can draw this volume, or null.
 std::unique_ptr<TileEngine> engine_for(const EngineInput& input);

@@ -46,14 +46,24 @@ double DepthIntegral::mean(float a, float b) const {
   return std::max(0.0, (antiderivative(b) - antiderivative(a)) / (double(b) - double(a)));
 }
 
+// How many straight parts do for a stretch whose values are lo to hi.
+int DepthIntegral::chords(const Stretch& s, float lo, float hi) const {
+  // The cubic leaves a chord of 1/n of it by at most 3/4 of its largest second difference / n^2.
+  const float bend = std::max(std::abs(s.b[0] - 2 * s.b[1] + s.b[2]), std::abs(s.b[1] - 2 * s.b[2] + s.b[3]));
+  const double error = (s.to - s.from) * double(medium_.most_slope(lo, hi)) * 0.75 * double(bend);
+  return std::clamp(int(std::ceil(std::sqrt(std::min(1.0, error) * 1e4))), 1, 16);
+}
+
+bool DepthIntegral::straight(const Stretch& s) const {
+  const float lo = s.lowest(), hi = s.highest();
+  return !detail_ && lo <= hi && !(medium_.any_abrupt() && medium_.abrupt(lo, hi)) && chords(s, lo, hi) == 1;
+}
+
 double DepthIntegral::over(const Stretch& s) const {
   const float lo = s.lowest(), hi = s.highest();
   if (!(lo <= hi) || medium_.clear(lo, hi)) return 0;
   const double length = s.to - s.from;
-  // The cubic leaves a chord of 1/n of it by at most 3/4 of its largest second difference / n^2.
-  const float bend = std::max(std::abs(s.b[0] - 2 * s.b[1] + s.b[2]), std::abs(s.b[1] - 2 * s.b[2] + s.b[3]));
-  const double error = length * double(medium_.most_slope(lo, hi)) * 0.75 * double(bend);
-  const int n = std::clamp(int(std::ceil(std::sqrt(std::min(1.0, error) * 1e4))), 1, 16);
+  const int n = chords(s, lo, hi);
   // A value that turns beyond a jump of the medium may spend any share of its way there: parts end where it turns, and are cut at knots.
   double turn[3] = {2, 2, 2};
   const bool abrupt = medium_.any_abrupt() && medium_.abrupt(lo, hi);
@@ -118,6 +128,16 @@ void depths_along(const DepthRay& ray, RayField& walker, const DepthIntegral& in
       for (size_t k = 0; k < count; ++k) {
         Stretch s = ahead[k];
         for (; i < depth.size() && double(i) * spacing <= s.from; ++i) depth[i] = float(sum);
+        if (integral.straight(s)) {
+          double from = s.from;
+          float value = s.b[0];
+          const auto go = [&](double t, float next) { sum += (t - from) * integral.mean(value, next), from = t, value = next; };
+          for (; i < depth.size() && double(i) * spacing < s.to; ++i)
+            go(double(i) * spacing, s.value(double(i) * spacing)), depth[i] = float(sum);
+          if (i >= depth.size()) return;
+          go(s.to, s.b[3]);
+          continue;
+        }
         for (; i < depth.size() && double(i) * spacing < s.to; ++i) {
           const double t = double(i) * spacing;
           sum += integral.over(part_of(s, s.from, t), walker);

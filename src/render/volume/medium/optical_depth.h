@@ -30,10 +30,13 @@ class DepthIntegral {
   double over(const Stretch& stretch) const;
   /// The same of the detail where there is one.
   double over(const Stretch& stretch, RayField& walker) const;
+  /// Whether the value of a stretch may be taken for a straight line between any two places of it, to the same.
+  bool straight(const Stretch& stretch) const;
   /// Mean of tau while the value goes straight from a to b.
   double mean(float a, float b) const;
 
  private:
+  int chords(const Stretch& s, float lo, float hi) const;
   double antiderivative(float v) const;
   /// Of the shares [from, to] of a stretch, on which the value goes one way from a to b: cut where it meets knots.
   double between_knots(const Stretch& s, double from, double to, float a, float b) const;

@@ -11,6 +11,7 @@
 #include "render/volume/engines/packets/packet_cell_light-inl.h"
 #include "render/volume/engines/packets/packet_cubic-inl.h"
 #include "render/volume/engines/packets/packet_medium-inl.h"
+#include "render/volume/engines/packets/packet_scattered-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
@@ -67,10 +68,15 @@ class PacketCells : public RayLanes<D, T, Axes> {
   using Rays::plan, Rays::source, Rays::axes, Rays::sum;
   const MediumLanes<D> medium;
   const Lighting<D> lighting;
+  const ScatteredLanes<D> scattered;
 
   template <class Plan>
   HWY_INLINE PacketCells(const Plan& p, const RayPacket& rays)
-      : Rays(p, rays), medium(*p.medium), lighting(p.volume, p.light, rays), light(lighting, axes) {
+      : Rays(p, rays),
+        medium(*p.medium),
+        lighting(p.volume, p.light, rays),
+        scattered(p.scattered, rays, source.loads),
+        light(lighting, axes) {
     at_ = set(IntTag<D>(), 0);
     line_ = medium.line(at_);
   }
@@ -247,6 +253,9 @@ class PacketCells : public RayLanes<D, T, Axes> {
                   const auto on = light.at(mul_add(to - s, at, s));
                   const F flash = on.specular * share;
                   for (F* c : {&red, &green, &blue}) *c = mul_add(*c, on.diffuse, flash);
+                } else if (scattered.any()) {
+                  const F on = scattered_at(mul_add(length, mul_add(to - s, at, s), t));
+                  for (F* c : {&red, &green, &blue}) *c = *c * on;
                 }
               });
       // On to the next line, or to the next piece.
@@ -260,6 +269,13 @@ class PacketCells : public RayLanes<D, T, Axes> {
       }
       aim();
     }
+  }
+
+  /// The light that is scattered at the places t of the rays.
+  HWY_INLINE F scattered_at(F t) const {
+    F q[3];
+    for (int a = 0; a < 3; ++a) q[a] = mul_add(this->along[a], t, this->start[a]);
+    return scattered.at(q);
   }
 
   /// Where a cubic that goes one way from s to end, and from a to b, has a value, to `close`, for the lanes that ask: as Pieces::meets of

@@ -5,6 +5,7 @@
 #include "render/volume/engines/engine.h"
 #include "render/volume/engines/packets/detail_table.h"
 #include "render/volume/engines/packets/packets.h"
+#include "render/volume/engines/packets/scattered_light.h"
 #include "render/volume/sources/lattice/reconstructed_ray.h"
 
 namespace sg::volume {
@@ -42,10 +43,12 @@ class StridingPackets : public PacketEngine<StridingPlan> {
   explicit StridingPackets(const EngineInput& in)
       : PacketEngine(StridingPlan{integral_of(in), nullptr, in.knobs.skip_empty}), tables_{MediumSums(*in.volume.medium), passages(in)} {
     plan_.tables = &tables_;
+    if (in.volume.effects) plan_.scattered = &scattered_.emplace(*in.volume.effects, in.lamps, *in.lattice);
   }
 
  private:
   const StrideTables tables_;
+  std::optional<ScatteredLight> scattered_;
 };
 
 class UnevenPackets : public PacketEngine<UnevenPlan> {
@@ -104,6 +107,11 @@ std::unique_ptr<TileEngine> tolerant_packets(const EngineInput& in) {
   }
   if (in.lattice->affine) return std::make_unique<StridingPackets>(in);
   return std::make_unique<UnevenPackets>(in);
+}
+
+std::unique_ptr<TileEngine> scattering_packets(const EngineInput& in) {
+  const bool fits = in.by_tolerance() && lit_in_packets(in) && in.volume.medium->linear() && !in.volume.detail && in.lattice->affine;
+  return fits && scatters_alone(*in.volume.effects) ? std::make_unique<StridingPackets>(in) : nullptr;
 }
 
 std::unique_ptr<TileEngine> marching_packets(const EngineInput& in) {

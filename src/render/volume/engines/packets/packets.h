@@ -16,6 +16,7 @@
 namespace sg::volume {
 
 struct DetailTable;
+struct ScatteredLight;
 
 /// The rays from the viewer: what all plans begin with.
 struct PrimaryRays {
@@ -59,6 +60,7 @@ struct IntegralPlan : PrimaryRays {
   Illumination light;
   const Medium* medium;
   Budget budget;
+  const ScatteredLight* scattered = nullptr;  ///< of volumes that are not shaded, on uniform grids
 };
 
 /// What strides over several cells look up.

@@ -45,6 +45,8 @@ constexpr float deep_pair = 6;
 constexpr float most_turned = 4;
 /// So much of that a gradient leaves its straight line by, near the edge of a surface: there it may turn over and back.
 constexpr float share_astray = 1.0f / 16;
+/// So much of how scattered light bends over two strides counts as what a parabola gets wrong.
+constexpr float share_bent = 1.0f / 4;
 /// Of what is left so much may go for one stride.
 constexpr float share_at_once = 1.0f / 3;
 /// The next stride over this one is so much of what the error would allow, within these bounds. A stride that is refused costs a whole
@@ -225,6 +227,16 @@ class StridingPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
         const F uneven = pass * s.uneven * apart(here_lit_.light, lit2.light);
         error = error + only(seen & !turned, uneven);
       }
+    if constexpr (!shaded)
+      if (any_seen && cells_.scattered.any()) {
+        const F first = cells_.scattered_at(t), middle = cells_.scattered_at(t1), last = cells_.scattered_at(t2);
+        light.diffuse = Parabola<D>::through(first, middle, last);
+        // Colours are wrong by as much more as they are lit; between its three places the light leaves the parabola by a share of how it
+        // bends.
+        const F most = max(one, max(first, max(middle, last)));
+        const F bent = mul_add(taken, abs(light.diffuse.c) * share_bent, error * most);
+        error = select(seen, mul_add(pass * s.uneven, abs(last - first), bent), error);
+      }
     // Accepted: both strides as one segment.
     const M good = striding & (error <= allowed);
     reserve_ = select(good, reserve_ + own - error, reserve_);
@@ -232,6 +244,7 @@ class StridingPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
       const M drawn = seen & good;
       F lightening = zero;
       if constexpr (shaded) lightening = 2.0f * (abs(light.diffuse.b) + abs(light.specular.b));
+      else if (cells_.scattered.any()) lightening = 2.0f * abs(light.diffuse.b);
       cells_.may_hide(s.change, lightening, lightening);
       const F extinctions[3] = {here_.sigma_t, p1.sigma_t, p2.sigma_t};
       cells_.segment(drawn, t, world + world, s.depth, extinctions, here_.value, p2.value, s.value, half * (one + s.middle), nullptr,
@@ -246,6 +259,9 @@ class StridingPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
                            const F both = half * variance * light.diffuse.slope(x);
                            for (int c = 0; c < 3; ++c) *colors[c] = mul_add(spread.change[c], both, *colors[c]);
                          }
+                       } else if (cells_.scattered.any()) {
+                         const F factor = light.diffuse.mean(at + at - one, s.variance);
+                         for (F* c : {&red, &green, &blue}) *c = *c * factor;
                        }
                      });
       if constexpr (shaded) path_.go(here_lit_, lit2, t2 - t, told, speed_, drawn), here_lit_.take(lit2, drawn);
