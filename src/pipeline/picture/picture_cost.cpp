@@ -66,8 +66,7 @@ std::string note_of_long_drawing(const Scene& scene, double pixels) {
   if (seconds < is_long) return "";
   return fmt::format(
       "drawing {:.3g} million rays through a lit volume, each within {:.2g} of its true light, may take {} s of processor time where few "
-      "of "
-      "them end early; tolerance={:.2g} takes about half of it, a smaller --size less",
+      "of them end early; tolerance={:.2g} takes about half of it, a smaller --size less",
       pixels * 1e-6, tolerance, short_number(seconds, 2), 5 * tolerance);
 }
 

@@ -64,9 +64,21 @@ World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Proje
           media,    std::move(isosurfaces.looks), scene.shows};
 }
 
-bool shows_surfaces_within(const Item& item) {
-  const auto* v = std::get_if<VolumeItem>(&item);
-  return v && v->mode == RayFunction::composite && v->shaded && v->scattering.light != VolumeLighting::emission;
+/// What paths from the lights alone do not find.
+void tell_what_is_left_out(const Scene& scene, Context& context) {
+  bool surfaces = false, glow = false;
+  for (const Item& item : scene.items) {
+    const auto* v = std::get_if<VolumeItem>(&item);
+    if (!v || v->mode != RayFunction::composite) continue;
+    const bool shines = v->scattering.light == VolumeLighting::emission;
+    surfaces = surfaces || (v->shaded && !shines), glow = glow || shines || v->scattering.glow > 0;
+  }
+  if (surfaces)
+    context.info(
+        "surfaces within volumes are left out, which paths from the lights do not find: shaded=no shows them as matter, integrator=bdpt as "
+        "they are");
+  if (glow)
+    context.info("what glows in volumes is seen and lights nothing, as paths begin at lamps alone; integrator=bdpt finds its light");
 }
 
 /// What is around the scene, as the middle of each pixel sees it.
@@ -117,11 +129,7 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
       context.info(
           "lines of equal value are left out: their width is one of pixels, which paths from the lights do not know; "
           "integrator=path draws them");
-    if (options.integrator == IntegratorKind::light && std::any_of(scene.items.begin(), scene.items.end(), shows_surfaces_within))
-      context.info(
-          "surfaces within volumes are left out, which paths from the lights do not find: shaded=no shows them as matter, integrator=bdpt "
-          "as "
-          "they are");
+    if (options.integrator == IntegratorKind::light) tell_what_is_left_out(scene, context);
     draw_whole_picture(world, camera, options, sweeps, frame, variance, report, context);
   } else {
     LitPicture picture{world, camera, backdrop, {}, options};

@@ -29,7 +29,7 @@ class OcclusionIntegrator : public Integrator {
         const float u = sampler.next();
         RandomStream random(sampler.stream());
         if (const auto matter = media->collide(ray, u, random)) {
-          const Vec3f at = ray.origin + ray.direction * matter->t, from = matter->on_surface ? at + matter->normal * matter->clear : at;
+          const Vec3f from = matter->start(ray.origin + ray.direction * matter->t);
           const Vec2f v = sampler.next2();
           const Vec3f direction = matter->on_surface ? LocalFrame::about(matter->normal).to_world(cosine_hemisphere(v)) : uniform_sphere(v);
           const Ray open{from, normalize(direction), reach_};
