@@ -19,8 +19,7 @@ namespace sg::trace {
 
 namespace {
 
-constexpr int side = 8;        // of the squares of pixels that are finished together
-constexpr uint32_t pass = 16;  // paths a pixel between two looks at the error
+constexpr int side = 8;  // of the squares of pixels that are finished together
 constexpr int most_pixels = side * side;
 
 struct Square {
@@ -58,7 +57,7 @@ class Drawing {
     Sampler sampler(o.sampler, o.seed, o.paths);
     Square& told = squares_[square];
     while (told.paths < std::min(to, most_) && !told.reached) {
-      const uint32_t n = told.paths, end = std::min({to, most_, n + pass - n % pass});
+      const uint32_t n = told.paths, end = std::min({to, most_, n + pass_ - n % pass_});
       for (int p = 0; p < at.w * at.h; ++p) {
         const int x = at.x + p % at.w, y = at.y + p / at.w;
         for (uint32_t k = n; k < end; ++k) {
@@ -75,7 +74,7 @@ class Drawing {
       for (int p = 0; p < at.w * at.h && end > 1; ++p)
         told.variance += displayed_variance(sums[p].mean(end), sums[p].variance(end)) / (at.w * at.h);
       // Looked at where the next pass would begin, however the way there was divided.
-      told.reached = (end % pass == 0 || end == most_) && end > 1 && told.variance <= o.noise * o.noise;
+      told.reached = (end % pass_ == 0 || end == most_) && end > 1 && told.variance <= o.noise * o.noise;
     }
   }
 
@@ -122,6 +121,7 @@ class Drawing {
 
   const LitPicture& picture_;
   const Integrator& integrator_;
+  const uint32_t pass_ = integrator_.pass();
   Frame& frame_;
   Plane<float>&variance_, &error_;
   size_t across_;

@@ -23,6 +23,8 @@ class Integrator {
   virtual ~Integrator() = default;
   /// Unbiased but for what each kind states. `ray` starts outside of everything.
   virtual Estimate along(const World& world, const Ray& ray, Sampler& sampler, const RayFootprint& footprint = {}) const = 0;
+  /// Paths a pixel between two looks at its error.
+  virtual uint32_t pass() const { return 16; }
 };
 
 /// Paths from the camera that turn at surfaces, at most `bounces` times, and in media, at most matter_turns times as often. At each turn

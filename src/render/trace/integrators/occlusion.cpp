@@ -67,6 +67,7 @@ class OcclusionIntegrator : public Integrator {
     out.passed = share;
     return out;
   }
+  uint32_t pass() const override { return 4; }  // each with many rays
 
  private:
   float reach_;
