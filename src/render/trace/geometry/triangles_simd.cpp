@@ -3,6 +3,8 @@
 // vectors (triangle_test.h is the reference).
 #include "render/trace/geometry/triangles.h"
 
+#include <optional>
+
 #include "base/vector_targets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -145,11 +147,11 @@ HWY_INLINE Way step(const Triangles& in, Walker& w) {
 }
 
 uint32_t blocked_rays(const Triangles& in, const Ray* rays, int count) {
-  alignas(Walker) unsigned char room[several_rays * sizeof(Walker)];
+  std::optional<Walker> all[several_rays];
   Walker* walkers[several_rays];
   int going = 0;
   for (int i = 0; i < count; ++i)
-    if (can_trace(rays[i])) walkers[going] = new (room + size_t(going) * sizeof(Walker)) Walker(rays[i], i), ++going;
+    if (can_trace(rays[i])) walkers[going++] = &all[i].emplace(rays[i], i);
   uint32_t stopped = 0;
   while (going > 0)
     for (int k = 0; k < going;) {

@@ -48,17 +48,16 @@ double PictureCamera::depth(Vec2f pixel, float t) const {
 
 std::optional<Sight> PictureCamera::sees(Vec3f point, Vec2f on_lens) const {
   const Vec3 world = placement_.world(point);
+  const double depth = projection_.to_eye(world).z;
+  if (!(depth >= projection_.near_plane) || !(depth > 0 || projection_.parallel)) return {};
   // Through the lens's middle it is a point in focus, on the same ray from the place on the lens, that is seen in that pixel.
   Vec3 sharp = world;
   if (has_lens()) {
-    const double depth = projection_.to_eye(world).z;
-    if (!(depth > 0)) return {};
     const Vec3 off = off_middle(on_lens);
     if (projection_.parallel) sharp = world + off * (depth / projection_.focus - 1);
     else sharp = projection_.eye + off + (world - projection_.eye - off) * (projection_.focus / depth);
   }
   const Vec3 at = projection_.to_pixel(sharp);
-  if (!(projection_.to_eye(world).z >= projection_.near_plane) || !(at.z > 0 || projection_.parallel)) return {};
   if (!(at.x >= 0 && at.x < projection_.width && at.y >= 0 && at.y < projection_.height)) return {};
   const Projection::Ray r = inner_ray({float(at.x), float(at.y)}, on_lens);
   const double before = dot(world - r.origin, r.direction) - start(r);

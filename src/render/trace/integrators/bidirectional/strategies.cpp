@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/trace/integrators/bidirectional/strategies.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "render/trace/integrators/bidirectional/turn.h"
 #include "render/trace/light/fade.h"
 #include "render/trace/sampling/warp.h"

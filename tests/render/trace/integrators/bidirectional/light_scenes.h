@@ -46,8 +46,7 @@ inline SurfaceItem ball(Vec3f middle, float radius, int n, const SurfaceMaterial
 
 /// Matter in [-side, side]^3 with an extinction of `tau` times f, which is 0 to 1.
 inline VolumeItem matter(float side, double tau, const std::function<double(Vec3)>& f, Vec3f color = {1, 1, 1}) {
-  VolumeItem v = sg::test::item(sg::test::grid(sg::test::cube(9, -double(side), double(side)), f), sg::test::one_color(color),
-                                sg::test::constant_opacity(tau));
+  VolumeItem v = sg::test::item(sg::test::grid(sg::test::cube(9, -double(side), double(side)), f), sg::test::one_color(color), {});
   v.opacity.points.clear();
   for (int i = 0; i <= 100; ++i) v.opacity.points.push_back({i / 100.0, 1 - std::exp(-tau * i / 100)});
   return v;
