@@ -151,8 +151,8 @@ int render_page(PipelineFile file, const PageParams& params, const FilmParams& f
 // Makes a picture, the pictures of a film, or a page, whatever the output is.
 int render_into(PipelineFile file, const FilmParams& film, const PictureOptions& options, const Options& o, Context& context) {
   PageParams page;
-  if (!film.layers.empty() && (is_page(film.output) || is_film(film.output)))
-    fail_usage("layers belong to a single picture", "--layers", "name one picture with -o, or leave out layers");
+  if (!film.layers.empty() && is_page(film.output))
+    fail_usage("a page has no layers", "--layers", "name a picture or a film with -o, or leave out layers");
   if (is_page(film.output)) {
     take_page_words(file, page);
     if (!o.explain) return render_page(std::move(file), page, film, options, o, context);
@@ -204,6 +204,7 @@ int run_pipeline_file(const Options& o, Context& context) {
     take_film_words(file, film);
     take_film_flags(o, film);
     film.output = o.output.empty() ? path_beside(path, film.output) : output_name(o.output, stem_of(path));
+    if (!film.layers.empty() && !word_value(o.film, "layers")) film.layers = path_beside(path, film.layers);
     if (!is_page(film.output)) std::erase_if(file.picture, [](const std::string& w) { return is_page_word(w); });
     render_into(std::move(file), film, {}, o, context);
   }

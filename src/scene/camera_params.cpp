@@ -48,7 +48,7 @@ void describe(Schema& s, CameraParams& p) {
   s("elevation", p.elevation, "Angle by which the camera is raised.").unit("deg").range(-180, 180);
   s("roll", p.roll, "Rotation about the line of sight.").unit("deg");
   s("zoom", p.zoom, "Magnification; above 1 is closer.").positive();
-  s("view_angle", p.view_angle, "Vertical angle of view.").unit("deg").range(1, 170);
+  s("view_angle", p.view_angle, "Vertical angle of view; default: 30, or that of the file's camera.").unit("deg").range(1, 170);
   s("projection", p.projection, "Perspective or parallel projection; default: parallel for flat data.");
   s("height", p.height, "Of a parallel projection: what is seen from the lower to the upper edge; default: all of the data.").positive();
   s("aperture", p.aperture,
@@ -103,7 +103,7 @@ Camera make_camera(const CameraParams& p, const Box3& box, double aspect, const 
   if (p.roll != 0) up = turned(up, normalize(direction), p.roll);
   if (p.projection) parallel = p.projection == ProjectionKind::parallel;
 
-  Camera c = fit_camera(box, direction, up, aspect, margin, p.view_angle, parallel);
+  Camera c = fit_camera(box, direction, up, aspect, margin, p.view_angle.value_or(Camera().view_angle), parallel);
   if (p.target || p.position) {
     const Vec3 target = p.target ? *p.target : box.center();
     const double distance = p.position ? length(*p.position - target) : length(c.position - c.target);

@@ -38,7 +38,8 @@ struct CameraParams {
   std::optional<NamedView> view;
   std::string file;  ///< name or number of a camera of the file that is shown; put in the place of the others when a picture is made
   std::optional<Vec3> position, target, direction, up;
-  double azimuth = 0, elevation = 0, roll = 0, zoom = 1, view_angle = 30;
+  double azimuth = 0, elevation = 0, roll = 0, zoom = 1;
+  std::optional<double> view_angle;  ///< degrees; 30 where neither this nor a camera of the file says more
   std::optional<ProjectionKind> projection;
   std::optional<double> height;
   double aperture = 0;          ///< diameter of the lens as a share of the depth in focus

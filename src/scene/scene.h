@@ -42,6 +42,7 @@ struct SurfaceItem {
   std::string normals;                     ///< point field of normals; "" = its field of role normals, else smooth (below feature_angle)
   bool flat = false;                       ///< face normals
   double feature_angle = 40;               ///< degrees; edges sharper than this are not smoothed when normals are computed
+  DatasetPtr part_of;                      ///< a SurfaceMesh of the same points, whose polygons it is smoothed with; null = its own alone
   bool edges = false;                      ///< draw the edges of the polygons
   /// A SurfaceMesh whose lines are drawn instead (of curved cells: see Skin), or where it has polygons their edges; null = the edges of
   /// the polygons drawn.

@@ -170,3 +170,50 @@ TEST_CASE("gltf materials: what is damaged or missing leaves the shape, and is s
   CHECK(l.ior == 1.5f);
   CHECK(l.coat == 0);
 }
+
+TEST_CASE("gltf materials: pictures of numbers, of normals and of occlusion, with their channels and strengths") {
+  OrderedJson j = triangle();
+  const OrderedJson first = {{"index", 0}};
+  j["materials"][0] = {
+      {"pbrMetallicRoughness", {{"metallicRoughnessTexture", first}}},
+      {"normalTexture", {{"index", 0}, {"scale", -2}}},
+      {"occlusionTexture", {{"index", 0}, {"strength", 0.25}}},
+      {"extensions",
+       {{"KHR_materials_transmission", {{"transmissionFactor", 1}, {"transmissionTexture", first}}},
+        {"KHR_materials_clearcoat", {{"clearcoatFactor", 1}, {"clearcoatTexture", first}, {"clearcoatRoughnessTexture", first}}}}}};
+  const MaterialLook l = read(j).look();
+  std::vector<std::pair<MaterialFactor, int>> channels;
+  for (const FactorPicture& f : l.factors) {
+    CHECK(text_of(f.picture.file) == png(7));
+    for (const FactorChannel& c : f.channels) channels.emplace_back(c.factor, c.channel);
+  }
+  using enum MaterialFactor;
+  CHECK(channels ==
+        std::vector<std::pair<MaterialFactor, int>>{{roughness, 1}, {metalness, 2}, {transmission, 0}, {coat, 0}, {coat_roughness, 1}});
+  CHECK(text_of(l.normal_picture.file) == png(7));
+  CHECK(l.normal_scale == -2);
+  CHECK(text_of(l.occlusion_picture.file) == png(7));
+  CHECK(l.occlusion_strength == 0.25f);
+}
+
+TEST_CASE("gltf: texture coordinates of other files run upwards, and are turned round when they are written and read") {
+  const DatasetPtr d = read(triangle()).data;
+  const Field& from = d->fields().require("TEXCOORD_0");
+  CHECK(from.array.get(2, 1) == 1);
+  Context context;
+  const std::string obj = test::temp_file("upwards.obj", ""), back = test::temp_file("back.glb", "");
+  write_data(obj, read(triangle()).data, {}, context);
+  const DatasetPtr upwards = std::get<DatasetPtr>(read_data(obj, {}, context));
+  const Field& up = upwards->fields().require("TCoords");
+  for (size_t i = 0; i < 3; ++i) {
+    CHECK(up.array.get(i, 0) == from.array.get(i, 0));
+    CHECK(up.array.get(i, 1) == 1 - from.array.get(i, 1));
+  }
+  write_data(back, upwards, {}, context);
+  const DatasetPtr again = std::get<DatasetPtr>(read_data(back, {}, context));
+  for (size_t i = 0; i < 3; ++i) CHECK(again->fields().require("TEXCOORD_0").array.get(i, 1) == from.array.get(i, 1));
+  // A PLY file has the upward ones, too, under their usual name.
+  const std::string ply = test::temp_file("upwards.ply", "");
+  write_data(ply, read(triangle()).data, {}, context);
+  CHECK(std::get<DatasetPtr>(read_data(ply, {}, context))->fields().require("TCoords").array.get(2, 1) == 0);
+}

@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "base/vec.h"
 #include "data/memory/memo.h"
@@ -34,6 +35,17 @@ struct MaterialPicture {
   bool nearest = false;  ///< texels are seen as squares from near by
 };
 
+/// Numbers of a material that a picture multiplies, each with a channel of it: 0 red, 1 green, 2 blue.
+enum class MaterialFactor { roughness, metalness, transmission, coat, coat_roughness, subsurface };
+struct FactorChannel {
+  MaterialFactor factor;
+  int channel;
+};
+struct FactorPicture {
+  MaterialPicture picture;
+  std::vector<FactorChannel> channels;
+};
+
 /// The names and meanings of glTF 2.0, of which the materials of OBJ are made, too. Colours are in linear light.
 struct MaterialLook {
   /// What the alpha of the base colour means: nothing, a hole where it is below the cutoff, or coverage.
@@ -46,7 +58,11 @@ struct MaterialLook {
   MaterialPicture base_picture;  ///< times base_color; colours of a screen
   bool states_matter = false;    ///< what follows was stated, rather than left at its default
   float metallic = 1, roughness = 1;
-  MaterialPicture metallic_roughness;  ///< times those; numbers, roughness in green and metallic in blue
+  std::vector<FactorPicture> factors;  ///< pictures of numbers
+  MaterialPicture normal_picture;      ///< of directions: right, up and out of the surface as 0 to 1 for -1 to 1
+  float normal_scale = 1;              ///< of their share across the surface
+  MaterialPicture occlusion_picture;   ///< red: the share of light from all around that arrives
+  float occlusion_strength = 1;        ///< of what that takes away
   Vec3f emission;
   MaterialPicture emission_picture;  ///< times emission; colours of a screen
   float ior = 1.5f, transmission = 0, coat = 0, coat_roughness = 0;

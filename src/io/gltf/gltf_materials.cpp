@@ -61,22 +61,31 @@ class LookReader {
     l.base_picture = picture(pbr["baseColorTexture"]);
     l.states_matter = pbr.contains("metallicFactor") || pbr.contains("roughnessFactor");
     l.metallic = factor(pbr, "metallicFactor", 1), l.roughness = factor(pbr, "roughnessFactor", 1);
-    l.metallic_roughness = picture(pbr["metallicRoughnessTexture"]);
+    using enum MaterialFactor;
+    factors(l, pbr["metallicRoughnessTexture"], {{roughness, 1}, {metalness, 2}});
+    l.normal_picture = picture(o["normalTexture"]), l.normal_scale = factor(o["normalTexture"], "scale", 1, -100, 100);
+    l.occlusion_picture = picture(o["occlusionTexture"]), l.occlusion_strength = factor(o["occlusionTexture"], "strength", 1);
     l.emission =
         color_factor(o, "emissiveFactor", {}) * factor(extensions["KHR_materials_emissive_strength"], "emissiveStrength", 1, 0, 1e6f);
     l.emission_picture = picture(o["emissiveTexture"]);
     l.ior = factor(extensions["KHR_materials_ior"], "ior", 1.5f, 1, 4);
-    l.transmission = factor(extensions["KHR_materials_transmission"], "transmissionFactor", 0);
+    const Json &clear = extensions["KHR_materials_transmission"], &coated = extensions["KHR_materials_clearcoat"];
+    l.transmission = factor(clear, "transmissionFactor", 0);
+    factors(l, clear["transmissionTexture"], {{transmission, 0}});
     const Json& volume = extensions["KHR_materials_volume"];
     l.thin = !(factor(volume, "thicknessFactor", 0, 0, 1e30f) > 0);
     l.attenuation_color = color_factor(volume, "attenuationColor", l.attenuation_color);
     l.attenuation_distance = factor(volume, "attenuationDistance", 0, 0, 1e30f);
-    l.coat = factor(extensions["KHR_materials_clearcoat"], "clearcoatFactor", 0);
-    l.coat_roughness = factor(extensions["KHR_materials_clearcoat"], "clearcoatRoughnessFactor", 0);
+    l.coat = factor(coated, "clearcoatFactor", 0), l.coat_roughness = factor(coated, "clearcoatRoughnessFactor", 0);
+    factors(l, coated["clearcoatTexture"], {{coat, 0}}), factors(l, coated["clearcoatRoughnessTexture"], {{coat_roughness, 1}});
     return l;
   }
 
  private:
+  void factors(MaterialLook& l, const Json& info, std::vector<FactorChannel> channels) {
+    if (MaterialPicture p = picture(info); p.file) l.factors.push_back({std::move(p), std::move(channels)});
+  }
+
   /// What a textureInfo names.
   MaterialPicture picture(const Json& info) {
     MaterialPicture p;

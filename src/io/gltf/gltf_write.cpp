@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file/file.h"
+#include "data/fields/texture_coordinates.h"
 #include "io/formats.h"
 #include "io/gltf/gltf_bytes.h"
 #include "io/surface/surface_parts.h"
@@ -96,7 +97,8 @@ struct Writer {
         r["NORMAL"] = put(f.array.converted(ElementType::f32), 34962);
       } else if (f.role == Role::tcoords && n == 2) {
         losses.renames(f, fmt::format("TEXCOORD_{}", tcoords)), losses.rounds(f, ElementType::f32);
-        r[fmt::format("TEXCOORD_{}", tcoords++)] = put(f.array.converted(ElementType::f32), 34962);
+        r[fmt::format("TEXCOORD_{}", tcoords++)] =
+            put(runs_down(f.name) ? f.array.converted(ElementType::f32) : turned_round(f.array), 34962);
       } else if (f.role == Role::colors && (n == 3 || n == 4) && (byte || is_float(f.array.type()))) {
         losses.renames(f, fmt::format("COLOR_{}", colors));
         if (!byte) losses.rounds(f, ElementType::f32);

@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "base/text/text.h"
 #include "data/fields/label_names.h"
+#include "data/fields/texture_coordinates.h"
 #include "io/formats.h"
 #include "io/surface/obj_materials.h"
 #include "io/surface/obj_parse.h"
@@ -484,6 +485,7 @@ void write_obj(const std::string& path, const Data& data, const WriteOptions&, C
   };
   const Vec3 o = mesh.points.origin;
   const bool wide = mesh.points.xyz.type() == ElementType::f64 || o.x != 0 || o.y != 0 || o.z != 0;
+  const Array places = !tcoords ? Array() : runs_down(tcoords->name) ? turned_round(tcoords->array) : tcoords->array;
   for (size_t i = 0; i < d->point_count(); ++i) {
     const Vec3 p = mesh.points.at(i);
     if (wide) text += fmt::format("v {} {} {}", p.x, p.y, p.z);
@@ -492,7 +494,7 @@ void write_obj(const std::string& path, const Data& data, const WriteOptions&, C
       text +=
           fmt::format(" {:.4g} {:.4g} {:.4g}", colors->array.get(i, 0) / 255, colors->array.get(i, 1) / 255, colors->array.get(i, 2) / 255);
     text += '\n';
-    if (tcoords) text += fmt::format("vt {} {}\n", float(tcoords->array.get(i, 0)), float(tcoords->array.get(i, 1)));
+    if (tcoords) text += fmt::format("vt {} {}\n", float(places.get(i, 0)), float(places.get(i, 1)));
     if (normals)
       text +=
           fmt::format("vn {} {} {}\n", float(normals->array.get(i, 0)), float(normals->array.get(i, 1)), float(normals->array.get(i, 2)));

@@ -67,6 +67,14 @@ class Library {
       if (const auto c = color_after(w, 1e6)) l.emission = *c;
     } else if (w[0] == "map_Kd") {
       map(w, line, l.base_picture);
+    } else if (w[0] == "map_Ke") {
+      map(w, line, l.emission_picture);
+    } else if (w[0] == "norm") {
+      map(w, line, l.normal_picture);
+    } else if (w[0] == "map_Pr" || w[0] == "map_Pm") {
+      FactorPicture f{{}, {{w[0] == "map_Pr" ? MaterialFactor::roughness : MaterialFactor::metalness, 0}}};
+      map(w, line, f.picture);
+      if (f.picture.file) l.factors.push_back(std::move(f)), l.states_matter = true;
     } else if (const auto v = number_after(w, w[1] == "-halo" ? 2 : 1, 0, 1e6)) {
       if (w[0] == "d") opacity(std::min(*v, 1.f)), states_opacity_ = true;
       else if (w[0] == "Tr" && !states_opacity_) opacity(1 - std::min(*v, 1.f));  // some write both, and mean d
@@ -145,9 +153,12 @@ std::map<std::string, ObjMaterial> read_obj_materials(const std::string& obj, st
       context.warn(fmt::format("{}: its materials have no colours: {}", obj, e.what()));
     }
   }
-  // Many programs state black under a picture, and mean the picture.
-  for (auto& [name, m] : materials)
-    if (m.look.base_picture.file && m.look.base_color == Vec3f()) m.look.base_color = {1, 1, 1};
+  // Many programs state black under a picture, or nothing, and mean the picture.
+  for (auto& [name, m] : materials) {
+    MaterialLook& l = m.look;
+    if (l.base_picture.file && l.base_color == Vec3f()) l.base_color = {1, 1, 1};
+    if (l.emission_picture.file && l.emission == Vec3f()) l.emission = {1, 1, 1};
+  }
   return materials;
 }
 

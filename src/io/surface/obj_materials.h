@@ -15,7 +15,7 @@ namespace sg {
 
 struct ObjMaterial {
   std::optional<Vec3f> diffuse;  ///< Kd, sRGB in [0, 1]
-  MaterialLook look;             ///< Kd and map_Kd, Ns or Pr, Pm, Ni, d or Tr, Ke
+  MaterialLook look;             ///< Kd, Ns or Pr, Pm, Ni, d or Tr, Ke, Pc, Pcr; map_Kd, map_Ke, map_Pr, map_Pm, norm
 };
 
 /// Materials by name; libraries are files beside `obj`, of which the later ones win. Numbers are sRGB as most programs write them. A

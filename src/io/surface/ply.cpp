@@ -10,6 +10,7 @@
 #include "base/bytes.h"
 #include "base/parallel.h"
 #include "base/text/text.h"
+#include "data/fields/texture_coordinates.h"
 #include "io/formats.h"
 #include "io/surface/ply_body.h"
 #include "io/surface/surface_parts.h"
@@ -251,7 +252,10 @@ std::vector<Column> columns_of(const Dataset& d, Association association, std::s
     const bool wide = element_size(f.array.type()) == 8;
     if (wide) losses.rounds(f, ElementType::f64);
     losses.drops_unit(f);
-    const Array a = wide ? f.array.converted(ElementType::f64) : f.array;
+    const bool down = f.role == Role::tcoords && n == 2 && runs_down(f.name);
+    const std::string own_name = down ? "TCoords" : f.name;
+    if (down) losses.renames(f, own_name);
+    const Array a = down ? turned_round(f.array) : wide ? f.array.converted(ElementType::f64) : f.array;
     const size_t first = r.size();
     for (int c = 0; c < n; ++c) {
       std::string column = n == 1 ? name : fmt::format("{}_{}", name, c);
@@ -262,9 +266,9 @@ std::vector<Column> columns_of(const Dataset& d, Association association, std::s
                          std::any_of(r.begin(), r.end(), [&](const Column& o) { return o.name == column; });
       r.push_back({taken ? column + "_" : column, a.component(c)});
     }
-    if (n > 0 && (n > 1 || r[first].name != f.name) && f.name.find_first_of("\r\n") == std::string::npos && trim(f.name) == f.name)
+    if (n > 0 && (n > 1 || r[first].name != own_name) && own_name.find_first_of("\r\n") == std::string::npos && trim(own_name) == own_name)
       comments += fmt::format("comment {} {} {} {} {}\n", field_comment, association == Association::point ? "vertex" : "face",
-                              r[first].name, n, f.name);
+                              r[first].name, n, own_name);
     else if (n > 1) losses.splits(f);
     else if (n > 0) losses.renames(f, r[first].name);
   }

@@ -17,6 +17,7 @@
 #include "io/film/movie.h"
 #include "pipeline/file/transfer_file.h"
 #include "pipeline/film/film_times.h"
+#include "pipeline/picture/layers/picture_layers.h"
 #include "pipeline/picture/picture_parts.h"
 #include "pipeline/picture/scene/picture_scene.h"
 #include "pipeline/picture/settle_choices.h"
@@ -205,7 +206,7 @@ std::vector<double> make_film(PipelineFile plain, const FilmParams& params, cons
   // The first picture chooses the looks of all.
   const auto cache = std::make_shared<Cache>(0);
   PictureOptions each = options;
-  each.cache = cache;
+  each.cache = cache, each.layers = !params.layers.empty();
   std::vector<Data> held;
   std::vector<PipelineFile> some = spread(plain, film);
   if (some.size() > 1) {
@@ -237,7 +238,8 @@ std::vector<double> make_film(PipelineFile plain, const FilmParams& params, cons
     Context drawing(context, double(n) / double(count), double(n + 1) / double(count));
     Picture picture = make_picture(file, each, drawing);
     held.clear();
-    callbacks.frame({std::move(picture.image), file, n, count, film.times[n]});
+    const DatasetPtr layers = each.layers ? layers_of(picture) : nullptr;
+    callbacks.frame({std::move(picture.image), layers, file, n, count, film.times[n]});
     context.progress(double(n + 1) / double(count), "drawing");
   }
   return film.times;

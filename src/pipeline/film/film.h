@@ -19,6 +19,7 @@ bool is_film(const std::string& output);
 /// One picture of a film.
 struct FilmFrame {
   Image image;
+  DatasetPtr layers;             ///< layers_of() it; null where they are not asked for
   const PipelineFile& pipeline;  ///< makes only this picture
   size_t number, count;
   double time;
@@ -46,12 +47,14 @@ class FilmWriter {
   ~FilmWriter();
   /// A numbered picture gets `pipeline` as its recipe, and is there at once. Throws Error(usage) for frames of different sizes.
   void add(Image image, const PipelineFile& pipeline);
+  /// layers_of() the picture that add() is given next.
+  void add_layers(const DatasetPtr& layers, Context& context) const;
   /// Returns what was written: "film.webm", or "out_000.png ... out_100.png". Throws Error(usage) when nothing was added.
   std::string finish();
 
  private:
-  std::string numbered(size_t n) const;
-  std::string output_;
+  std::string numbered(const std::string& name, size_t n) const;
+  std::string output_, layers_;
   size_t digits_, written_ = 0;
   std::unique_ptr<MovieWriter> movie_;
 };

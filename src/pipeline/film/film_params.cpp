@@ -22,8 +22,8 @@ void describe(Schema& s, FilmParams& p) {
   s("turntable", p.turntable, "Films: pictures of one turn of the camera about the shape, in place of times; e.g. 100. 0: none.")
       .range(0, 100000);
   s("layers", p.layers,
-    "Of a single picture: also write what lies behind its colours, a number for each pixel, as data on a grid (.vti, .nrrd, .zarr, ...): "
-    "light, color, depth, show; with an integrator error, albedo and normal.")
+    "Also write what lies behind the colours, a number for each pixel, as data on a grid (.vti, .nrrd, .zarr, ...): light, color, depth, "
+    "show; with an integrator error, albedo and normal. {n} in the name numbers those of a series.")
       .unit("new file");
 }
 

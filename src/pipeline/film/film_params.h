@@ -16,7 +16,7 @@ struct FilmParams {
       times;  ///< FIRST:LAST:COUNT, a list, or FIRST:LAST (of files: their steps in between; of sources: 0, 1, 2, ...); "" = all steps
   std::optional<double> fps;
   int turntable = 0;   ///< pictures of one turn of the camera in place of times; 0 = none
-  std::string layers;  ///< of a single picture: file of layers_of() it
+  std::string layers;  ///< file of layers_of() a picture; of a film with {n} in its name
 };
 void describe(Schema& s, FilmParams& p);
 

@@ -29,30 +29,45 @@ Around corners_around(const uint32_t* t, size_t triangles, size_t points) {
   return a;
 }
 
-}  // namespace
+/// Unit normals of the triangles, zero of those without an area, and the angle of each corner.
+struct Faces {
+  std::vector<Vec3f> normal;
+  std::vector<float> angle;
+};
 
-NormalSet smooth_normals(const TriangleSet& set, double feature_angle) {
-  NormalSet out;
-  const size_t n = set.count, points = set.positions.count();
-  if (n == 0 || 3 * n >= (size_t(1) << 32)) return out;
+Faces faces_of(const TriangleSet& set) {
   const uint32_t* t = set.indices();
   const float* xyz = set.xyz();
-  std::vector<Vec3f> face(n);
-  std::vector<float> weight(3 * n);  // angle of the corner
-  parallel_for(n, triangles_per_chunk, [&](size_t begin, size_t end) {
+  Faces f{std::vector<Vec3f>(set.count), std::vector<float>(3 * set.count)};
+  parallel_for(set.count, triangles_per_chunk, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const Vec3f p[3] = {position(xyz, t[3 * i]), position(xyz, t[3 * i + 1]), position(xyz, t[3 * i + 2])};
       const Vec3f c = cross(p[1] - p[0], p[2] - p[0]);
       const float l = length(c);
       const bool good = l > 0 && std::isfinite(l);
-      face[i] = good ? c / l : Vec3f();
+      f.normal[i] = good ? c / l : Vec3f();
       for (int k = 0; k < 3; ++k) {
         const Vec3f u = p[(k + 1) % 3] - p[k], v = p[(k + 2) % 3] - p[k];
-        weight[3 * i + size_t(k)] = good ? std::atan2(length(cross(u, v)), dot(u, v)) : 0.0f;
+        f.angle[3 * i + size_t(k)] = good ? std::atan2(length(cross(u, v)), dot(u, v)) : 0.0f;
       }
     }
   });
-  const Around around = corners_around(t, n, points);
+  return f;
+}
+
+}  // namespace
+
+NormalSet smooth_normals(const TriangleSet& set, double feature_angle, const TriangleSet* whole) {
+  NormalSet out;
+  const TriangleSet& all = whole ? *whole : set;
+  const size_t n = set.count, points = set.positions.count();
+  if (n == 0 || 3 * all.count >= (size_t(1) << 32)) return out;
+  const uint32_t* t = set.indices();
+  const Faces faces = faces_of(all), parts = whole ? faces_of(set) : Faces();
+  const std::vector<Vec3f>&face = faces.normal, &own_face = whole ? parts.normal : face;
+  const std::vector<float>& weight = faces.angle;
+  const Around around = corners_around(all.indices(), all.count, points), part = whole ? corners_around(t, n, points) : Around();
+  const Around& own = whole ? part : around;
   const float limit = float(std::cos(feature_angle * 3.14159265358979323846 / 180));
 
   // A point is split when two of its faces differ by more than the angle from its mean normal's side of the fan.
@@ -74,7 +89,7 @@ NormalSet smooth_normals(const TriangleSet& set, double feature_angle) {
     }
   });
   std::vector<size_t> extra(points);
-  for (size_t p = 0; p < points; ++p) extra[p] = split[p] ? around.start[p + 1] - around.start[p] : 0;
+  for (size_t p = 0; p < points; ++p) extra[p] = split[p] ? own.start[p + 1] - own.start[p] : 0;
   const size_t more = exclusive_scan(extra);
   float* normals = nullptr;
   out.normals = Array::make<float>(points + more, 3, &normals);
@@ -88,17 +103,16 @@ NormalSet smooth_normals(const TriangleSet& set, double feature_angle) {
     for (size_t p = begin; p < end; ++p) {
       put(p, mean[p]);
       if (!split[p]) continue;
-      const uint32_t from = around.start[p], to = around.start[p + 1];
-      for (uint32_t a = from; a < to; ++a) {  // each corner takes the faces that meet its own smoothly
-        const Vec3f own = face[around.corner[a] / 3];
+      for (uint32_t a = own.start[p]; a < own.start[p + 1]; ++a) {  // each corner takes the faces that meet its own smoothly
+        const Vec3f direction = own_face[own.corner[a] / 3];
         Vec3f sum;
-        for (uint32_t b = from; b < to; ++b) {
+        for (uint32_t b = around.start[p]; b < around.start[p + 1]; ++b) {
           const Vec3f other = face[around.corner[b] / 3];
-          if (dot(own, other) >= limit) sum += other * weight[around.corner[b]];
+          if (dot(direction, other) >= limit) sum += other * weight[around.corner[b]];
         }
-        const size_t at = points + extra[p] + (a - from);
-        put(at, dot(sum, sum) > 0 ? normalize(sum) : own);
-        corners[around.corner[a]] = uint32_t(at);
+        const size_t at = points + extra[p] + (a - own.start[p]);
+        put(at, dot(sum, sum) > 0 ? normalize(sum) : direction);
+        corners[own.corner[a]] = uint32_t(at);
       }
     }
   });

@@ -59,7 +59,10 @@ std::optional<IsolineSet> placed(const std::optional<SurfaceIsolines>& lines, co
 std::shared_ptr<const PictureSet> place_pictures(const SurfacePictures& pictures, const DatasetPtr& data) {
   auto set = std::make_shared<PictureSet>();
   set->tint = pictures.tint, set->color = placed(pictures.color, data);
-  set->metallic_roughness = placed(pictures.metallic_roughness, data), set->emission = placed(pictures.emission, data);
+  set->emission = placed(pictures.emission, data);
+  set->normal = placed(pictures.normal, data), set->normal_scale = pictures.normal_scale;
+  set->occlusion = placed(pictures.occlusion, data), set->occlusion_strength = pictures.occlusion_strength;
+  for (const SurfaceFactors& f : pictures.factors) set->factors.push_back({*placed(f.picture, data), f.channels});
   set->isolines = placed(pictures.isolines, data);
   set->alpha = pictures.alpha, set->cutoff = pictures.cutoff;
   return set;

@@ -14,6 +14,11 @@ struct PlacedPicture {
   const float* uv() const { return reinterpret_cast<const float*>(coordinates.raw()); }
 };
 
+struct PlacedFactors {
+  PlacedPicture picture;
+  std::vector<FactorChannel> channels;
+};
+
 struct IsolineSet {
   Array values;               ///< f32, packed: per point, less `offset`
   std::vector<float> levels;  ///< rising, less `offset`
@@ -25,7 +30,9 @@ struct IsolineSet {
 
 struct PictureSet {
   Vec3f tint{1, 1, 1};
-  std::optional<PlacedPicture> color, metallic_roughness, emission;
+  std::optional<PlacedPicture> color, emission, normal, occlusion;
+  float normal_scale = 1, occlusion_strength = 1;
+  std::vector<PlacedFactors> factors;
   std::optional<IsolineSet> isolines;
   SurfacePictures::Alpha alpha = SurfacePictures::Alpha::none;
   float cutoff = 0.5f;

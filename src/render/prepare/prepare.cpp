@@ -344,7 +344,12 @@ class Preparation {
     }
     if (f && f->array.type() == ElementType::f32 && f->array.packed()) return {f->array, {}};
     if (f) return {*derived(s.data, "normals/" + f->name, [&] { return f->array.converted(ElementType::f32).made_packed(); }), {}};
-    return *derived(s.data, fmt::format("smooth/{}", s.feature_angle), [&] { return smooth_normals(triangles, s.feature_angle); });
+    const char* among = s.part_of ? "whole" : "own";
+    return *derived(s.data, fmt::format("smooth/{}/{}", s.feature_angle, among), [&] {
+      bool any = false;
+      const TriangleSet whole = s.part_of ? triangulate(s.part_of, any) : TriangleSet();
+      return smooth_normals(triangles, s.feature_angle, s.part_of ? &whole : nullptr);
+    });
   }
 
   static Positions positions_of(const DatasetPtr& data) {

@@ -108,7 +108,8 @@ struct PreparedItem {
 };
 
 TriangleSet triangulate(const DatasetPtr& data, bool& any_polygon);
-NormalSet smooth_normals(const TriangleSet& triangles, double feature_angle);
+/// `whole`: triangles of the same points, among which these are; null: no others. Edges between them are smooth, too.
+NormalSet smooth_normals(const TriangleSet& triangles, double feature_angle, const TriangleSet* whole = nullptr);
 /// Vectors of a texture as three packed f32 numbers, and the size below which they count as none. Throws Error(usage).
 void take_texture(const SurfaceTexture& texture, PreparedItem& item);
 SegmentSet line_segments(const Dataset& data, const SurfaceMesh& mesh);

@@ -192,7 +192,7 @@ class Drawing {
     if (item.glyphs) shade_glyphs(item, views_[number], float(pixel_scale_), lights_, batch);
     else if (item.discs) shade_discs(item, views_[number], lights_, keys_.data(), batch);
     else shade(job(), batch);
-    if (item.pictures) draw_pictures(item, views_[number], pixel_scale_, batch);
+    if (item.pictures) draw_pictures(item, views_[number], pixel_scale_, lights_, batch);
     if (item.lic) apply_texture(*textures_, item, number, projection_, batch);
   }
 

@@ -53,11 +53,11 @@ World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Proje
   media->place(geometry.placement());
   const auto of_data = std::make_shared<const trace::Material>(data_material());
   std::vector<std::shared_ptr<const trace::Material>> materials;
-  const auto add = [&](const std::optional<SurfaceMaterial>& made_of) {
-    materials.push_back(made_of ? std::make_shared<const trace::Material>(*made_of, geometry.placement().scale) : of_data);
+  const auto add = [&](const std::optional<SurfaceMaterial>& made_of, bool varies) {
+    materials.push_back(made_of ? std::make_shared<const trace::Material>(*made_of, geometry.placement().scale, 1, varies) : of_data);
   };
-  for (const raster::PreparedItem& item : prepared->items) add(item.made_of);
-  for (const Isosurfaces::Look& look : isosurfaces.looks) add(look.made_of);
+  for (const raster::PreparedItem& item : prepared->items) add(item.made_of, item.pictures && !item.pictures->factors.empty());
+  for (const Isosurfaces::Look& look : isosurfaces.looks) add(look.made_of, false);
   Studio studio = studio_of(scene, projection, geometry.placement());
   backdrop = studio.backdrop;
   return {prepared, std::move(geometry),          std::move(materials), std::move(studio.lights), std::move(studio.environment),

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "data/fields/material_table.h"
 #include "image/texture/lookup.h"
 
 namespace sg {
@@ -18,6 +19,12 @@ struct SurfacePicture {
   std::string second_coordinates;                 ///< one for y; without any, y is 0
   std::array<double, 6> place{1, 0, 0, 0, 1, 0};  ///< u = p0 x + p1 y + p2, v = p3 x + p4 y + p5
   TextureLookup lookup;
+};
+
+/// Numbers of the material that a picture multiplies.
+struct SurfaceFactors {
+  SurfacePicture picture;
+  std::vector<FactorChannel> channels;
 };
 
 /// Lines where a point field has certain values, drawn pixel by pixel.
@@ -35,9 +42,13 @@ struct SurfacePictures {
   /// Its alpha: no, coverage, or a hole where it is below `cutoff`. Without, what a texture's alpha leaves open is filled with its colours.
   enum class Alpha { none, coverage, cutout } alpha = Alpha::none;
   float cutoff = 0.5f;
-  std::optional<SurfacePicture> metallic_roughness;  ///< multiplied with those of the material: roughness in green, metal in blue
-  std::optional<SurfacePicture> emission;            ///< multiplied with that of the material
-  std::optional<SurfaceIsolines> isolines;           ///< over all of it
+  std::vector<SurfaceFactors> factors;
+  std::optional<SurfacePicture> emission;   ///< multiplied with that of the material
+  std::optional<SurfacePicture> normal;     ///< directions: right, up and out of the surface as 0 to 1 for -1 to 1
+  float normal_scale = 1;                   ///< of their share across the surface
+  std::optional<SurfacePicture> occlusion;  ///< red: the share of even light that arrives, where light is not followed
+  float occlusion_strength = 1;             ///< of what that takes away
+  std::optional<SurfaceIsolines> isolines;  ///< over all of it
 };
 
 }  // namespace sg

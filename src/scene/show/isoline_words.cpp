@@ -25,7 +25,7 @@ void describe(Schema& s, IsolineShow& p) {
 }
 
 std::optional<SurfaceIsolines> isolines_of(const Dataset& d, const IsolineShow& p, const std::optional<FieldColor>& color) {
-  if (p.isolines == 0 && p.isoline_values.empty()) return {};
+  if (!p.any()) return {};
   SurfaceIsolines lines;
   Range range;
   if (!p.isoline_field.empty()) {

@@ -17,6 +17,8 @@ struct IsolineShow {
   FieldName isoline_field;
   double isoline_width = SurfaceIsolines().width;
   std::string isoline_color = "#1a1a1a";
+
+  bool any() const { return isolines > 0 || !isoline_values.empty(); }
 };
 void describe(Schema& s, IsolineShow& p);
 

@@ -10,8 +10,9 @@
 namespace sg {
 
 bool MaterialShow::any() const {
-  return material || base_metalness || specular_roughness || specular_ior || transmission_weight || transmission_depth || coat_weight ||
-         transmission_color || emission || thin_walled || dielectric_priority;
+  return material || base_metalness || specular_roughness || specular_ior || transmission_weight || transmission_depth ||
+         subsurface_weight || coat_weight || coat_roughness || transmission_color || subsurface_radius || emission || thin_walled ||
+         dielectric_priority;
 }
 
 SurfaceMaterial MaterialShow::made(double size) const {
@@ -20,8 +21,10 @@ SurfaceMaterial MaterialShow::made(double size) const {
     if (from) to = *from;
   };
   take(m.base_metalness, base_metalness), take(m.specular_roughness, specular_roughness), take(m.specular_ior, specular_ior);
-  take(m.transmission_weight, transmission_weight), take(m.transmission_depth, transmission_depth), take(m.coat_weight, coat_weight);
-  take(m.transmission_color, transmission_color), take(m.emission, emission);
+  take(m.transmission_weight, transmission_weight), take(m.transmission_depth, transmission_depth);
+  take(m.transmission_color, transmission_color), take(m.subsurface_weight, subsurface_weight);
+  take(m.subsurface_radius, subsurface_radius), take(m.coat_weight, coat_weight), take(m.coat_roughness, coat_roughness);
+  take(m.emission, emission);
   take(m.thin_walled, thin_walled), take(m.dielectric_priority, dielectric_priority);
   return m;
 }
@@ -38,7 +41,11 @@ void describe(Schema& s, MaterialShow& p) {
   s("transmission_color", p.transmission_color, "Colour of light (red, green, blue) that has passed transmission_depth of the clear body.")
       .range(0, 1);
   s("transmission_depth", p.transmission_depth, "Length after which light has that colour; 0 = at once, at the boundary.").at_least(0);
+  s("subsurface_weight", p.subsurface_weight, "Share of the body in which light wanders below the surface, instead of the material's.")
+      .range(0, 1);
+  s("subsurface_radius", p.subsurface_radius, "How far red, green and blue light get there on average, in the data's lengths.").at_least(0);
   s("coat_weight", p.coat_weight, "Share of the surface that has a clear coat, instead of the material's.").range(0, 1);
+  s("coat_roughness", p.coat_roughness, "Roughness of that coat, instead of the material's.").range(0, 1);
   s("emission", p.emission, "Light that the surface gives off by itself: radiance of red, green and blue.").at_least(0);
   s("thin_walled", p.thin_walled, "The surface is a sheet, without a body behind it.");
   s("dielectric_priority", p.dielectric_priority,
@@ -46,19 +53,28 @@ void describe(Schema& s, MaterialShow& p) {
       .range(0, 1000);
 }
 
+bool MaterialFields::any() const {
+  for (const FieldName* f :
+       {&specular_roughness_by, &base_metalness_by, &transmission_weight_by, &subsurface_weight_by, &coat_weight_by, &emission_by})
+    if (!f->empty()) return true;
+  return false;
+}
+
 void describe(Schema& s, MaterialFields& p) {
   s("specular_roughness_by", p.specular_roughness_by,
     "Point field of 0 to 1 that multiplies the roughness, where the picture has an integrator.")
       .takes(fields::point_scalars);
   s("base_metalness_by", p.base_metalness_by, "Point field of 0 to 1 that multiplies the share of metal.").takes(fields::point_scalars);
+  s("transmission_weight_by", p.transmission_weight_by, "Point field of 0 to 1 that multiplies the share of the body that is clear.")
+      .takes(fields::point_scalars);
+  s("subsurface_weight_by", p.subsurface_weight_by, "Point field of 0 to 1 that multiplies the share of the body in which light wanders.")
+      .takes(fields::point_scalars);
+  s("coat_weight_by", p.coat_weight_by, "Point field of 0 to 1 that multiplies the share of the clear coat.").takes(fields::point_scalars);
   s("emission_by", p.emission_by, "Point field that multiplies the light which the surface gives off; where it is negative there is none.")
       .takes(fields::point_scalars);
 }
 
 namespace {
-
-// A picture across which the texels rise evenly, and its coordinates along one axis: a value from 0 to `top` lies where the picture has it.
-constexpr int rough_steps = 33, metal_steps = 9;
 
 struct Reach {
   double lo = std::numeric_limits<double>::infinity(), hi = -lo;
@@ -78,83 +94,58 @@ const Field& point_scalar(const Dataset& d, const FieldName& name, const char* p
   });
 }
 
-// Of a field of shares; what lies outside is told.
-Reach shares_of(const Field& f, const char* parameter, Context& context) {
-  const Reach r = reach_of(f);
-  if (r.lo < 0 || r.hi > 1)
-    context.warn(fmt::format("{}={}: its values from {:g} to {:g} are cut to 0 to 1; -f calculate brings them there", parameter, f.name,
-                             r.lo, r.hi));
-  return {std::clamp(r.lo, 0.0, 1.0), std::clamp(r.hi, 0.0, 1.0)};
-}
-
-// u = scale v + offset at the middle of the texel that holds v, of so many texels for 0 to `top`.
-struct Ruler {
-  double scale, offset;
-};
-Ruler ruler(int texels, double top) { return {(texels - 1) / (texels * top), 0.5 / texels}; }
-
-TextureLookup along_ruler() {
-  TextureLookup l;
-  l.wrap_u = l.wrap_v = TextureWrap::clamp, l.filter = TextureFilter::bilinear;
-  return l;
-}
-
-// Roughness in green along u, metalness in blue along v; steps that no value comes to repeat their neighbours.
-std::shared_ptr<const Texture> shares_texture(const std::optional<Reach>& rough, const std::optional<Reach>& metal) {
-  const int width = rough ? rough_steps : 1, height = metal ? metal_steps : 1;
-  const auto level = [](const std::optional<Reach>& r, int i, int steps) {
-    if (!r) return 1.f;
-    const double step = 1.0 / (steps - 1), lo = std::floor(r->lo / step) * step, hi = std::ceil(r->hi / step) * step;
-    return float(std::clamp(i * step, std::min(lo, hi), std::max(lo, hi)));
-  };
-  std::vector<Vec4f> texels;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) texels.push_back({0, level(rough, x, rough_steps), level(metal, y, metal_steps), 1});
-  return std::make_shared<const Texture>(width, height, std::move(texels));
+/// A picture of two texels, black and `top` bright, in which a value of the field lies where the picture has it.
+SurfacePicture ramp(const Field& f, double top) {
+  SurfacePicture on;
+  on.coordinates = f.name, on.place = {0.5 / top, 0, 0.25, 0, 0, 0.5};
+  on.lookup.wrap_u = on.lookup.wrap_v = TextureWrap::clamp, on.lookup.filter = TextureFilter::bilinear;
+  const auto most = float(top);
+  on.texture = std::make_shared<const Texture>(2, 1, std::vector<Vec4f>{{0, 0, 0, 1}, {most, most, most, 1}});
+  return on;
 }
 
 }  // namespace
 
 void apply(const MaterialFields& fields, const MaterialShow& stated, const Dataset& data, SurfaceMaterial& material,
            SurfacePictures& pictures, Context& context) {
-  if (!fields.specular_roughness_by.empty() || !fields.base_metalness_by.empty()) {
-    std::optional<Reach> rough, metal;
-    SurfacePicture on;
-    on.lookup = along_ruler(), on.place = {0, 0, 0.5, 0, 0, 0.5};
-    if (!fields.specular_roughness_by.empty()) {
-      const Field& f = point_scalar(data, fields.specular_roughness_by, "specular_roughness_by");
-      rough = shares_of(f, "specular_roughness_by", context);
-      const Ruler r = ruler(rough_steps, 1);
-      on.coordinates = f.name, on.place[0] = r.scale, on.place[2] = r.offset;
-      if (!stated.specular_roughness) material.specular_roughness = 1;
-    }
-    if (!fields.base_metalness_by.empty()) {
-      const Field& f = point_scalar(data, fields.base_metalness_by, "base_metalness_by");
-      metal = shares_of(f, "base_metalness_by", context);
-      const Ruler r = ruler(metal_steps, 1);
-      (rough ? on.second_coordinates : on.coordinates) = f.name;
-      on.place[rough ? 4 : 3] = r.scale, on.place[5] = r.offset;
-      if (!stated.base_metalness) material.base_metalness = 1;
-    }
-    on.texture = shares_texture(rough, metal);
-    pictures.metallic_roughness = std::move(on);
+  using enum MaterialFactor;
+  struct Row {
+    const char* parameter;
+    const FieldName& field;
+    MaterialFactor factor;
+    double& value;
+    bool stated;
+  };
+  Row rows[] = {
+      {"specular_roughness_by", fields.specular_roughness_by, roughness, material.specular_roughness,
+       stated.specular_roughness.has_value()},
+      {"base_metalness_by", fields.base_metalness_by, metalness, material.base_metalness, stated.base_metalness.has_value()},
+      {"transmission_weight_by", fields.transmission_weight_by, transmission, material.transmission_weight,
+       stated.transmission_weight.has_value()},
+      {"subsurface_weight_by", fields.subsurface_weight_by, subsurface, material.subsurface_weight, stated.subsurface_weight.has_value()},
+      {"coat_weight_by", fields.coat_weight_by, coat, material.coat_weight, stated.coat_weight.has_value()}};
+  for (const Row& row : rows) {
+    if (row.field.empty()) continue;
+    const Field& f = point_scalar(data, row.field, row.parameter);
+    if (const Reach r = reach_of(f); r.lo < 0 || r.hi > 1)
+      context.warn(fmt::format("{}={}: its values from {:g} to {:g} are cut to 0 to 1; -f calculate brings them there", row.parameter,
+                               f.name, r.lo, r.hi));
+    pictures.factors.push_back({ramp(f, 1), {{row.factor, 0}}});
   }
-  if (!fields.emission_by.empty()) {
-    const Field& f = point_scalar(data, fields.emission_by, "emission_by");
-    const double top = reach_of(f).hi;
-    if (!stated.emission) material.emission = {1, 1, 1};
-    if (!(top > 0)) {
-      context.warn(fmt::format("emission_by={}: it is nowhere above 0, so that nothing shines", f.name));
-      material.emission = {};
-      return;
-    }
-    SurfacePicture on;
-    const Ruler r = ruler(2, top);
-    on.lookup = along_ruler(), on.place = {r.scale, 0, r.offset, 0, 0, 0.5}, on.coordinates = f.name;
-    const auto most = float(top);
-    on.texture = std::make_shared<const Texture>(2, 1, std::vector<Vec4f>{{0, 0, 0, 1}, {most, most, most, 1}});
-    pictures.emission = std::move(on);
+  for (const Row& row : rows)
+    for (const SurfaceFactors& p : pictures.factors)
+      for (const FactorChannel& c : p.channels)
+        if (c.factor == row.factor && !row.stated) row.value = 1;
+  if (fields.emission_by.empty()) return;
+  const Field& f = point_scalar(data, fields.emission_by, "emission_by");
+  const double top = reach_of(f).hi;
+  if (!stated.emission) material.emission = {1, 1, 1};
+  if (!(top > 0)) {
+    context.warn(fmt::format("emission_by={}: it is nowhere above 0, so that nothing shines", f.name));
+    material.emission = {};
+    return;
   }
+  pictures.emission = ramp(f, top);
 }
 
 }  // namespace sg

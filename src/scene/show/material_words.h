@@ -12,8 +12,9 @@ namespace sg {
 /// Names and meanings are SurfaceMaterial's.
 struct MaterialShow {
   std::optional<MaterialPreset> material;
-  std::optional<double> base_metalness, specular_roughness, specular_ior, transmission_weight, transmission_depth, coat_weight;
-  std::optional<Vec3> transmission_color, emission;
+  std::optional<double> base_metalness, specular_roughness, specular_ior, transmission_weight, transmission_depth, subsurface_weight,
+      coat_weight, coat_roughness;
+  std::optional<Vec3> transmission_color, subsurface_radius, emission;
   std::optional<bool> thin_walled;
   std::optional<int> dielectric_priority;
 
@@ -25,14 +26,14 @@ void describe(Schema& s, MaterialShow& p);
 
 /// Parameters of a surface that a point field multiplies.
 struct MaterialFields {
-  FieldName specular_roughness_by, base_metalness_by, emission_by;
+  FieldName specular_roughness_by, base_metalness_by, transmission_weight_by, subsurface_weight_by, coat_weight_by, emission_by;
 
-  bool any() const { return !specular_roughness_by.empty() || !base_metalness_by.empty() || !emission_by.empty(); }
+  bool any() const;
 };
 void describe(Schema& s, MaterialFields& p);
 
-/// Adds to the pictures of a surface those that stand for the fields. What `stated` leaves open is full: the fields alone decide it. Tells
-/// of values that are cut off. Throws Error(usage) for fields that are not there.
+/// Adds to the pictures of a surface those that stand for the fields. What `stated` leaves open of what they or pictures multiply is full:
+/// these alone decide it. Tells of values that are cut off. Throws Error(usage) for fields that are not there.
 void apply(const MaterialFields& fields, const MaterialShow& stated, const Dataset& data, SurfaceMaterial& material,
            SurfacePictures& pictures, Context& context);
 

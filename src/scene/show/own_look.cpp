@@ -69,9 +69,12 @@ std::shared_ptr<const SurfacePictures> pictures_of(const MaterialLook& l, const 
   p->alpha = l.alpha == MaterialLook::Alpha::opaque ? Alpha::none : l.alpha == MaterialLook::Alpha::mask ? Alpha::cutout : Alpha::coverage;
   p->cutoff = l.opacity > 0 ? l.alpha_cutoff / l.opacity : 2;  // the picture's alpha counts times the material's
   p->color = picture_on(d, l.base_picture, TexelEncoding::srgb, p->alpha != Alpha::none, context);
-  p->metallic_roughness = picture_on(d, l.metallic_roughness, TexelEncoding::linear, false, context);
+  for (const FactorPicture& f : l.factors)
+    if (auto on = picture_on(d, f.picture, TexelEncoding::linear, false, context)) p->factors.push_back({std::move(*on), f.channels});
+  p->normal = picture_on(d, l.normal_picture, TexelEncoding::linear, false, context), p->normal_scale = l.normal_scale;
+  p->occlusion = picture_on(d, l.occlusion_picture, TexelEncoding::linear, false, context), p->occlusion_strength = l.occlusion_strength;
   p->emission = picture_on(d, l.emission_picture, TexelEncoding::srgb, false, context);
-  const bool any = p->color || p->metallic_roughness || p->emission || tinted || !(l.emission == Vec3f());
+  const bool any = p->color || !p->factors.empty() || p->normal || p->occlusion || p->emission || tinted || !(l.emission == Vec3f());
   return any ? p : nullptr;
 }
 
@@ -166,7 +169,7 @@ std::vector<SurfaceItem> items_of_materials(const SurfaceItem& like, Context& co
   std::vector<SurfaceItem> items;
   for (const auto& [number, cells] : *all) {
     SurfaceItem item = like;
-    if (all->size() > 1) item.data = polygons_of(like.data, number, cells), item.edge_lines = nullptr;
+    if (all->size() > 1) item.data = polygons_of(like.data, number, cells), item.part_of = like.data, item.edge_lines = nullptr;
     if (const auto at = looks.find(number); at != looks.end()) {
       const MaterialLook& look = at->second;
       item.pictures = pictures_of(look, *item.data, item.color_by.has_value(), context), item.made_of = matter_of(look);

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/file/file.h"
+#include "data/fields/texture_coordinates.h"
 #include "data/memory/memo.h"
 #include "data/memory/memory_budget.h"
 #include "image/texture/texture_file.h"
@@ -35,6 +36,14 @@ void describe(Schema& s, PictureShow& p) {
     "the "
     "longer side of what the pixel sees, too.");
   s("picture_encoding", p.picture_encoding, "Whether its numbers are those of a screen's colours, or light itself. HDR is always light.");
+  s("normal_picture", p.normal_picture,
+    "Picture of directions, as glTF has them, by which light sees the surface bent: a file; the same coordinates, repeats and wrap.")
+      .unit("file");
+  s("normal_scale", p.normal_scale, "How strongly it is bent; negative: what stood out is a hollow.").range(-100, 100);
+  s("material_picture", p.material_picture,
+    "Picture that multiplies the roughness by its green and the share of metal by its blue, as glTF has them, where the picture has an "
+    "integrator: a file; the same coordinates, repeats and wrap.")
+      .unit("file");
 }
 
 void check(const PictureShow& p) {
@@ -67,12 +76,12 @@ int64_t time_of_change(const std::string& path) {
   return ::stat(path.c_str(), &now) == 0 ? int64_t(now.st_mtim.tv_sec) * 1'000'000'000 + now.st_mtim.tv_nsec : 0;
 }
 
-std::shared_ptr<const Texture> texture_in_file(const Dataset& d, const PictureShow& p) {
-  const MappedFile file(p.picture);
-  const std::string key = fmt::format("pictures/{}/{}/{}/{}", p.picture, time_of_change(p.picture), file.size(), int(p.picture_encoding));
+std::shared_ptr<const Texture> texture_in_file(const Dataset& d, const std::string& path, TexelEncoding encoding) {
+  const MappedFile file(path);
+  const std::string key = fmt::format("pictures/{}/{}/{}/{}", path, time_of_change(path), file.size(), int(encoding));
   if (auto kept = d.memo().find<Texture>(key)) return kept;
-  need_memory(texture_memory({file.data(), file.size()}), "a picture on a surface", p.picture, "make it smaller");
-  Texture t = decode_texture({file.data(), file.size()}, p.picture, p.picture_encoding, true);
+  need_memory(texture_memory({file.data(), file.size()}), "a picture on a surface", path, "make it smaller");
+  Texture t = decode_texture({file.data(), file.size()}, path, encoding, true);
   const size_t bytes = t.bytes();
   return d.memo().keep<Texture>(key, std::move(t), bytes);
 }
@@ -80,24 +89,33 @@ std::shared_ptr<const Texture> texture_in_file(const Dataset& d, const PictureSh
 }  // namespace
 
 std::shared_ptr<const SurfacePictures> pictures_of(const Dataset& d, const PictureShow& p) {
-  if (!p.any()) return nullptr;
+  if (!p.any() && !p.any_other()) return nullptr;
   check(p);
   SurfacePicture on;
   on.coordinates = picture_coordinates(d, p.picture_coordinates).name;
   if (!p.picture_repeats.empty()) on.place = {p.picture_repeats.front(), 0, 0, 0, p.picture_repeats.back(), 0};
-  if (on.coordinates.starts_with("TEXCOORD_")) {  // glTF's, whose second one runs downwards
+  if (runs_down(on.coordinates)) {
     auto& q = on.place;
     q[2] += q[1], q[1] = -q[1], q[5] += q[4], q[4] = -q[4];
   }
   on.lookup.wrap_u = on.lookup.wrap_v = p.picture_wrap, on.lookup.filter = p.picture_filter;
   auto pictures = std::make_shared<SurfacePictures>();
+  const auto of_numbers = [&](const std::string& path) {
+    SurfacePicture numbers = on;
+    numbers.texture = texture_in_file(d, path, TexelEncoding::linear);
+    return numbers;
+  };
+  if (!p.normal_picture.empty()) pictures->normal = of_numbers(p.normal_picture), pictures->normal_scale = float(p.normal_scale);
+  if (!p.material_picture.empty())
+    pictures->factors.push_back({of_numbers(p.material_picture), {{MaterialFactor::roughness, 1}, {MaterialFactor::metalness, 2}}});
+  if (!p.any()) return pictures;
   if (p.pattern) {
     // Of the surface's own colour, and dark.
     constexpr Vec3f light{1, 1, 1}, dark{0.12f, 0.12f, 0.12f};
     on.texture = std::make_shared<const Texture>(pattern_texture(*p.pattern, light, dark));
     on.lookup.sharp = *p.pattern == TexturePattern::checker;
   } else {
-    on.texture = texture_in_file(d, p);
+    on.texture = texture_in_file(d, p.picture, p.picture_encoding);
     pictures->alpha = SurfacePictures::Alpha::coverage;
   }
   pictures->color = std::move(on);

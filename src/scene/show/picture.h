@@ -17,8 +17,12 @@ struct PictureShow {
   TextureWrap picture_wrap = TextureWrap::repeat;
   TextureFilter picture_filter = TextureFilter::anisotropic;
   TexelEncoding picture_encoding = TexelEncoding::srgb;
+  std::string normal_picture, material_picture;
+  double normal_scale = 1;
 
+  /// Whether there is one of colours.
   bool any() const { return !picture.empty() || pattern; }
+  bool any_other() const { return !normal_picture.empty() || !material_picture.empty(); }
 };
 void describe(Schema& s, PictureShow& p);
 /// Throws Error(usage) for two pictures at once.
@@ -28,7 +32,7 @@ void check(const PictureShow& p);
 /// holds none.
 const Field& picture_coordinates(const Dataset& data, const FieldName& wanted);
 
-/// The picture that the words request, on `data`; null for none. A file is decoded once for a dataset and time of its change. Throws
+/// The pictures that the words request, on `data`; null for none. A file is decoded once for a dataset and time of its change. Throws
 /// Error for files that cannot be read.
 std::shared_ptr<const SurfacePictures> pictures_of(const Dataset& data, const PictureShow& p);
 

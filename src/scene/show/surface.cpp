@@ -40,8 +40,12 @@ void describe(Schema& s, SurfaceShow& p) {
 
 void check(const SurfaceShow& p) {
   check(p.picture);
+  if (p.style != SurfaceStyle::solid && (p.picture.any() || p.picture.any_other()))
+    fail_usage("edges and points show no picture", "style", "style=solid does");
+  if (p.style != SurfaceStyle::solid && p.isolines.any())
+    fail_usage("lines of equal value are drawn on faces, and edges and points have none", "style",
+               "style=solid does; edges=yes adds the edges");
   if (!p.picture.any()) return;
-  if (p.style != SurfaceStyle::solid) fail_usage("edges and points show no picture", "style", "style=solid does");
   if (!p.coloring.field.empty() && !p.coloring.field.none())
     fail_usage(fmt::format("both a picture and the field '{}' are to colour the surface", p.coloring.field.name), "picture",
                "leave one out; texture=FIELD darkens colours by a field");
@@ -142,10 +146,10 @@ void share(const std::vector<DatasetPtr>& parts, const std::vector<SurfaceShow*>
 }
 
 std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceShow& p, Context& context) {
-  if (p.style != SurfaceStyle::solid) return add_sparse(scene, input, p, context);
   check(p);
+  if (p.style != SurfaceStyle::solid) return add_sparse(scene, input, p, context);
   const bool unstated = p.coloring.field.empty() && p.coloring.color.empty() && !p.coloring.states_map() && !p.material.any() &&
-                        !p.material_fields.any() && !p.picture.any();
+                        !p.material_fields.any() && !p.picture.any() && !p.picture.any_other();
   const bool own_look = unstated && p.own_materials && !automatic_field(*input) && has_own_materials(*input);
   SurfaceItem item;
   // Ranges come from the whole input, so that a surface and its volume share colours.
@@ -163,7 +167,8 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceSh
     const DatasetPtr whole = std::exchange(item.data, bilinear_parts(item.data, item.color_by->field));
     if (item.data != whole && !item.edge_lines) item.edge_lines = whole;
   }
-  if (p.material.any() || p.material_fields.any()) item.made_of = p.material.made(p.body > 0 ? p.body : input->bounds().diagonal());
+  const bool varies = p.material_fields.any() || !p.picture.material_picture.empty();
+  if (p.material.any() || varies) item.made_of = p.material.made(p.body > 0 ? p.body : input->bounds().diagonal());
   if (p.material.material) {
     const Vec3f own(item.made_of->base_color);
     item.color = {srgb_encode(own.x), srgb_encode(own.y), srgb_encode(own.z)};
@@ -171,7 +176,7 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceSh
   if (p.picture.any() && !p.material.material) item.color = {1, 1, 1};
   if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
   item.pictures = pictures_of(*item.data, p.picture);
-  if (p.material_fields.any()) {
+  if (varies) {
     auto pictures = item.pictures ? std::make_shared<SurfacePictures>(*item.pictures) : std::make_shared<SurfacePictures>();
     apply(p.material_fields, p.material, *item.data, *item.made_of, *pictures, context);
     item.pictures = std::move(pictures);

@@ -67,3 +67,19 @@ TEST_CASE("obj materials: black under a picture means the picture; one that cann
   CHECK(warnings.size() == 3);
   CHECK(table("newmtl wood\nd x\nNs nan\nmap_Kd\nKe 1e99\n")->looks.begin()->second.opacity == 1);
 }
+
+TEST_CASE("obj materials: pictures of light, roughness, metal and normals") {
+  write_png("a.png");
+  const auto t =
+      table("newmtl wood\nmap_Ke a.png\nmap_Pr a.png\nPr 0.5\nmap_Pm a.png\nnorm -clamp on a.png\nnewmtl glass\nmap_Pr missing.png\n");
+  const MaterialLook& wood = t->looks.begin()->second;
+  CHECK(wood.emission_picture.file);
+  CHECK(wood.emission == Vec3f(1, 1, 1));
+  REQUIRE(wood.factors.size() == 2);
+  CHECK(wood.factors[0].channels[0].factor == MaterialFactor::roughness);
+  CHECK(wood.factors[1].channels[0].factor == MaterialFactor::metalness);
+  CHECK(wood.roughness == 0.5f);
+  REQUIRE(wood.normal_picture.file);
+  CHECK(wood.normal_picture.beyond_u == MaterialPicture::Beyond::clamp);
+  CHECK(t->looks.rbegin()->second.factors.empty());
+}

@@ -193,8 +193,8 @@ TEST_CASE("pictures: roughness and metal by a picture turn a mirror into paper, 
   // Left a smooth metal, right a rough one, before a dark world with one strong light at the viewer: the mirror sends nothing back.
   std::vector<Vec4f> texels{{0, 0, 1, 1}, {0, 1, 0, 1}};
   auto all = std::make_shared<SurfacePictures>();
-  all->metallic_roughness = picture({2, 1, texels});
-  all->metallic_roughness->lookup.filter = TextureFilter::nearest;
+  all->factors.push_back({picture({2, 1, texels}), {{MaterialFactor::roughness, 1}, {MaterialFactor::metalness, 2}}});
+  all->factors[0].picture.lookup.filter = TextureFilter::nearest;
   SurfaceItem q = item(quad(1, 0, coordinates({0, 0, 1, 0, 1, 1, 0, 1})), {1, 1, 1});
   q.pictures = all;
   SurfaceMaterial m;

@@ -115,6 +115,30 @@ TEST_CASE("show picture: a file on the surface, by the data's texture coordinate
   std::filesystem::remove(path);
 }
 
+TEST_CASE("show picture: pictures of normals and of the material lie on a surface that a field colours") {
+  const std::string path = file_of(128, "sg_show_normals.png");
+  DatasetParts parts = squares();
+  parts.fields.add({"t", Association::point, Array::from_vector(std::vector<float>{0, 1, 2, 3, 4, 5}), "", Role::scalars});
+  const DatasetPtr d = make_dataset(parts);
+  const Shown s = shown(
+      d, {"field=t", "normal_picture=" + path, "normal_scale=-2", "material_picture=" + path, "picture_repeats=3", "base_metalness=0.5"});
+  const SurfaceItem& item = s.item(0);
+  CHECK(item.color_by->field == "t");
+  REQUIRE(item.pictures);
+  CHECK_FALSE(item.pictures->color);
+  CHECK(item.pictures->normal->texture->levels()[0].at(0, 0).x == Approx(128 / 255.0));  // numbers, not a screen's colours
+  CHECK(item.pictures->normal->place == std::array<double, 6>{3, 0, 0, 0, 3, 0});
+  CHECK(item.pictures->normal_scale == -2);
+  REQUIRE(item.pictures->factors.size() == 1);
+  CHECK(item.pictures->factors[0].channels.size() == 2);
+  CHECK(item.made_of->specular_roughness == 1);  // not stated: the picture alone decides
+  CHECK(item.made_of->base_metalness == 0.5);
+  CHECK(shown(d, {"normal_picture=" + path}).item(0).color_by->field == "t");
+  CHECK(refusal(d, {"normal_picture=" + path, "style=points"}).find("solid") != std::string::npos);
+  CHECK(refusal(d, {"isolines=5", "style=wireframe"}).find("solid") != std::string::npos);
+  std::filesystem::remove(path);
+}
+
 TEST_CASE("show picture: what cannot be is told with what would be right") {
   const DatasetPtr d = make_dataset(squares()), bare = make_dataset(squares(false));
   CHECK(refusal(bare, {"pattern=checker"}).find("texture_coordinates") != std::string::npos);
@@ -157,9 +181,42 @@ TEST_CASE("own materials: each has an item of its polygons, with its picture and
   CHECK(b.data->as<SurfaceMesh>()->polygons.connectivity.get(1) == 1);
   CHECK_FALSE(b.pictures);
   CHECK(b.opacity == 0.5);
+  // Where they meet they are smooth, as one surface.
+  CHECK(a.part_of == b.part_of);
+  CHECK(a.part_of->cell_count() == 2);
   // Parts and textures are kept with the data.
   CHECK(shown(d, {}).item(0).data == a.data);
   CHECK(shown(d, {}).item(0).pictures->color->texture == a.pictures->color->texture);
+}
+
+TEST_CASE("own materials: holes by the alpha of a picture; more materials than are drawn by themselves") {
+  MaterialTable table;
+  MaterialLook& leaf = table.looks[1];
+  leaf.base_picture = picture_of(png(255)), leaf.alpha = MaterialLook::Alpha::mask, leaf.alpha_cutoff = 0.25f, leaf.opacity = 0.5f;
+  const Shown s = shown(with_materials({1, 1}, table), {});
+  REQUIRE(s.scene.items.size() == 1);
+  CHECK(s.item(0).pictures->alpha == SurfacePictures::Alpha::cutout);
+  CHECK(s.item(0).pictures->cutoff == 0.5f);  // of the picture's alpha, half of which counts
+  CHECK(s.item(0).opacity == 1);
+  CHECK_FALSE(s.item(0).part_of);
+
+  DatasetParts many = squares();
+  std::vector<int32_t> corners, numbers;
+  for (int32_t i = 0; i < 257; ++i) corners.insert(corners.end(), {0, 1, 2, 3}), numbers.push_back(i);
+  SurfaceMesh mesh = std::get<SurfaceMesh>(many.mesh);
+  mesh.polygons.connectivity = Array::from_vector(std::move(corners));
+  many.mesh = mesh;
+  many.fields.add({"MaterialIds",
+                   Association::cell,
+                   Array::from_vector(std::move(numbers)),
+                   "",
+                   Role::labels,
+                   {},
+                   std::make_shared<const MaterialTable>(table)});
+  const Shown all = shown(make_dataset(many), {});
+  CHECK(all.scene.items.size() == 1);
+  REQUIRE(all.warnings.size() == 1);
+  CHECK(all.warnings[0].find("257 materials") != std::string::npos);
 }
 
 TEST_CASE("own materials: they give way to what is stated, and can be switched off") {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include "pipeline/offline/pack/baked_colors.h"
 #include "pipeline/offline/pack/flat_surface.h"
 #include "pipeline/offline/pack/json_text.h"
 #include "pipeline/offline/pack/pack_items.h"
 #include "pipeline/offline/pack/quantize.h"
+#include "render/prepare/picture_set.h"
 
 namespace sg::offline {
 
@@ -21,7 +23,9 @@ Json pack_color(const raster::ColorSource& source, const FlatColors& colors, con
                             {"positions", pack_scale_positions(colors.positions, source.nearest ? 16 : q.value_bits, p.arrays)}});
 }
 
-Json pack_surface(const raster::PreparedItem& item, const Packing& p) {
+Json pack_surface(const raster::PreparedItem& given, const Packing& p) {
+  raster::PreparedItem item = given;
+  item.color = baked_colors(given);
   FlatSurface s = flat_surface(item);
   if (s.triangles.empty()) return {};
   const size_t bytes = 4 * (s.xyz.size() + s.triangles.size() + s.normals.size() + s.corners.size() + s.colors.positions.size());
@@ -33,7 +37,8 @@ Json pack_surface(const raster::PreparedItem& item, const Packing& p) {
     if (const size_t after = s.triangles.size() / 3; after < before) p.note(fmt::format("a surface of {} triangles has {}", before, after));
   }
   if (item.lic) p.note("the texture along a vector field is left out");
-  if (item.pictures) p.note("pictures on a surface are left out");
+  if (item.pictures && item.pictures->color) p.note("a picture on a surface is shown by its colours at the surface's points");
+  if (item.pictures && item.pictures->isolines) p.note("lines of equal value on a surface are left out");
   // Faces of one colour each, and faces lit by themselves, show their own small turns.
   const bool faceted = s.normals.empty() && item.material.lit;
   Json::Members m{

@@ -58,7 +58,6 @@ const FileCamera& camera_named(const std::vector<FileCamera>& cameras, const std
 
 void take_camera(const FileCamera& c, const Box3& box, CameraParams& p) {
   if (p.view || p.direction) return;
-  const CameraParams usual;
   const Vec3 middle = box.center();
   // It turns and zooms about the depth of the data.
   const double depth = box.empty() ? 0 : dot(middle - c.position, c.forward);
@@ -67,7 +66,7 @@ void take_camera(const FileCamera& c, const Box3& box, CameraParams& p) {
   if (!p.up) p.up = c.up;
   if (!p.projection) p.projection = c.parallel ? ProjectionKind::parallel : ProjectionKind::perspective;
   if (c.parallel && !p.height) p.height = c.height;
-  if (!c.parallel && p.view_angle == usual.view_angle) p.view_angle = std::clamp(c.view_angle, 1.0, 170.0);
+  if (!c.parallel && !p.view_angle) p.view_angle = std::clamp(c.view_angle, 1.0, 170.0);
 }
 
 // Of a surface at the middle of the data that faces it, in lux.

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "render/prepare/glyph_set.h"
-#include "render/shade/picture_color.h"
+#include "render/shade/picture_normal.h"
 
 namespace sg::trace {
 
@@ -85,6 +85,12 @@ Vec4f surface_color(const PreparedItem& item, const Ray& ray, const Hit& hit, co
 Vec4f surface_picture(const raster::PlacedPicture& picture, const PreparedItem& item, const Ray& ray, const Hit& hit,
                       const RayFootprint& footprint, double scale) {
   return picture.lookup(*picture.texture, place_in(picture, item.triangles, hit.primitive, picture_ray(ray, hit, footprint, scale)));
+}
+
+Vec3f surface_normal(const PreparedItem& item, const Ray& ray, const Hit& hit, const RayFootprint& footprint, double scale, Vec3f normal) {
+  const raster::PictureSet& pictures = *item.pictures;
+  return Vec3f(picture_normal(*pictures.normal, pictures.normal_scale, item.triangles, hit.primitive,
+                              picture_ray(ray, hit, footprint, scale), Vec3(normal)));
 }
 
 }  // namespace sg::trace

@@ -38,6 +38,31 @@ std::vector<AnyLight> with_emitters(const PreparedScene& scene, const std::vecto
   return lights;
 }
 
+bool roughness_varies(const raster::PreparedItem& item) {
+  if (!item.pictures || !item.made_of) return false;
+  for (const raster::PlacedFactors& f : item.pictures->factors)
+    for (const FactorChannel& c : f.channels)
+      if (c.factor == MaterialFactor::roughness || c.factor == MaterialFactor::coat_roughness) return true;
+  return false;
+}
+
+// What pictures multiply numbers of a material with at a point.
+struct Factors {
+  float roughness = 1, metalness = 1, transmission = 1, coat = 1, coat_roughness = 1, subsurface = 1;
+
+  float& operator[](MaterialFactor f) {
+    switch (f) {
+      case MaterialFactor::roughness: break;
+      case MaterialFactor::metalness: return metalness;
+      case MaterialFactor::transmission: return transmission;
+      case MaterialFactor::coat: return coat;
+      case MaterialFactor::coat_roughness: return coat_roughness;
+      case MaterialFactor::subsurface: return subsurface;
+    }
+    return roughness;
+  }
+};
+
 Box3f bounds_of(const Geometry& geometry, const Media* media) {
   Box3f all = geometry.bounds();
   if (media && media->any() && !media->bounds().empty())
@@ -78,13 +103,11 @@ World::World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_
     for (const Vec4f& c : look.colors) translucent_ = translucent_ || c.w < 1;
   for (const raster::PreparedItem& item : scene_->items) {
     pictures_ = pictures_ || item.pictures;
-    const auto* picture =
-        item.pictures && item.made_of && item.pictures->metallic_roughness ? &*item.pictures->metallic_roughness : nullptr;
-    palettes_.push_back(picture ? std::make_unique<const MaterialPalette>(*item.made_of, *picture->texture, geometry_.placement().scale)
-                                : nullptr);
+    palettes_.push_back(roughness_varies(item) ? std::make_unique<const MaterialPalette>(*item.made_of, geometry_.placement().scale)
+                                               : nullptr);
+    translucent_ = translucent_ || (palettes_.back() && item.made_of->transmission_weight > 0);
   }
   for (const auto& m : materials_) translucent_ = translucent_ || m->passes_straight();
-  for (const auto& p : palettes_) translucent_ = translucent_ || (p && p->passes_straight());
   find_boundaries();
 }
 
@@ -165,19 +188,31 @@ bool World::same_surface(const SurfacePoint& point, const Hit& hit) const {
   return a < shows_.size() && b < shows_.size() && shows_[a] == shows_[b] && !is_line(point.object) && !is_line(hit.object);
 }
 
-// What pictures make of the material there.
-void World::take_pictures(const raster::PreparedItem& item, const Ray& ray, const Hit& hit, const RayFootprint& footprint,
-                          Vertex& v) const {
+// What pictures make of the material and of the normal there.
+MaterialShares World::take_pictures(const raster::PreparedItem& item, const Ray& ray, const Hit& hit, const RayFootprint& footprint,
+                                    Vertex& v) const {
+  const raster::PictureSet& pictures = *item.pictures;
   const double scale = geometry_.placement().scale;
-  if (const auto& palette = palettes_[hit.object]) {
-    const Vec4f t = surface_picture(*item.pictures->metallic_roughness, item, ray, hit, footprint, scale);
-    if (t.w > 0) v.material = &palette->at(t.y / t.w, t.z / t.w);
+  Factors factors;
+  for (const raster::PlacedFactors& f : pictures.factors) {
+    const Vec4f t = surface_picture(f.picture, item, ray, hit, footprint, scale);
+    if (!(t.w > 0)) continue;
+    for (const FactorChannel& c : f.channels) factors[c.factor] *= std::clamp(t[c.channel] / t.w, 0.f, 1.f);
   }
-  v.emission = v.material->emission();
-  if (item.pictures->emission) {
-    const Vec4f t = surface_picture(*item.pictures->emission, item, ray, hit, {}, scale);  // as the lights know it
+  if (const auto& palette = palettes_[hit.object]) v.material = &palette->at(factors.roughness, factors.coat_roughness);
+  if (pictures.emission) {
+    const Vec4f t = surface_picture(*pictures.emission, item, ray, hit, {}, scale);  // as the lights know it
     v.emission = v.emission * Vec3f{t.x, t.y, t.z};
   }
+  if (pictures.normal) {
+    const Vec3f bent = surface_normal(item, ray, hit, footprint, scale, v.point.shading_normal);
+    // What looks away from a viewer who sees the face could not be seen.
+    if ((dot(ray.direction, bent) < 0) == (dot(ray.direction, v.point.face_normal) < 0)) v.point.shading_normal = bent;
+  }
+  MaterialShares shares = v.material->shares;
+  shares.coat *= factors.coat, shares.metalness *= factors.metalness, shares.clear *= factors.transmission;
+  shares.subsurface *= factors.subsurface;
+  return shares;
 }
 
 Vertex World::at(const Ray& ray, const Hit& hit, const RayFootprint& footprint, bool walks, const Insides& around) const {
@@ -186,8 +221,8 @@ Vertex World::at(const Ray& ray, const Hit& hit, const RayFootprint& footprint, 
   v.material = materials_[hit.object].get();
   v.emission = v.material->emission();
   const Vec4f color = this->color(ray, hit, footprint);
-  if (hit.object < scene_->items.size() && scene_->items[hit.object].pictures)
-    take_pictures(scene_->items[hit.object], ray, hit, footprint, v);
+  const raster::PreparedItem* item = hit.object < scene_->items.size() ? &scene_->items[hit.object] : nullptr;
+  const MaterialShares shares = item && item->pictures ? take_pictures(*item, ray, hit, footprint, v) : v.material->shares;
   if (v.material->has_inside()) {
     v.body = {v.material, hit.object}, v.hidden = around.hides(v.body);
     if (const Material* in = around.around(v.body)) v.material = &boundary(*v.material, *in);
@@ -195,7 +230,7 @@ Vertex World::at(const Ray& ray, const Hit& hit, const RayFootprint& footprint, 
   // At a silhouette the shading normal may look away from a viewer who sees the face.
   const bool above = dot(ray.direction, v.point.face_normal) < 0, shaded_above = dot(ray.direction, v.point.shading_normal) < 0;
   v.frame = LocalFrame::about(above == shaded_above ? v.point.shading_normal : v.point.face_normal, v.point.tangent);
-  v.bsdf = make_bsdf(*v.material, {color.x, color.y, color.z}, color.w, walks && above);
+  v.bsdf = make_bsdf(*v.material, shares, {color.x, color.y, color.z}, color.w, walks && above);
   return v;
 }
 

@@ -80,12 +80,13 @@ class World {
   }
   void find_boundaries();
   const Material& boundary(const Material& of, const Material& in) const;
-  void take_pictures(const raster::PreparedItem& item, const Ray& ray, const Hit& hit, const RayFootprint& footprint, Vertex& v) const;
+  MaterialShares take_pictures(const raster::PreparedItem& item, const Ray& ray, const Hit& hit, const RayFootprint& footprint,
+                               Vertex& v) const;
 
   PreparedScenePtr scene_;
   Geometry geometry_;
   std::vector<std::shared_ptr<const Material>> materials_;
-  std::vector<std::unique_ptr<const MaterialPalette>> palettes_;  ///< of items; null where a material is the same all over
+  std::vector<std::unique_ptr<const MaterialPalette>> palettes_;  ///< of items; null where a material is as rough all over
   Lights lights_;
   std::optional<Lights> lamps_;  ///< where they are others
   std::shared_ptr<const Media> media_;

@@ -50,10 +50,11 @@ class Bsdf {
   /// energy.
   Vec3f entering(Vec3f wo) const;
   Vec3f base_color() const { return base_; }  ///< of which matter below the surface is
+  const MaterialShares& material_shares() const { return share_; }
   float leaving(Vec3f wi) const;
 
  private:
-  friend Bsdf make_bsdf(const Material&, Vec3f, float, bool);
+  friend Bsdf make_bsdf(const Material&, const MaterialShares&, Vec3f, float, bool);
   // Ways that light takes; each has a share of the samples.
   enum Way { straight, of_coat, of_metal, of_metal_again, of_boundary, of_boundary_again, of_body, of_retro, of_retro_again, ways };
   struct Shares {
@@ -73,10 +74,13 @@ class Bsdf {
   float reflectance(float cosine, bool inside) const;
   float reflect_chance(float reflectance) const;
   float body_share() const;
+  float body_through() const;
+  Vec3f body(float z_o, float z_i) const;
   bool is_delta(Way way) const;
   bool inside_of(Vec3f w) const { return w.z < 0 && material_->has_inside(); }
 
   const Material* material_ = nullptr;
+  MaterialShares share_;
   Vec3f base_;
   Vec3f again_;  // what metal of this colour reflects twice or more (multiple_mirrors)
   float opacity_ = 1;
@@ -84,8 +88,12 @@ class Bsdf {
 };
 
 /// At a point whose base colour is `base_color` (clamped to 0 to 1), on a surface that covers `opacity` of it: the rest passes straight on.
-/// With `walks` the subsurface share is left to the integrator (Bsdf::entering), else it is diffuse. The material must outlive it.
-Bsdf make_bsdf(const Material& material, Vec3f base_color, float opacity = 1, bool walks = false);
+/// With `walks` the subsurface share is left to the integrator (Bsdf::entering), else it is diffuse. `shares`: none above the material's.
+/// The material must outlive it.
+Bsdf make_bsdf(const Material& material, const MaterialShares& shares, Vec3f base_color, float opacity = 1, bool walks = false);
+inline Bsdf make_bsdf(const Material& material, Vec3f base_color, float opacity = 1, bool walks = false) {
+  return make_bsdf(material, material.shares, base_color, opacity, walks);
+}
 inline Bsdf make_bsdf(const Material& material) { return make_bsdf(material, material.base_color()); }
 
 }  // namespace sg::trace

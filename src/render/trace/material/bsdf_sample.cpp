@@ -32,36 +32,36 @@ bool Bsdf::is_delta(Way way) const {
 
 // Where the boundary lets light pass, how many of the samples that meet a mirror of this reflectance are reflected.
 float Bsdf::reflect_chance(float reflectance) const {
-  const float passed = material_->clear * mean_of(material_->clear_filter) * (1 - reflectance);
+  const float passed = share_.clear * mean_of(material_->clear_filter) * (1 - reflectance);
   return passed > 0 ? reflectance / (reflectance + passed) : 1;
 }
 
 Bsdf::Shares Bsdf::shares(float z, bool inside) const {
   const Material& m = *material_;
   const BoundarySide& side = m.side[inside];
-  const float under_retro = 1 - m.retro, metal = under_retro * m.metalness, rest = under_retro * (1 - m.metalness);
+  const float under_retro = 1 - share_.retro, metal = under_retro * share_.metalness, rest = under_retro * (1 - share_.metalness);
   Shares s{};
   // What gets through the coat on its way in, and on its average way out.
   Vec3f layers = grey(1);
-  if (m.coat > 0 && !inside) {
-    s.albedo[of_coat] = grey(m.coat * m.coat_albedo(z));
-    layers = grey(1 - m.coat) + through_coat(z) * m.coat_filter * (m.coat * (1 - m.coat_albedo.average()) / m.coat_open);
+  if (share_.coat > 0 && !inside) {
+    s.albedo[of_coat] = grey(share_.coat * m.coat_albedo(z));
+    layers = grey(1 - share_.coat) + through_coat(z) * m.coat_filter * (share_.coat * (1 - m.coat_albedo.average()) / m.coat_open);
   }
-  if (metal > 0 || (m.retro > 0 && !inside)) {
+  if (metal > 0 || (share_.retro > 0 && !inside)) {
     const Vec3f once = m.metal_albedo(z, base_);
     const Vec3f again = again_ * (m.ggx.smooth() ? 0 : m.mirror_lost(z));
     s.albedo[of_metal] = layers * once * metal, s.albedo[of_metal_again] = layers * again * metal;
-    if (!inside) s.albedo[of_retro] = layers * once * m.retro, s.albedo[of_retro_again] = layers * again * m.retro;
+    if (!inside) s.albedo[of_retro] = layers * once * share_.retro, s.albedo[of_retro_again] = layers * again * share_.retro;
   }
   if (rest > 0) {
     const bool smooth = m.boundary_smooth();
     const float reflected = smooth ? reflectance(z, inside) : side.albedo.reflected(z),
                 passed = smooth ? 1 - reflected : side.albedo.passed(z);
-    s.albedo[of_boundary] = layers * (grey(reflected) + m.clear_filter * (m.clear * passed)) * rest;
-    if (m.clear > 0 && !smooth)
+    s.albedo[of_boundary] = layers * (grey(reflected) + m.clear_filter * (share_.clear * passed)) * rest;
+    if (share_.clear > 0 && !smooth)
       s.albedo[of_boundary_again] =
-          layers * (grey(1 - side.lost_passes) + m.clear_filter * side.lost_passes) * (rest * m.clear * side.lost(z));
-    if (!inside) s.albedo[of_body] = base_ * m.body_filter * (rest * body_share() * m.open(z));
+          layers * (grey(1 - side.lost_passes) + m.clear_filter * side.lost_passes) * (rest * share_.clear * side.lost(z));
+    if (!inside) s.albedo[of_body] = base_ * m.body_filter(share_.coat) * (rest * body_share() * m.open(z, share_.coat));
   }
   float sum = 0;
   for (Vec3f& a : s.albedo) a *= opacity_;
@@ -76,7 +76,7 @@ float Bsdf::pdf_facing(Vec3f o, Vec3f i, bool inside, const Shares& s) const {
   const Material& m = *material_;
   if (!(o.z > 0) || i.z == 0) return 0;
   const BoundarySide& side = m.side[inside];
-  const float through = m.body_through(), z = std::abs(i.z);
+  const float through = body_through(), z = std::abs(i.z);
   if (i.z > 0) {
     const Vec3f h = normalize(o + i);
     float pdf = z / pi *
@@ -94,7 +94,7 @@ float Bsdf::pdf_facing(Vec3f o, Vec3f i, bool inside, const Shares& s) const {
     return pdf;
   }
   float pdf = z / pi * (s.chance[of_boundary_again] * side.lost_passes + s.chance[of_body] * through);
-  if (m.clear == 0 || is_delta(of_boundary) || s.chance[of_boundary] == 0) return pdf;
+  if (share_.clear == 0 || is_delta(of_boundary) || s.chance[of_boundary] == 0) return pdf;
   if (m.thin()) {
     const Vec3f h = normalize(o + Vec3f(i.x, i.y, z));
     pdf += s.chance[of_boundary] * (1 - reflect_chance(reflectance(dot(o, h), false))) * m.ggx.normals(h) * m.ggx.seen(o) / (4 * o.z);
@@ -113,14 +113,14 @@ float Bsdf::pdf(Vec3f wo, Vec3f wi) const {
 std::optional<BsdfSample> Bsdf::sample_delta(Way way, Vec3f o, bool inside, float chance, float choice, Transport transport) const {
   const Material& m = *material_;
   if (way == straight) return BsdfSample{grey((1 - opacity_) / chance), -o, chance, true, true};
-  const float under_retro = 1 - m.retro;
+  const float under_retro = 1 - share_.retro;
   const Vec3f mirrored = turned_back(o);
   BsdfSample s{{}, mirrored, chance, true};
-  if (way == of_coat) s.weight = grey(m.coat * fresnel_dielectric(o.z, m.coat_eta).reflected());
-  if (way == of_metal) s.weight = m.metal_fresnel(o.z, base_) * through_coat(o, mirrored, inside) * (under_retro * m.metalness);
-  if (way == of_retro) s.direction = o, s.weight = m.metal_fresnel(o.z, base_) * through_coat(o, o, inside) * m.retro;
+  if (way == of_coat) s.weight = grey(share_.coat * fresnel_dielectric(o.z, m.coat_eta).reflected());
+  if (way == of_metal) s.weight = m.metal_fresnel(o.z, base_) * through_coat(o, mirrored, inside) * (under_retro * share_.metalness);
+  if (way == of_retro) s.direction = o, s.weight = m.metal_fresnel(o.z, base_) * through_coat(o, o, inside) * share_.retro;
   if (way == of_boundary) {
-    const float r = reflectance(o.z, inside), reflects = reflect_chance(r), rest = under_retro * (1 - m.metalness),
+    const float r = reflectance(o.z, inside), reflects = reflect_chance(r), rest = under_retro * (1 - share_.metalness),
                 eta = m.side[inside].eta;
     if (choice < reflects) {
       s.weight = through_coat(o, mirrored, inside) * (rest * r), s.pdf *= reflects;
@@ -129,7 +129,7 @@ std::optional<BsdfSample> Bsdf::sample_delta(Way way, Vec3f o, bool inside, floa
       if (m.thin()) s.direction = -o;
       else s.direction = refracted(o, {0, 0, 1}, eta, fresnel_dielectric(o.z, eta).cosine_through), s.eta = eta;
       const float scale = transport == Transport::radiance && !m.thin() ? 1 / (eta * eta) : 1;
-      s.weight = m.clear_filter * through_coat(o, s.direction, inside) * (rest * m.clear * (1 - r) * scale);
+      s.weight = m.clear_filter * through_coat(o, s.direction, inside) * (rest * share_.clear * (1 - r) * scale);
     }
   }
   s.weight *= opacity_ / s.pdf;
@@ -162,7 +162,7 @@ std::optional<Vec3f> Bsdf::sample_direction(Way way, Vec3f o, bool inside, float
       if (choice < side.lost_passes) i.z = -i.z;
       return i;
     case of_body:
-      if (choice < m.body_through()) i.z = -i.z;
+      if (choice < body_through()) i.z = -i.z;
       return i;
     default: break;
   }
@@ -203,10 +203,10 @@ std::optional<BsdfSample> Bsdf::sample(Vec3f wo, float choice, Vec2f u, Transpor
 bool Bsdf::delta_only() const {
   if (opacity_ == 0) return true;
   const Material& m = *material_;
-  const float under_retro = 1 - m.retro, rest = under_retro * (1 - m.metalness);
-  const bool mirrors = m.metalness * under_retro > 0 || m.retro > 0, body = rest * body_share() > 0;
-  const bool boundary = rest > 0 && (m.side[0].eta != 1 || m.clear > 0);
-  return !body && !(m.coat > 0 && !m.coat_ggx.smooth()) && !(mirrors && !m.ggx.smooth()) && !(boundary && !m.boundary_smooth());
+  const float under_retro = 1 - share_.retro, rest = under_retro * (1 - share_.metalness);
+  const bool mirrors = share_.metalness * under_retro > 0 || share_.retro > 0, body = rest * body_share() > 0;
+  const bool boundary = rest > 0 && (m.side[0].eta != 1 || share_.clear > 0);
+  return !body && !(share_.coat > 0 && !m.coat_ggx.smooth()) && !(mirrors && !m.ggx.smooth()) && !(boundary && !m.boundary_smooth());
 }
 
 }  // namespace sg::trace

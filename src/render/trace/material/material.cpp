@@ -23,13 +23,14 @@ AlbedoCurve lost_by(const BoundaryAlbedo& albedo) {
 
 }  // namespace
 
-Material::Material(const SurfaceMaterial& m, double length, double around) {
+Material::Material(const SurfaceMaterial& m, double length, double around, bool varies) {
   check(m);
   priority_ = m.dielectric_priority;
   base_color_ = Vec3f(m.base_color), emission_ = Vec3f(m.emission), subsurface_radius_ = Vec3f(m.subsurface_radius * length);
   subsurface_anisotropy_ = float(m.subsurface_anisotropy), thin_ = m.thin_walled;
-  coat = float(m.coat_weight), retro = float(m.retro_weight), metalness = float(m.base_metalness), clear = float(m.transmission_weight);
-  subsurface = float(m.subsurface_weight);
+  shares = {float(m.coat_weight), float(m.retro_weight), float(m.base_metalness), float(m.transmission_weight), float(m.subsurface_weight)};
+  const auto& [coat, retro, metalness, clear, subsurface] = shares;
+  has_boundary_ = varies || (metalness < 1 && retro < 1);
   for (int i = 0; i < 3; ++i) {
     coat_filter[i] = float(std::sqrt(m.coat_color[i]));
     if (m.transmission_depth <= 0 || thin_) clear_filter[i] = float(m.transmission_color[i]);
@@ -39,12 +40,11 @@ Material::Material(const SurfaceMaterial& m, double length, double around) {
     coat_ggx = Ggx::of_roughness(float(m.coat_roughness)), coat_eta = float(m.coat_ior);
     coat_albedo = boundary_albedo(coat_ggx, coat_eta, false).reflected;
     coat_open = 1 - coat_albedo.least();
-    body_filter = Vec3f(1, 1, 1) * (1 - coat) + coat_filter * coat_filter * coat;
   }
   ggx = Ggx::of_roughness(float(m.specular_roughness), float(m.specular_anisotropy));
   if (metalness > 0 || retro > 0) mirror = mirror_albedo(ggx);
   mirror_lost = AlbedoCurve::of([&](float cosine) { return 1 - mirror.white(cosine); });
-  if (metalness < 1 && retro < 1) {
+  if (has_boundary_) {
     ior_ = weighted_ior(m.specular_ior, m.specular_weight);
     const float eta = ior_ / float(around);
     side[0].eta = std::abs(eta - 1) < 0.001f ? 1 : eta;
@@ -61,7 +61,8 @@ Material::Material(const SurfaceMaterial& m, double length, double around) {
       side[1].lost_passes = from_outside / (from_outside + from_inside);
     }
   }
-  open = AlbedoCurve::of([&](float cosine) { return (1 - coat * coat_albedo(cosine)) * (1 - side[0].albedo.reflected(cosine)); });
+  open_ = AlbedoCurve::of([&](float cosine) { return 1 - side[0].albedo.reflected(cosine); });
+  under_coat_ = AlbedoCurve::of([&](float cosine) { return coat_albedo(cosine) * open_(cosine); });
   if (m.metal && (metalness > 0 || retro > 0)) {
     conductor = index_of(*m.metal);
     metal_curves = conductor_albedo(ggx, conductor->eta, conductor->k);

@@ -10,6 +10,11 @@
 
 namespace sg::trace {
 
+/// How much of a surface is what, each a share of what those before leave: of a material, or lowered at a point by pictures.
+struct MaterialShares {
+  float coat = 0, retro = 0, metalness = 0, clear = 0, subsurface = 0;
+};
+
 /// One side of the boundary between outside and body.
 struct BoundarySide {
   float eta = 1;          ///< index of refraction beyond, by that on this side
@@ -21,15 +26,16 @@ struct BoundarySide {
 class Material {
  public:
   /// Some ten milliseconds: albedos of rough boundaries are integrated. Throws Error(usage) for values out of range (check()).
-  /// `length`: of a length of the description, in those of rays. `around`: index of refraction of what a clear body is in.
-  explicit Material(const SurfaceMaterial& described, double length = 1, double around = 1);
+  /// `length`: of a length of the description, in those of rays. `around`: index of refraction of what a clear body is in. `varies`: the
+  /// shares are lower at some points, so that what they leave nothing of is prepared, too.
+  explicit Material(const SurfaceMaterial& described, double length = 1, double around = 1, bool varies = false);
 
   Vec3f base_color() const { return base_color_; }
   Vec3f emission() const { return emission_; }
   bool emits() const { return emission_ != Vec3f(); }
   bool thin() const { return thin_; }
   /// Whether rays go on inside: a body behind the surface, with an index of refraction and absorption of its own.
-  bool has_inside() const { return clear > 0 && metalness < 1 && retro < 1 && !thin_; }
+  bool has_inside() const { return shares.clear > 0 && has_boundary_ && !thin_; }
   float ior() const { return ior_; }
   /// Of clear bodies that overlap; 0: none (insides.h).
   int priority() const { return priority_; }
@@ -37,11 +43,10 @@ class Material {
   Vec3f absorption() const { return absorption_; }
   /// Mean free paths, share and mean cosine of scattering below the surface (subsurface.h).
   Vec3f subsurface_radius() const { return subsurface_radius_; }
-  float subsurface_weight() const { return subsurface; }
   float subsurface_anisotropy() const { return subsurface_anisotropy_; }
 
-  // For Bsdf. Shares:
-  float coat = 0, retro = 0, metalness = 0, clear = 0, subsurface = 0;
+  // For Bsdf:
+  MaterialShares shares;
   // Of the coat, seen from outside:
   Ggx coat_ggx;
   float coat_eta = 1;
@@ -54,18 +59,19 @@ class Material {
   MirrorAlbedo mirror;      ///< of metal that reflects everything, single reflections
   AlbedoCurve mirror_lost;  ///< 1 - mirror.white
   Vec3f clear_filter{1, 1, 1};
-  // Of the diffuse body, under both:
-  AlbedoCurve open;            ///< what gets there, and from there out again
-  Vec3f body_filter{1, 1, 1};  ///< of the way there and back
+  // Of the diffuse body, under both, where the coat has the share `coat`:
+  /// What gets there, and from there out again; its mean over uniform light.
+  float open(float cosine, float coat) const { return open_(cosine) - (coat > 0 ? coat * under_coat_(cosine) : 0); }
+  float open_average(float coat) const { return open_.average() - coat * under_coat_.average(); }
+  /// Of the way there and back.
+  Vec3f body_filter(float coat) const { return Vec3f(1, 1, 1) * (1 - coat) + coat_filter * coat_filter * coat; }
   std::optional<ConductorIndex> conductor;
   std::array<AlbedoCurve, 3> metal_curves;  ///< of its single reflections, red, green and blue
 
   /// Without roughness, or without a boundary at all.
   bool boundary_smooth() const { return ggx.smooth() || side[0].eta == 1; }
   /// Whether something goes through as if nothing was there: a smooth sheet, matter that does not refract.
-  bool passes_straight() const { return clear > 0 && boundary_smooth() && (thin_ || side[0].eta == 1); }
-  /// What is diffuse of sheets, and comes out on the other side.
-  float body_through() const { return thin_ ? subsurface / 2 : 0; }
+  bool passes_straight() const { return shares.clear > 0 && boundary_smooth() && (thin_ || side[0].eta == 1); }
   /// What metal reflects at a microscopic mirror, and on average over all directions, if its colour at normal incidence is `base`.
   Vec3f metal_fresnel(float cosine, Vec3f base) const;
   Vec3f metal_average(Vec3f base) const;
@@ -76,7 +82,8 @@ class Material {
   Vec3f base_color_, emission_, absorption_, subsurface_radius_;
   float subsurface_anisotropy_ = 0, ior_ = 1;
   int priority_ = 0;
-  bool thin_ = false;
+  bool thin_ = false, has_boundary_ = false;
+  AlbedoCurve open_, under_coat_;  // without a coat; what one takes of it
   Vec3f conductor_average_;
 };
 

@@ -1,29 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
-// MaterialPalette: a material whose roughness and metalness are those of a picture, prepared for the values that it has.
+// MaterialPalette: a material whose roughness changes from point to point, prepared for the values that are met.
 #pragma once
+#include <array>
+#include <atomic>
 #include <memory>
+#include <mutex>
 #include <vector>
 
-#include "image/texture/texture.h"
 #include "render/trace/material/material.h"
 
 namespace sg::trace {
 
-/// Roughness in 33 steps, metalness in 9: a Material for each pair that a texel of the picture, or a mean of texels, comes near to. What
-/// lies between two texels that differ much takes the nearest pair that there is.
+/// A Material for each of 33 steps of roughness and 9 of the coat's; made when a ray first asks for it, some ten milliseconds each.
 class MaterialPalette {
  public:
-  /// `described` holds the factors; roughness is in green, metalness in blue. `length`: as of Material. Some ten milliseconds for each
-  /// pair. Throws Error(usage).
-  MaterialPalette(const SurfaceMaterial& described, const Texture& texture, double length = 1);
+  /// `described` holds the factors. `length`: as of Material.
+  MaterialPalette(const SurfaceMaterial& described, double length) : described_(described), length_(length) {}
 
-  const Material& at(float roughness_texel, float metalness_texel) const;
-  /// Whether any of its materials does (Material::passes_straight()).
-  bool passes_straight() const;
+  /// What is described, with these shares of its roughness and of its coat's. Lives as long as the palette.
+  const Material& at(float roughness, float coat_roughness) const;
 
  private:
-  static size_t pair_of(float roughness, float metalness);
-  std::vector<std::shared_ptr<const Material>> materials_;  ///< of all pairs; several may share one
+  static constexpr size_t rough_steps = 33, coat_steps = 9;
+  const Material& made(size_t place) const;
+
+  SurfaceMaterial described_;
+  double length_;
+  mutable std::array<std::atomic<const Material*>, rough_steps * coat_steps> materials_{};
+  mutable std::vector<std::unique_ptr<const Material>> owned_;
+  mutable std::mutex making_;
 };
 
 }  // namespace sg::trace

@@ -169,3 +169,29 @@ TEST_CASE("bsdf: what enters below the surface and leaves it again keeps the ene
   for (const Vec3f wo : directions())
     CHECK(double(part.albedo(wo).x + part.entering(wo).x) == Approx(double(whole.albedo(wo).x)).epsilon(1e-4));
 }
+
+TEST_CASE("bsdf: shares that pictures lower are those of a material that has them from the start") {
+  for (const double rough : {0., .35})
+    for (const bool thin : {false, true}) {
+      CAPTURE(thin);
+      SurfaceMaterial full;
+      full.specular_roughness = rough, full.coat_roughness = .2, full.coat_color = {.9, .6, .5}, full.transmission_color = {.9, .5, .2};
+      full.thin_walled = thin, full.subsurface_weight = full.base_metalness = full.coat_weight = full.transmission_weight = 1;
+      SurfaceMaterial less = full;
+      less.subsurface_weight = .3, less.base_metalness = .25, less.coat_weight = .5, less.transmission_weight = .75;
+      const Material varies(full, 1, 1, true), known(less);
+      MaterialShares shares = varies.shares;
+      shares.subsurface *= .3f, shares.metalness *= .25f, shares.coat *= .5f, shares.clear *= .75f;
+      const Bsdf a = make_bsdf(varies, shares, {.7f, .4f, .9f}), b = make_bsdf(known, {.7f, .4f, .9f});
+      const auto same = [](Vec3f x, Vec3f y) {
+        for (int k = 0; k < 3; ++k) CHECK(double(x[k]) == Approx(double(y[k])).epsilon(1e-5));
+      };
+      for (const Vec3f wo : directions()) {
+        same(a.albedo(wo), b.albedo(wo)), same(a.straight_on(wo), b.straight_on(wo));
+        for (const Vec3f wi : directions()) {
+          same(a.evaluate(wo, wi), b.evaluate(wo, wi));
+          CHECK(double(a.pdf(wo, wi)) == Approx(double(b.pdf(wo, wi))).epsilon(1e-5));
+        }
+      }
+    }
+}

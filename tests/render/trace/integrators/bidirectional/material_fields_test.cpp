@@ -48,17 +48,34 @@ void check_alpha(const trace::Material& m, double roughness) {
 TEST_CASE("materials by fields: roughness, metal and light are what the fields say, to the steps in which they are kept") {
   Context context;
   SurfaceShow p;
-  p.material_fields = {{"rough"}, {"metal"}, {"glow"}};
+  p.material_fields.specular_roughness_by = {"rough"}, p.material_fields.base_metalness_by = {"metal"};
+  p.material_fields.emission_by = {"glow"};
   const LitWorld w(shown(p, context));
   for (const double rough : {0.125, 0.5, 0.875})
     for (const double metal : {0.25, 0.5, 0.875}) {
       const Vertex v = met(w, float(0.9 * (2 * rough - 1)), float(0.9 * (2 * metal - 1)));
-      CHECK(double(v.material->metalness) == Approx(metal));
+      CHECK(double(v.bsdf.material_shares().metalness) == Approx(metal));
       check_alpha(*v.material, rough);
       CHECK(double(v.emission.y) == Approx(std::max(0.0, 8 * rough - 2)).epsilon(1e-4));
     }
   // Other surfaces ask for this light.
   CHECK(w.world.lights().any());
+}
+
+TEST_CASE("materials by fields: shares of glass, of a coat and of what light wanders in are what the fields say") {
+  Context context;
+  SurfaceShow p;
+  p.material_fields.transmission_weight_by = {"rough"}, p.material_fields.coat_weight_by = {"metal"};
+  p.material_fields.subsurface_weight_by = {"rough"}, p.material.subsurface_weight = 0.5;
+  const LitWorld w(shown(p, context));
+  for (const double x : {0.05, 0.5, 0.9})
+    for (const double y : {0.2, 0.7}) {
+      const MaterialShares shares = met(w, float(0.9 * (2 * x - 1)), float(0.9 * (2 * y - 1))).bsdf.material_shares();
+      CHECK(double(shares.clear) == Approx(x));
+      CHECK(double(shares.coat) == Approx(y));
+      CHECK(double(shares.subsurface) == Approx(x / 2));
+      CHECK(shares.metalness == 0);
+    }
 }
 
 TEST_CASE("materials by fields: they multiply what is stated") {
@@ -69,7 +86,7 @@ TEST_CASE("materials by fields: they multiply what is stated") {
   const LitWorld w(shown(p, context));
   const Vertex v = met(w, 0.45f, 0);
   check_alpha(*v.material, 0.75 * 0.5);
-  CHECK(v.material->metalness == 0);
+  CHECK(v.bsdf.material_shares().metalness == 0);
   CHECK(v.emission.x == Approx(2));
   CHECK(v.emission.y == Approx(4));
   CHECK(v.emission.z == 0);
@@ -92,6 +109,7 @@ TEST_CASE("materials by fields: values beyond 0 to 1 are told, fields that are n
   CHECK(sg::test::contains(said, "from -2 to 6"));
   check_alpha(*met(w, 0.8f, 0).material, 1);
   check_alpha(*met(w, -0.8f, 0).material, 0);
-  p.material_fields = {{}, {}, {"nothing"}};
+  p.material_fields = {};
+  p.material_fields.emission_by = {"nothing"};
   CHECK(sg::test::contains(sg::test::error_of([&] { shown(p, context); }), "emission_by"));
 }
