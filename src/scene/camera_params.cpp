@@ -60,7 +60,8 @@ void describe(Schema& s, CameraParams& p) {
     "With an aperture: distance from the camera, along the line of sight, of what is sharp; default: the middle of the data.")
       .positive();
   s("shutter", p.shutter,
-    "Motion blur: time that the shutter is open, the picture's own time in its middle; nodes of a scene that have keys move meanwhile. 0: "
+    "Motion blur: time that the shutter is open, the picture's own time in its middle; nodes of a scene that have keys move meanwhile, and "
+    "so do steps that state a time. 0: "
     "none.")
       .unit("time")
       .range(0, 1e30);

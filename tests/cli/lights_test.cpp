@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lights, environments and the lens by flags: they come together, are in the recipe, and what cannot be right is refused.
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "base/file/file.h"
 #include "cli/program.h"
 #include "support/test.h"
 
@@ -32,6 +34,17 @@ TEST_CASE("lights: flags beside --picture and --camera all count, and the recipe
     CHECK_MESSAGE(contains(recipe, part), part);
   CHECK(sightglass({"open", "lights.png", "-o", "again.png"}).status == 0);
   CHECK(test::bytes_of("again.png") == test::bytes_of("lights.png"));
+}
+
+TEST_CASE("layers: those that a pipeline file names lie beside it, as its picture does") {
+  const std::string folder = test::temp_folder() + "beside/";
+  std::filesystem::create_directories(folder);
+  write_file(folder + "a.yaml",
+             "sightglass: 1\nsteps:\n  a: {sphere: {size: 8}}\nshow:\n  - {surface: {}}\npicture: {size: 32x24, layers: "
+             "of_a.vti}\n");
+  CHECK(sightglass({"run", folder + "a.yaml"}).status == 0);
+  CHECK(file_exists(folder + "of_a.vti"));
+  CHECK(file_exists(folder + "a.png"));
 }
 
 TEST_CASE("lights: without an integrator a note tells what is left out") {

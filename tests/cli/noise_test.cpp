@@ -70,7 +70,7 @@ TEST_CASE("layers: what lies behind the colours is written as data") {
   CHECK(sightglass({"render", "--source", "gyroid size=12", "--size", "64x48", "-o", "plain.png", "--layers", "plain.vti"}).status == 0);
   CHECK_FALSE(contains(sightglass({"info", "plain.vti"}).out, "error"));
   CHECK(contains(render("a.png", {"--layers", "a.xyzzy"}).err, "xyzzy"));
-  CHECK(contains(render("a_{n}.png", {"--layers", "a.vti", "--times", "0:1:2"}).err, "layers belong to a single picture"));
+  CHECK(contains(render("a_{n}.png", {"--layers", "a.vti", "--times", "0:1:2"}).err, "layers_{n}.vti"));
 }
 
 TEST_CASE("noise: pictures of films have targets and are denoised, too") {

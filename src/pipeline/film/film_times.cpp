@@ -12,6 +12,7 @@
 #include "io/file_series.h"
 #include "io/options.h"
 #include "pipeline/graph/series_input.h"
+#include "pipeline/picture/prepare.h"
 
 namespace sg {
 
@@ -186,6 +187,7 @@ PipelineFile at_time(PipelineFile file, const FilmTimes& film, size_t n) {
   const bool in_texts = write_texts(file.picture, time, n, film.times.size());
   const bool in_picture = write_time(file.picture, time) || in_texts;
   if (film.turns) return file;
+  const bool shutter = of_files && stated_in(file).camera.shutter > 0;  // which is open before and after the step's time
   const bool in_scene = write_time_in_scene(file, time);
   if (write_time_in_steps(file, time)) return file;
   bool moment = false;
@@ -202,7 +204,7 @@ PipelineFile at_time(PipelineFile file, const FilmTimes& film, size_t n) {
     const Operation* op = known_operation(s.operation);
     if (s.reads()) {
       if (film.still.count(s.name)) continue;
-      s.words.push_back(of_files ? fmt::format("step={}", film.steps[n]) : "time=" + exact_number(time));
+      s.words.push_back(of_files && !shutter ? fmt::format("step={}", film.steps[n]) : "time=" + exact_number(time));
       moves = true;
     } else if (op && (op->run_series || op->kind == OperationKind::source)) {
       if (op->kind == OperationKind::source) source = s.operation;

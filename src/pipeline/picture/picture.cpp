@@ -155,6 +155,8 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   if (!shared.cache && stated_in(file).camera.shutter > 0) shared.cache = std::make_shared<Cache>(allowed_memory() / 2);
   const PreparedPicture prepared = prepare_picture(file, shared, computing);
   const std::vector<PipelineFile> moments = moments_of(file, prepared.stated.camera);
+  if (moments.empty() && prepared.stated.camera.shutter > 0)
+    context.info("nothing moves while the shutter is open: nodes with keys do, and steps that state a time");
   Picture picture =
       moments.empty() ? draw_prepared(prepared, prepared.stated, options, drawing) : draw_moments(moments, prepared, shared, drawing);
   if (!in_panels(prepared.stated.picture) && !picture.image.pixels.empty()) {

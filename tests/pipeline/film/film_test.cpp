@@ -202,6 +202,27 @@ TEST_CASE("film: numbered pictures go into files that carry their recipes") {
   CHECK(word_value(recipe_in(second, "x.png").steps[0].words, "time") == "1");
 }
 
+TEST_CASE("film: layers of numbered pictures and of a film are numbered, and are those of the pictures") {
+  PipelineFile file = parse_pipeline(gyre, "", picture_vocabulary());
+  FilmParams params;
+  take_film_words(file, params);
+  params.output = test::temp_folder() + "layered_{n}.png", params.times = "0,1", params.layers = test::temp_folder() + "layers_{n}.vti";
+  Context context;
+  write_film(file, params, {}, context);
+  for (const char* n : {"000", "001"}) {
+    const Image picture = read_png(test::temp_folder() + "layered_" + n + ".png");
+    const DatasetPtr layers = std::get<DatasetPtr>(read_data(test::temp_folder() + "layers_" + n + ".vti", {}, context));
+    const Field& color = layers->fields().require("color");
+    REQUIRE(color.array.count() == size_t(picture.width) * size_t(picture.height));
+    CHECK(layers->fields().find("light", Association::point));
+    // The upper left pixel is in the last row.
+    const size_t at = color.array.count() - size_t(picture.width);
+    for (int c = 0; c < 3; ++c) CHECK(color.array.get(at, c) == picture.pixels[size_t(c)]);
+  }
+  params.layers = test::temp_folder() + "layers.vti";
+  CHECK(test::contains(test::error_of([&] { write_film(file, params, {}, context); }), "layers_{n}.vti"));
+}
+
 TEST_CASE("film: what has no time says so before anything is drawn") {
   PipelineFile file = parse_pipeline("sightglass: 1\nsteps:\n  a: {tangle: {size: 5}}\n");
   Context context;

@@ -44,6 +44,18 @@ TEST_CASE("pages: the file names no other, asks for nothing, and forbids the bro
   CHECK(count_of(page.html, "</script>") == count_of(page.html, "<script"));
 }
 
+TEST_CASE("pages: a picture on a surface is told to be shown by the colours of its points") {
+  Context context;
+  PipelineFile file = parse_pipeline(
+      "sightglass: 1\nsteps:\n  a: {sphere: {size: 12}}\n  b: {contour: {values: [0]}, from: a}\n  c: {texture_coordinates: {map: sphere}, "
+      "from: b}\nshow:\n  - {surface: {pattern: checker, color: red}, of: c}\npicture: {size: 120x80}\n",
+      "", picture_vocabulary());
+  const Page page = make_page(std::move(file), {}, {}, {}, context);
+  CHECK(contains(page.html, "\"kind\":\"direct\""));
+  REQUIRE(page.notes.size() == 1);
+  CHECK(contains(page.notes[0], "at the surface's points"));
+}
+
 TEST_CASE("pages: texts of the data cannot end what they stand in") {
   Context context;
   const Page page = make_page(pipeline_with("{sphere: {size: 8}}", "{surface: {}}", ", title: \"</script><b>&\""), {}, {}, {}, context);

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
+#include <type_traits>
+#include <variant>
 
 #include "base/error.h"
 #include "base/text/text.h"
@@ -22,19 +25,44 @@ double time_of_node(const PipelineFile::Node& n) {
   return first.time;
 }
 
+/// Whether the result of a step is another one at another time, which it states as a number.
+std::optional<double> time_of_step(const PipelineFile::Step& s) {
+  const auto stated = word_value(s.words, "time");
+  return stated ? parse_double(*stated) : std::nullopt;
+}
+
+/// Colours mean the same at all moments.
+void keep_colors(const Scene& from, Scene& to) {
+  for (size_t i = 0; i < from.items.size() && i < to.items.size(); ++i) {
+    if (from.items[i].index() != to.items[i].index()) continue;
+    std::visit(
+        [&](auto& item) {
+          using T = std::decay_t<decltype(item)>;
+          const T& first = std::get<T>(from.items[i]);
+          if constexpr (std::is_same_v<T, VolumeItem>) item.color = first.color, item.opacity = first.opacity;
+          else if (item.color_by && first.color_by && item.color_by->field == first.color_by->field)
+            item.color_by->scale = first.color_by->scale;
+        },
+        to.items[i]);
+  }
+}
+
 bool has_alpha(const Image& image) { return image.channels == 2 || image.channels == 4; }
 
 }  // namespace
 
 std::vector<PipelineFile> moments_of(const PipelineFile& file, const CameraParams& camera) {
   std::vector<PipelineFile> moments;
-  const bool moves = std::any_of(file.scene.begin(), file.scene.end(), [](const auto& n) { return !n.keys.empty(); });
+  const bool moves = std::any_of(file.scene.begin(), file.scene.end(), [](const auto& n) { return !n.keys.empty(); }) ||
+                     std::any_of(file.steps.begin(), file.steps.end(), [](const auto& s) { return time_of_step(s).has_value(); });
   if (!(camera.shutter > 0) || !moves) return moments;
   for (int k = 0; k < camera.moments; ++k) {
     PipelineFile& one = moments.emplace_back(file);
     const double off = camera.shutter * ((k + 0.5) / camera.moments - 0.5);
     for (PipelineFile::Node& n : one.scene)
       if (!n.keys.empty()) n.words.push_back("time=" + exact_number(time_of_node(n) + off));  // the last one counts
+    for (PipelineFile::Step& s : one.steps)
+      if (const auto time = time_of_step(s)) s.words.push_back("time=" + exact_number(*time + off));
   }
   return moments;
 }
@@ -62,7 +90,10 @@ Picture draw_moments(const std::vector<PipelineFile>& moments, const PreparedPic
     if (k > 0) part.on_log = nullptr;  // all say the same
     PipelineFile file = moments[k];
     const PreparedPicture there = prepare_picture(file, each, part);
-    for (size_t i = 0; i < moment.shown.size() && i < there.shown.size(); ++i) moment.shown[i].scene = there.shown[i].scene;
+    for (size_t i = 0; i < moment.shown.size() && i < there.shown.size(); ++i) {
+      moment.shown[i].scene = there.shown[i].scene;
+      keep_colors(prepared.shown[i].scene, moment.shown[i].scene);
+    }
     picture = draw_prepared(moment, moment.stated, each, part);
     if (picture.image.pixels.empty()) return picture;
     if (k == 0) {

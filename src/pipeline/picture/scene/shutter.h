@@ -5,12 +5,12 @@
 
 namespace sg {
 
-/// The pipelines of the moments of a picture: nodes with keys at times spread evenly over the open shutter, each in the middle of its
-/// share. Empty where the shutter is closed or no node moves.
+/// The pipelines of the moments of a picture: nodes with keys, and steps that state a time, at times spread evenly over the open shutter,
+/// each in the middle of its share. Empty where the shutter is closed or nothing moves.
 std::vector<PipelineFile> moments_of(const PipelineFile& file, const CameraParams& camera);
 
-/// The picture with the mean light of the moments; camera, axes and legends are those of `prepared`, which is of `file`. What is seen where
-/// (Picture::seen) is that of the last moment.
+/// The picture with the mean light of the moments; camera, axes and legends are those of `prepared`, which is of `file`, and so are
+/// colours. What is seen where (Picture::seen) is that of the last moment.
 Picture draw_moments(const std::vector<PipelineFile>& moments, const PreparedPicture& prepared, const PictureOptions& options,
                      Context& context);
 

@@ -50,7 +50,8 @@ TEST_CASE("camera of the file: by name, by number and with words of one's own be
   CHECK(*front.position == Vec3(0, 0, 5));
   CHECK(length(*front.target) < 1e-12);  // at the depth of the data
   CHECK(*front.up == Vec3(0, 1, 0));
-  CHECK(front.view_angle == Approx(0.5 * 180 / 3.14159265358979));
+  CHECK(*front.view_angle == Approx(0.5 * 180 / 3.14159265358979));
+  CHECK(*lit_picture("{camera: {file: Front, view_angle: 30}}").stated.camera.view_angle == 30);  // also where it is the usual one
   const CameraParams second = lit_picture("{camera: file=2}").stated.camera;
   CHECK(*second.position == Vec3(0, 1, 9));
   CHECK(second.projection == ProjectionKind::parallel);

@@ -61,6 +61,35 @@ TEST_CASE("shutter: a ball that moves by less than itself is dark in its middle,
   CHECK(widths[1] / widths[0] == doctest::Approx(1.8).epsilon(0.1));
 }
 
+TEST_CASE("shutter: steps that state a time move, too, in the colours of the picture's own time") {
+  const auto drift = [](const std::string& time, const std::string& camera) {
+    PipelineFile file = parse_pipeline("sightglass: 1\nsteps:\n  a: {drift: {size: 17, time: " + time +
+                                           "}}\nshow:\n  - {surface: {lit: false}}\npicture: {size: 48x48, axes: false, triad: false, "
+                                           "legend: false, camera: {view: front, projection: parallel" +
+                                           camera + "}}",
+                                       "m.yaml", picture_vocabulary());
+    return file;
+  };
+  CameraParams camera;
+  camera.shutter = 2, camera.moments = 2;
+  const auto moments = moments_of(drift("3", ""), camera);
+  REQUIRE(moments.size() == 2);
+  CHECK(word_value(moments[0].steps[0].words, "time") == "2.5");
+  CHECK(word_value(moments[1].steps[0].words, "time") == "3.5");
+  Context context;
+  PipelineFile sharp = drift("3", ""), still = drift("3", ", shutter: 1e-12, moments: 2"), blurred = drift("3", ", shutter: 2, moments: 4");
+  const Image image = make_picture(sharp, {}, context).image;
+  CHECK(make_picture(still, {}, context).image.pixels == image.pixels);
+  CHECK(make_picture(blurred, {}, context).image.pixels != image.pixels);
+  // Nothing moves: told.
+  std::string said;
+  context.on_log = [&](LogLevel, std::string_view text) { said += text; };
+  PipelineFile rests = parse_pipeline("sightglass: 1\nsteps:\n  a: {tangle: {size: 9}}\npicture: {size: 8x8, camera: {shutter: 1}}",
+                                      "r.yaml", picture_vocabulary());
+  make_picture(rests, {}, context);
+  CHECK(test::contains(said, "nothing moves"));
+}
+
 TEST_CASE("shutter: the mean is that of light, not of its codes, and transparent pixels count by their alpha") {
   Image black(1, 1, 4), white(1, 1, 4);
   white.pixels = {255, 255, 255, 255}, black.pixels = {0, 0, 0, 255};
