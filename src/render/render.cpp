@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "data/memory/memory_budget.h"
 #include "render/composite/background.h"
+#include "render/composite/marks.h"
 #include "render/raster/raster.h"
 #include "render/trace/trace.h"
 #include "render/volume/volume.h"
@@ -88,18 +89,30 @@ std::string unreached(const TraceReport& report, const LightOptions& light) {
   return fmt::format("; noise={} was not reached everywhere with paths={}", light.noise, light.paths);
 }
 
-Frame render_light(const Scene& scene, const Camera& camera, const RenderOptions& options, TraceReport& report, Context& context) {
+Frame render_light(const Scene& whole, const Camera& camera, const RenderOptions& options, TraceReport& report, Context& context) {
   check_picture_memory(options.width, options.height, 2);
+  Scene scene = whole;
+  const Scene beside = take_marks(scene);
+  std::optional<Frame> marks;
+  if (!beside.items.empty()) {
+    RenderOptions lines;
+    lines.width = options.width, lines.height = options.height;
+    Context silent(context, 0, 0.01);
+    silent.on_log = nullptr;
+    marks = render(beside, camera, lines, silent);
+  }
   LightWatch watch;
   watch.every = options.watch.every;
   if (options.watch.on_frame)
     watch.on_frame = [&](const Frame& light, const TraceReport& so_far) {
       Frame frame = light;
+      if (marks) put_marks(*marks, frame);
       composite_background(scene, frame);
       return options.watch.on_frame(frame, so_far);
     };
   Frame frame = trace_scene(scene, prepare_scene(scene, context), make_projection(camera, options.width, options.height), *options.light,
-                            report, context, watch);
+                            report, context, watch, marks ? &*marks : nullptr);
+  if (marks) put_marks(*marks, frame);
   composite_background(scene, frame);
   context.info(fmt::format("light: {}{}{}", light_text(report), unreached(report, *options.light),
                            options.light->denoise ? "; denoised, the error is that before" : ""));

@@ -63,6 +63,7 @@ struct LinesItem {
   bool lit = false;                       ///< light by the direction of the line
   double halo = 0;                        ///< pixels of border around lines that hide what is behind
   Vec3f halo_color{0.05f, 0.05f, 0.06f};  ///< sRGB
+  bool mark = false;                      ///< of the picture and not of the data, as axes are: it has no part in light
 };
 
 /// Every point of the dataset (or the vertices of a SurfaceMesh) as a round dot.

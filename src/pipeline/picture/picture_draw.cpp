@@ -85,7 +85,7 @@ LinesItem back_edges(const Box3& box, const Camera& camera) {
   LinesItem item;
   item.data = make_dataset(std::move(mesh));
   item.color = {0.69f, 0.69f, 0.71f};
-  item.width = 1;
+  item.width = 1, item.mark = true;
   return item;
 }
 

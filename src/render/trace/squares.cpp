@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "data/memory/memory_budget.h"
+#include "render/composite/marks.h"
 #include "render/prepare/shared_progress.h"
 #include "render/trace/integrators/first_met.h"
 #include "render/trace/light/luminance.h"
@@ -30,15 +31,19 @@ struct Square {
 
 class Drawing {
  public:
-  Drawing(const LitPicture& picture, const Integrator& integrator, Frame& frame, Plane<float>& variance, Plane<float>& error)
+  Drawing(const LitPicture& picture, const Integrator& integrator, Frame& frame, Plane<float>& behind, Plane<float>& variance,
+          Plane<float>& error)
       : picture_(picture),
         integrator_(integrator),
         frame_(frame),
+        behind_(behind),
         variance_(variance),
         error_(error),
         across_(size_t(frame.width + side - 1) / side),
         most_(uint32_t(picture.options.stop > 0 ? std::min(picture.options.stop, picture.options.paths) : picture.options.paths)),
-        squares_(across_ * (size_t(frame.height + side - 1) / side)) {}
+        squares_(across_ * (size_t(frame.height + side - 1) / side)) {
+    if (picture.backdrop.seen) behind_.assign(3 * frame.pixels(), 0);
+  }
 
   size_t size() const { return squares_.size(); }
   bool finished(size_t square) const { return squares_[square].reached || squares_[square].paths >= most_; }
@@ -66,8 +71,9 @@ class Drawing {
           const Vec2f in_picture{float(x) + in_pixel.x, float(y) + in_pixel.y};
           const Ray ray = picture_.camera.ray(in_picture, on_lens);
           const RayFootprint footprint = picture_.world.has_pictures() ? picture_.camera.footprint(in_picture) : RayFootprint();
-          sums[p].add(integrator_.along(picture_.world, ray, sampler, footprint),
-                      picture_.backdrop.seen ? picture_.backdrop.radiance(ray.direction) : picture_.around[size_t(y)]);
+          Vec3f around = picture_.backdrop.seen ? picture_.backdrop.radiance(ray.direction) : picture_.around[size_t(y)];
+          if (picture_.marks) around = seen_behind(*picture_.marks, pixel(at, p), around);
+          sums[p].add(integrator_.along(picture_.world, ray, sampler, footprint), around);
         }
       }
       told.paths = end, told.variance = 0;
@@ -83,9 +89,11 @@ class Drawing {
     const uint32_t n = squares_[square].paths;
     for (int p = 0; p < at.w * at.h; ++p) {
       const size_t i = pixel(at, p);
-      const Vec3 seen = picture_.backdrop.seen ? sums[p].light + sums[p].behind : sums[p].light;
-      for (int c = 0; c < 3; ++c) frame_.rgba[4 * i + size_t(c)] = float(seen[c] / n);
-      frame_.rgba[4 * i + 3] = picture_.backdrop.seen ? 1 : float(1 - sums[p].passed / n);
+      for (int c = 0; c < 3; ++c) {
+        frame_.rgba[4 * i + size_t(c)] = float(sums[p].light[c] / n);
+        if (picture_.backdrop.seen) behind_[3 * i + size_t(c)] = float(sums[p].behind[c] / n);
+      }
+      frame_.rgba[4 * i + 3] = float(1 - sums[p].passed / n);
       const double variance = n > 1 ? sums[p].variance(n) : 0;
       variance_[i] = float(variance), error_[i] = float(std::sqrt(displayed_variance(sums[p].mean(n), variance)));
     }
@@ -123,7 +131,7 @@ class Drawing {
   const Integrator& integrator_;
   const uint32_t pass_ = integrator_.pass();
   Frame& frame_;
-  Plane<float>&variance_, &error_;
+  Plane<float>&behind_, &variance_, &error_;
   size_t across_;
   uint32_t most_;
   std::vector<Square> squares_;
@@ -142,9 +150,16 @@ double PixelSum::variance(uint32_t n) const {
   return std::max(0.0, square / n - m * m) / (n - 1);
 }
 
-void draw_squares(const LitPicture& picture, const Integrator& integrator, Sweeps& sweeps, Frame& frame, Plane<float>& variance,
-                  TraceReport& report, Context& context) {
-  Drawing drawing(picture, integrator, frame, variance, report.planes.error);
+void add_behind(const Plane<float>& behind, Frame& frame) {
+  for (size_t i = 0; i < frame.pixels(); ++i) {
+    for (size_t c = 0; c < 3; ++c) frame.rgba[4 * i + c] += behind[3 * i + c];
+    frame.rgba[4 * i + 3] = 1;
+  }
+}
+
+void draw_squares(const LitPicture& picture, const Integrator& integrator, Sweeps& sweeps, Frame& frame, Plane<float>& behind,
+                  Plane<float>& variance, TraceReport& report, Context& context) {
+  Drawing drawing(picture, integrator, frame, behind, variance, report.planes.error);
   // In one go, pixels need no memory for their sums.
   if (!sweeps.any()) {
     SharedProgress progress(context, drawing.size(), "following light");
@@ -192,7 +207,9 @@ void draw_squares(const LitPicture& picture, const Integrator& integrator, Sweep
     if (left.empty()) break;
     if (!sweeps.wanted()) continue;
     drawing.report(report);
-    if (!sweeps.show(frame, report)) break;
+    Frame shown;
+    if (!behind.empty()) shown = frame, add_behind(behind, shown);
+    if (!sweeps.show(behind.empty() ? frame : shown, report)) break;
   }
   drawing.report(report);
   if (!left.empty()) report.stopped = int(drawing.paths(left[0]));

@@ -23,6 +23,7 @@ struct LitPicture {
   const Backdrop& backdrop;
   std::vector<Vec3f> around;  ///< of each row: the background that is seen where nothing is met
   const LightOptions& options;
+  const Frame* marks = nullptr;  ///< before that, or before the backdrop
 };
 
 /// Sums over the paths of a pixel.
@@ -37,10 +38,13 @@ struct PixelSum {
   double variance(uint32_t n) const;
 };
 
-/// Fills a frame with linear premultiplied light and what the middle of each pixel sees, `variance` with those of the pixels' luminance,
-/// and the report, whose plane of errors has the frame's size. In one go, or where sweeps are wanted as many paths everywhere at a time,
-/// with the same bytes. The same bytes for any number of threads.
-void draw_squares(const LitPicture& picture, const Integrator& integrator, Sweeps& sweeps, Frame& frame, Plane<float>& variance,
-                  TraceReport& report, Context& context);
+/// Adds what is seen behind the light of a frame, three numbers a pixel, which then is opaque.
+void add_behind(const Plane<float>& behind, Frame& frame);
+
+/// Fills a frame with linear premultiplied light and what the middle of each pixel sees, `behind` with what is seen of the backdrop (empty
+/// where there is none), `variance` with those of the pixels' luminance, and the report, whose plane of errors has the frame's size. In one
+/// go, or where sweeps are wanted as many paths everywhere at a time, with the same bytes. The same bytes for any number of threads.
+void draw_squares(const LitPicture& picture, const Integrator& integrator, Sweeps& sweeps, Frame& frame, Plane<float>& behind,
+                  Plane<float>& variance, TraceReport& report, Context& context);
 
 }  // namespace sg::trace

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "render/composite/background.h"
+#include "render/composite/marks.h"
 #include "render/prepare/picture_set.h"
 #include "render/trace/denoise/denoise.h"
 #include "render/trace/denoise/features.h"
@@ -82,11 +83,13 @@ void tell_what_is_left_out(const Scene& scene, Context& context) {
 }
 
 /// What is around the scene, as the middle of each pixel sees it.
-void put_behind(Frame& frame, const PictureCamera& camera, const Backdrop& backdrop) {
+void put_behind(Frame& frame, const PictureCamera& camera, const Backdrop& backdrop, const Frame* marks) {
   for (int y = 0; y < frame.height; ++y)
     for (int x = 0; x < frame.width; ++x) {
-      float* rgba = &frame.rgba[4 * (size_t(y) * size_t(frame.width) + size_t(x))];
-      const Vec3f seen = backdrop.radiance(camera.ray({float(x) + 0.5f, float(y) + 0.5f}).direction);
+      const size_t i = size_t(y) * size_t(frame.width) + size_t(x);
+      float* rgba = &frame.rgba[4 * i];
+      Vec3f seen = backdrop.radiance(camera.ray({float(x) + 0.5f, float(y) + 0.5f}).direction);
+      if (marks) seen = seen_behind(*marks, i, seen);
       for (int c = 0; c < 3; ++c) rgba[c] += (1 - rgba[3]) * seen[c];
       rgba[3] = 1;
     }
@@ -95,7 +98,7 @@ void put_behind(Frame& frame, const PictureCamera& camera, const Backdrop& backd
 }  // namespace
 
 Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Projection& projection, const LightOptions& options,
-                  TraceReport& report, Context& context, const LightWatch& watch) {
+                  TraceReport& report, Context& context, const LightWatch& watch, const Frame* marks) {
   check(options);
   Backdrop backdrop;
   const PictureCamera* eye = nullptr;
@@ -104,7 +107,7 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
     whole_watch.on_frame = [&](const Frame& frame, const TraceReport& so_far) {
       if (!backdrop.seen) return watch.on_frame(frame, so_far);
       Frame all = frame;
-      put_behind(all, *eye, backdrop);
+      put_behind(all, *eye, backdrop, marks);
       return watch.on_frame(all, so_far);
     };
   Sweeps sweeps(options, whole_watch);
@@ -119,10 +122,10 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
   report = {};
   report.planes.error.assign(frame.pixels(), 0);
   if (world.empty()) {
-    if (backdrop.seen) put_behind(frame, camera, backdrop);
+    if (backdrop.seen) put_behind(frame, camera, backdrop, marks);
     return frame;
   }
-  Plane<float> variance;
+  Plane<float> variance, behind;
   variance.assign(frame.pixels(), 0);
   if (lights_whole_picture(options.integrator)) {
     if (std::any_of(prepared->items.begin(), prepared->items.end(), [](const auto& i) { return i.pictures && i.pictures->isolines; }))
@@ -132,16 +135,17 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
     if (options.integrator == IntegratorKind::light) tell_what_is_left_out(scene, context);
     draw_whole_picture(world, camera, options, sweeps, frame, variance, report, context);
   } else {
-    LitPicture picture{world, camera, backdrop, {}, options};
+    LitPicture picture{world, camera, backdrop, {}, options, marks};
     for (int y = 0; y < frame.height; ++y) picture.around.push_back(background_of_row(scene, projection, y));
-    draw_squares(picture, *integrator, sweeps, frame, variance, report, context);
+    draw_squares(picture, *integrator, sweeps, frame, behind, variance, report, context);
   }
   if (options.denoise || options.features) {
     const Features features = features_of(world, camera, options, context);
     if (options.denoise) denoise(features, variance, frame, context);
     if (options.features) keep_features(features, projection, report.planes);
   }
-  if (backdrop.seen && lights_whole_picture(options.integrator)) put_behind(frame, camera, backdrop);
+  if (!behind.empty()) add_behind(behind, frame);
+  else if (backdrop.seen) put_behind(frame, camera, backdrop, marks);
   return frame;
 }
 

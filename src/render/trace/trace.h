@@ -16,7 +16,8 @@ namespace sg {
 /// before `denoise`. The same bytes for any number of threads, with `watch` and without; options.seconds alone makes a picture that depends
 /// on the machine, and report.stopped tells how to have it again. `watch` gets pictures that are not denoised. Throws Error(usage) for
 /// volumes that are no matter (another mode than composite), and for options out of range.
+/// `marks`: what stands before an environment that is seen, in a frame of the same size (put_marks() puts it on what is transparent).
 Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Projection& projection, const LightOptions& options,
-                  TraceReport& report, Context& context, const LightWatch& watch = {});
+                  TraceReport& report, Context& context, const LightWatch& watch = {}, const Frame* marks = nullptr);
 
 }  // namespace sg
