@@ -58,7 +58,7 @@ export class Session {
     this.changed();
   }
 
-  /** Sets words of a step, of a way to show, or of the picture. */
+  /** Sets words of a step, of a way to show, of the picture, of a light, of the environment or of a node. */
   set(at: string, words: Record<string, string | null>, live = false): void {
     this.edit([{ at, set: words }], live);
   }
@@ -73,9 +73,21 @@ export class Session {
   wordsAt(at: string): Record<string, string> {
     const s = this.state;
     if (!s) return {};
-    if (at === "picture") return s.picture ?? {};
-    if (at.startsWith("show/")) return s.show[Number(at.slice(5))]?.words ?? {};
-    return this.step(at.slice(6))?.words ?? {};
+    const name = at.slice(at.indexOf("/") + 1);
+    switch (at.split("/", 1)[0]) {
+      case "picture":
+        return s.picture ?? {};
+      case "environment":
+        return s.environment?.words ?? {};
+      case "show":
+        return s.show[Number(name)]?.words ?? {};
+      case "lights":
+        return s.lights[Number(name)]?.words ?? {};
+      case "scene":
+        return s.scene.find((n) => n.name === name)?.words ?? {};
+      default:
+        return this.step(name)?.words ?? {};
+    }
   }
 
   step(name: string): Step | undefined {
