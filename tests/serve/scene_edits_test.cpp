@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lights, the environment and nodes, as a window edits them.
+#include "base/text/utf8.h"
 #include "pipeline/picture/picture.h"
 #include "serve/renderer/local_renderer.h"
 #include "serve/session/session.h"
@@ -150,6 +151,20 @@ TEST_CASE("session: nodes are told, moved, and take in what is shown") {
   while (state["by"].whole() != 900);
   CHECK(state["scene"].size() == 5);
   CHECK(state["show"].size() == 4);
+}
+
+TEST_CASE("session: any name of a node is kept, and told as it was given") {
+  const auto session = session_of("show:\n  - {surface: , of: skin}\n");
+  Window window(*session);
+  window.next("state");
+  for (const std::string name : {"null", "7", "a b: c", "x/y", "{t}", "#", "a\\nb", "\\u00e4", "- [", "~"}) {
+    Json state = after(window, "{'add':'node','name':'" + name + "'},{'at':'scene/" + name + "','set':{'angle':'5'}}");
+    REQUIRE(state["scene"].size() == 1);
+    CHECK(state["scene"][0]["words"]["angle"].text() == "5");
+    CHECK(text_of_bytes(file_of(state).scene.at(0).name) == state["scene"][0]["name"].text());
+    state = after(window, "{'remove':'scene/" + name + "'}");
+    CHECK(state["scene"].size() == 0);
+  }
 }
 
 TEST_CASE("session: what cannot be of a node is refused at its control") {

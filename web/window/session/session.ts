@@ -3,6 +3,7 @@
 import type { Camera, Cursor, Edit, FrameHeader, Problem, ServerMessage, Shown, State, Step } from "../protocol";
 import { Edits } from "./edits";
 import { Connection, Refused, type Connected } from "./socket";
+import { wordsAt } from "./words_at";
 
 export interface People {
   count: number;
@@ -71,23 +72,7 @@ export class Session {
   }
 
   wordsAt(at: string): Record<string, string> {
-    const s = this.state;
-    if (!s) return {};
-    const name = at.slice(at.indexOf("/") + 1);
-    switch (at.split("/", 1)[0]) {
-      case "picture":
-        return s.picture ?? {};
-      case "environment":
-        return s.environment?.words ?? {};
-      case "show":
-        return s.show[Number(name)]?.words ?? {};
-      case "lights":
-        return s.lights[Number(name)]?.words ?? {};
-      case "scene":
-        return s.scene.find((n) => n.name === name)?.words ?? {};
-      default:
-        return this.step(name)?.words ?? {};
-    }
+    return this.state ? wordsAt(this.state, at) : {};
   }
 
   step(name: string): Step | undefined {

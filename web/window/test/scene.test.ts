@@ -4,6 +4,7 @@ import { hexOf, hexOfNumbers, knownHex, numbersOfHex } from "../controls/color_t
 import { freeName } from "../panels/nodes";
 import type { SceneNode, Shown, State, Step } from "../protocol";
 import { selectionAfter } from "../session/selection";
+import { wordsAt } from "../session/words_at";
 
 const light = { kind: "sphere", words: {} };
 const node = (name: string, parent = ""): SceneNode => ({ name, in: parent, words: {}, copies: 0, copies_of: "", keys: 0 });
@@ -23,6 +24,20 @@ describe("what is selected", () => {
     expect(selectionAfter("scene/lid", state({}), state({ scene: [node("lid")] }))).toBe("show/0");
     expect(selectionAfter("show/0", state({ show: [] }), null)).toBe("picture");
   });
+});
+
+it("words are found by their place", () => {
+  const s = state({
+    show: [{ ...show, words: { color: "red" } }],
+    steps: [{ name: "skin", operation: "contour", words: { values: "1" }, from: [] }],
+    lights: [light, { kind: "sun", words: { haze: "2" } }],
+    environment: { kind: "sky", words: { elevation: "7" } },
+    scene: [{ ...node("a/b c"), words: { angle: "5" } }],
+    picture: { title: "T" },
+  });
+  const places: [string, object][] = [["show/0", { color: "red" }], ["steps/skin", { values: "1" }], ["lights/1", { haze: "2" }], ["environment", { elevation: "7" }], ["scene/a/b c", { angle: "5" }], ["picture", { title: "T" }]];
+  for (const [at, words] of places) expect(wordsAt(s, at), at).toEqual(words);
+  for (const at of ["show/1", "steps/none", "lights/2", "scene/none"]) expect(wordsAt(s, at), at).toEqual({});
 });
 
 it("a node gets a name that no other has", () => {
