@@ -67,6 +67,7 @@ export async function scene(test, o, browser) {
   });
 
   await test("what is around is chosen, set, and usual again", async () => {
+    await tab("scene");
     const around = page.getByLabel("What is around");
     await andSettle(page, () => around.selectOption("even"));
     const form = page.locator("section:has(h2:text('Around'))");
@@ -87,6 +88,7 @@ export async function scene(test, o, browser) {
   });
 
   await test("what is shown goes into a node, which is moved by typing and dragging, and undone", async () => {
+    await tab("scene");
     await andSettle(page, () => page.getByLabel("Add a node", { exact: true }).selectOption({ index: 1 }));
     await page.waitForSelector("h2:text-matches('^Node ')");
     const still = await sum();

@@ -71,7 +71,7 @@ export function freeName(s: State, base: string): string {
 function addNode(app: App, s: State, parent: string): TemplateResult {
   const add = (value: string): void => {
     const show = s.show[Number(value)];
-    const name = freeName(s, value !== "none" && show ? show.of : "node");
+    const name = freeName(s, value !== "none" && show ? show.of : "group");
     const edits: Edit[] = [{ add: "node", name, in: parent, set: {} }];
     if (value !== "none" && show) edits.push({ move: `show/${value}`, to: name });
     app.session.edit(edits);
