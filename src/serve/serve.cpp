@@ -19,6 +19,7 @@
 #include "serve/guard/users.h"
 #include "serve/renderer/local_renderer.h"
 #include "serve/renderer/worker/worker_renderer.h"
+#include "serve/session/forbidden.h"
 #include "serve/session/sessions.h"
 
 namespace sg::serve {

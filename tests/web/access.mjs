@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { AxeBuilder, andSettle, ownPage, seen, settled, shot } from "./browser.mjs";
 
-async function noSeriousFindings(page, where) {
+export async function noSeriousFindings(page, where) {
   const { violations } = await new AxeBuilder({ page }).analyze();
   const serious = violations.filter((v) => v.impact === "serious" || v.impact === "critical");
   assert.deepEqual(serious.map((v) => `${where}: ${v.id}: ${v.nodes.slice(0, 3).map((n) => n.html.slice(0, 140)).join(" | ")}`), []);
@@ -17,7 +17,7 @@ export async function accessibility(test, o, browser, page, address) {
       await other.goto(address);
       await settled(other);
       assert.equal(await other.evaluate(() => document.documentElement.dataset.theme), colorScheme);
-      for (const name of ["steps", "look", "color", "table", "plot", "numbers", "file"]) {
+      for (const name of ["steps", "look", "scene", "color", "table", "plot", "numbers", "file"]) {
         await other.click(`#tab-${name}`);
         await other.waitForTimeout(300);
         await noSeriousFindings(other, name);

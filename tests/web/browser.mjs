@@ -44,6 +44,13 @@ export function flatFile(o) {
   return file;
 }
 
+/** A ball, as a surface. */
+export function ballFile(o) {
+  const file = join(scratch, "ball.vtp");
+  if (!existsSync(file)) execFileSync(o.program, ["convert", "--source", "sphere size=33", "-f", "contour values=0", "-o", file], { stdio: "ignore" });
+  return file;
+}
+
 /** A series of three files, as a pattern. */
 export function seriesFile(o) {
   if (o.series) return o.series;

@@ -13,12 +13,13 @@ import { Probe } from "./questions/probe";
 import { Histograms } from "./questions/histograms";
 import { Company } from "./session/company";
 import { Player } from "./session/player";
+import { selectionAfter } from "./session/selection";
 import { Session } from "./session/session";
 import { levelDrag } from "./view/window_level";
 import { follow, type Link } from "./view/link";
 import { View } from "./view/view";
 
-export type Tab = "steps" | "look" | "color" | "table" | "plot" | "numbers" | "file";
+export type Tab = "steps" | "look" | "scene" | "color" | "table" | "plot" | "numbers" | "file";
 export type Tool = "turn" | "pan" | "zoom" | "window" | "line" | "measure" | "lasso" | "rectangle";
 export type Dialog = "help" | "add" | "save" | "legend" | null;
 
@@ -42,7 +43,7 @@ export class App {
   tool: Tool = "turn";
   tab: Tab = "look";
   panelOpen = window.innerWidth > 700;
-  selected = "show/0"; // of show/N, steps/NAME, picture
+  selected = "show/0"; // of show/N, steps/NAME, lights/N, scene/NAME, picture
   dialog: Dialog = null;
   message = "";
   /** The pipeline as it was when the window opened. */
@@ -208,16 +209,7 @@ export class App {
       for (const v of this.views) if (!v.camera && state.camera && v.drawing.newest === 0) v.look(state.camera, false, false);
       document.title = state.title ? `${state.title} – Sightglass` : "Sightglass";
     }
-    if (this.session.wordsAt(this.selected) && this.selected.startsWith("show/") && !state.show[Number(this.selected.slice(5))])
-      this.selected = state.show.length > 0 ? `show/${state.show.length - 1}` : "picture";
-    if (this.selected.startsWith("steps/") && !state.steps.some((s) => `steps/${s.name}` === this.selected)) this.selected = "show/0";
-    // What was just added is what one wants to adjust.
-    if (before && state.steps.length > before.steps.length) {
-      const added = state.steps.find((s) => !before.steps.some((b) => b.name === s.name));
-      if (added) this.selected = `steps/${added.name}`;
-    } else if (before && state.show.length > before.show.length) {
-      this.selected = `show/${state.show.length - 1}`;
-    }
+    this.selected = selectionAfter(this.selected, state, before);
     this.histograms.stateCame();
   }
 }

@@ -36,10 +36,13 @@ export interface Catalog {
   read: Entry;
   camera: Entry;
   picture: Entry;
+  lights: Entry[];
+  environments: Entry[];
+  nodes: Entry[];
 }
 
 const noEntry: Entry = { name: "", kind: "", sentence: "", params: { properties: {} } };
-export const noCatalog: Catalog = { sources: [], operations: [], show: [], read: noEntry, camera: noEntry, picture: noEntry };
+export const noCatalog: Catalog = { sources: [], operations: [], show: [], read: noEntry, camera: noEntry, picture: noEntry, lights: [], environments: [], nodes: [] };
 
 export const stepEntry = (catalog: Catalog, operation: string): Entry | undefined =>
   operation === "read"
@@ -47,6 +50,11 @@ export const stepEntry = (catalog: Catalog, operation: string): Entry | undefine
     : (catalog.operations.find((o) => o.name === operation) ?? catalog.sources.find((o) => o.name === operation));
 
 export const showEntry = (catalog: Catalog, kind: string): Entry | undefined => catalog.show.find((o) => o.name === kind);
+
+export const named = (entries: Entry[], name: string): Entry | undefined => entries.find((e) => e.name === name);
+
+/** Whether it must be told a file, which a window cannot choose. */
+export const wantsFile = (entry: Entry): boolean => (entry.params.required ?? []).some((w) => entry.params.properties[w]?.unit === "file");
 
 /** Operations and sources that match all words of the query, those whose name begins with it first. */
 export function search(entries: Entry[], query: string): Entry[] {

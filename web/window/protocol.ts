@@ -55,8 +55,25 @@ export interface Transfer {
 export interface Shown {
   kind: string;
   of: string;
+  in?: string; // the node; "" where the data lie
   words: Words;
   transfer?: Transfer | null;
+}
+
+/** A light of the picture, or its environment. */
+export interface Light {
+  kind: string;
+  words: Words;
+}
+
+/** A place in the scene, in which things are shown. */
+export interface SceneNode {
+  name: string;
+  in: string; // the node that it stands in; "" for none
+  words: Words;
+  copies: number;
+  copies_of: string; // the step at whose points the copies are; "" for none
+  keys: number;
 }
 
 export interface State {
@@ -72,6 +89,9 @@ export interface State {
   steps: Step[];
   show: Shown[];
   picture: Words;
+  lights: Light[];
+  environment: Light | null;
+  scene: SceneNode[];
   times: number[];
   time: number | null;
   bounds: [number, number, number, number, number, number] | null;
@@ -84,7 +104,10 @@ export interface State {
 export type Edit =
   | { at: string; set: Record<string, string | null> }
   | { add: "step"; operation: string; from: string[]; set: Words; show?: boolean }
-  | { add: "show"; kind: string; of: string; set: Words }
+  | { add: "show"; kind: string; of: string; in?: string; set: Words }
+  | { add: "light" | "environment"; kind: string; set: Words }
+  | { add: "node"; name: string; in: string; set: Words }
+  | { move: string; to: string }
   | { remove: string };
 
 export interface Problem {

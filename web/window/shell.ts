@@ -13,6 +13,7 @@ import { lookPanel } from "./panels/look";
 import { numbersPanel } from "./panels/numbers";
 import { plotPanel } from "./panels/plot";
 import { saveDialog } from "./panels/save";
+import { scenePanel } from "./panels/scene";
 import { stepsPanel } from "./panels/steps";
 import { tablePanel } from "./panels/table";
 import { timeline } from "./panels/timeline";
@@ -23,7 +24,7 @@ import { colorPanel } from "./transfer/panel";
 import { overlay } from "./view/overlay";
 import { plain } from "./words";
 
-const tabs: [Tab, string][] = [["steps", "Pipeline"], ["look", "Look"], ["color", "Colour"], ["table", "Table"], ["plot", "Plot"], ["numbers", "Numbers"], ["file", "Session"]];
+const tabs: [Tab, string][] = [["steps", "Pipeline"], ["look", "Look"], ["scene", "Scene"], ["color", "Colour"], ["table", "Table"], ["plot", "Plot"], ["numbers", "Numbers"], ["file", "Session"]];
 
 export function draw(app: App, root: HTMLElement): void {
   render(shell(app), root);
@@ -73,6 +74,7 @@ function panel(app: App): TemplateResult {
   const content: Record<Tab, () => TemplateResult> = {
     steps: () => stepsPanel(app),
     look: () => lookPanel(app),
+    scene: () => scenePanel(app),
     color: () => colorPanel(app),
     table: () => tablePanel(app),
     plot: () => plotPanel(app),

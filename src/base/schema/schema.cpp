@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/schema/color_params.h"
 #include "base/schema/other_words.h"
 #include "base/text/text.h"
 
@@ -57,11 +58,10 @@ class Check {
   // How an element is told: unquoted, as written.
   std::string told(const Value& element) const { return given_.index() == element.index() ? written_ : value_text(element); }
 
-  std::string a_number() const { return decl_.unit_.empty() || decl_.unit_[0] == '@' ? "a number" : "a number in " + decl_.unit_; }
   double number(const Value& v) const {
     if (auto* i = std::get_if<int64_t>(&v)) return double(*i);
     if (auto* d = std::get_if<double>(&v)) return *d;
-    fail(a_number());
+    fail(number_text(decl_));
   }
   int64_t whole(double d) const {
     if (!(d == std::floor(d) && std::abs(d) < 0x1p63)) fail("a whole number", told(d));

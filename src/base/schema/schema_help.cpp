@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/schema/color_params.h"
 #include "base/schema/field_kinds.h"
 #include "base/schema/schema.h"
 #include "base/text/text.h"
@@ -36,7 +37,7 @@ std::string params_help(const Schema& schema) {
     for (const std::string& c : d.choices_) facts += (facts.empty() ? "" : "|") + c;
     if (std::string t = items_text(d); !t.empty()) facts += ", " + t + " of them";
     if (std::string t = range_text(d); !t.empty()) facts += ", " + t;
-    if (!d.unit_.empty()) facts += d.unit_[0] == '@' ? ", in units of '" + d.unit_.substr(1) + "'" : ", in " + d.unit_;
+    if (!d.unit_.empty() && !is_color(d)) facts += d.unit_[0] == '@' ? ", in units of '" + d.unit_.substr(1) + "'" : ", in " + d.unit_;
     if (d.required_) facts += ", required";
     else if (std::string t = param_text(d); !t.empty()) facts += ", default " + t;
     r += fmt::format("  {:<{}}  {} [{}]\n", d.name, width, d.doc, facts);

@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
-#include "base/schema/schema.h"
+#include "base/schema/color_params.h"
 #include "base/text/text.h"
 
 namespace sg {
@@ -46,7 +46,7 @@ class Parse {
   }
   double number(std::string_view t) const {
     const auto v = parse_double(t);
-    if (!v) fail(decl_.unit_.empty() || decl_.unit_[0] == '@' ? "a number" : "a number in " + decl_.unit_, t);
+    if (!v) fail(number_text(decl_), t);
     return *v;
   }
   int64_t integer(std::string_view t) const {

@@ -2,6 +2,7 @@
 // Trails: where particles were just before a time, for moving pictures like weather maps.
 #pragma once
 #include "base/context.h"
+#include "base/schema/color_params.h"
 #include "base/schema/schema.h"
 #include "data/dataset.h"
 
@@ -19,7 +20,7 @@ inline void describe(Schema& s, TrailsParams& p) {
   s("length", p.length, "Duration of a trail before that time; 0: a tenth of the duration of most lines.").unit("@field").at_least(0);
   s("field", p.field, "Point field of times that increase along each line; default: 'time', 'integration time' or 'IntegrationTime'.")
       .takes(fields::point_scalars);
-  s("color", p.color, "Red, green and blue (0 to 1) of the field 'trail'.").range(0, 1);
+  s("color", p.color, "Red, green and blue (0 to 1) of the field 'trail'.").unit(color_unit).range(0, 1);
   s("heads", p.heads, "Add a vertex at the current position of each particle.");
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/schema/color_params.h"
 #include "base/text/text.h"
 #include "color/parse_color.h"
 #include "data/memory/memory_budget.h"
@@ -19,7 +20,7 @@ namespace sg {
 
 void describe(Schema& s, PictureParams& p) {
   s("size", p.size, "Width and height in pixels, e.g. 1920x1080; HD is that, 4K 3840x2160, 8K 7680x4320.");
-  s("background", p.background, "Background colour, two colours bottom/top for a gradient, or 'transparent'.");
+  s("background", p.background, "Background colour, two colours bottom/top for a gradient, or 'transparent'.").unit(color_unit);
   s("title", p.title,
     "Title above the picture; {t} is the time of the data, {t:.2f} with two decimals, in a series {n} the number of the picture and "
     "{count} that of all.");

@@ -66,7 +66,7 @@ def python_name(name: str) -> str:
 
 def _line(name: str, schema: dict[str, Any]) -> str:
     notes = []
-    if "unit" in schema:
+    if "unit" in schema and not schema["unit"].endswith("color"):  # which marks colours for windows
         notes.append(f"in {schema['unit']}")
     if "enum" in schema:
         notes.append(" | ".join(map(str, schema["enum"])))

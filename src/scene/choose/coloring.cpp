@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/schema/color_params.h"
 #include "scene/choose/own_materials.h"
 #include "scene/choose/telling_field.h"
 
@@ -18,11 +19,11 @@ void describe(Schema& s, ColoringParams& p) {
   s("range", p.range, "Values at the two ends of the map; default: the range of the data.").unit("@field");
   s("scale", p.scale, "How values are mapped to colours.");
   s("linear_threshold", p.linear_threshold, "symlog: linear between minus and plus this; 0: a thousandth of the range.").at_least(0);
-  s("below", p.below, "Colour of values below the range; default: the first colour.");
-  s("above", p.above, "Colour of values above the range; default: the last colour.");
-  s("nan", p.nan, "Colour where there is no value.");
+  s("below", p.below, "Colour of values below the range; default: the first colour.").unit(color_unit);
+  s("above", p.above, "Colour of values above the range; default: the last colour.").unit(color_unit);
+  s("nan", p.nan, "Colour where there is no value.").unit(color_unit);
   s("clamp", p.clamp, "Clamp values outside the range to the end colours; false leaves them out of the picture.");
-  s("color", p.color, "One colour instead of a field: #rrggbb, r,g,b or a name.");
+  s("color", p.color, "One colour instead of a field: #rrggbb, r,g,b or a name.").unit(color_unit);
   s("legend", p.legend, "Draw a legend of the colours.");
   s("legend_title", p.legend_title, "Title of the legend; default: the field's name.");
   s("legend_unit", p.legend_unit, "Unit in the legend's title; default: the one that the data states.");

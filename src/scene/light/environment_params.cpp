@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/text/quoted_word.h"
+#include "base/schema/color_params.h"
 #include "base/text/text.h"
 #include "scene/light/light_params.h"
+#include "scene/light/light_text.h"
 
 namespace sg {
 
@@ -23,7 +24,6 @@ constexpr EnvironmentKind environment_kind(std::string_view name, std::string_vi
   return k;
 }
 
-constexpr std::string_view picture_kind = "panorama";
 constexpr std::string_view background_doc = "Show it behind the data, in the place of the picture's background.";
 
 const EnvironmentKind* kind_named(std::string_view name) {
@@ -32,23 +32,11 @@ const EnvironmentKind* kind_named(std::string_view name) {
   return nullptr;
 }
 
-// A word that is no kind but has a dot or a slash is a file's name.
-bool is_file(const std::string& word) {
-  return !kind_named(word) && word.find('=') == std::string::npos && word.find_first_of("./") != std::string::npos;
-}
-
-// The kind, then its words.
-std::vector<std::string> words_of(const std::string& text) {
-  std::vector<std::string> all = quoted_words(text);
-  if (!all.empty() && is_file(all[0])) all[0] = "file=" + all[0], all.insert(all.begin(), std::string(picture_kind));
-  return all;
-}
-
 }  // namespace
 
 void describe(Schema&, NoEnvironmentParams&) {}
 void describe(Schema& s, EvenEnvironmentParams& p) {
-  s("color", p.color, "Colour of the light.");
+  s("color", p.color, "Colour of the light.").unit(color_unit);
   s("brightness", p.brightness, "How bright a white surface is in it: 1 is white.").range(0, 1e9).positive();
   s("background", p.background, std::string(background_doc));
 }
@@ -89,24 +77,25 @@ std::span<const EnvironmentKind> environment_kinds() {
       environment_kind<NoEnvironmentParams>("none", "Darkness around the lights."),
       environment_kind<EvenEnvironmentParams>("even", "The same light from everywhere."),
       environment_kind<SkyEnvironmentParams>("sky", "The sky of a sun at some height, computed from the air, with that sun."),
-      environment_kind<PictureEnvironmentParams>(picture_kind, "Light by a picture of all directions; the name of the file alone will do."),
+      environment_kind<PictureEnvironmentParams>(picture_environment,
+                                                 "Light by a picture of all directions; the name of the file alone will do."),
   };
   return kinds;
 }
 
 std::optional<EnvironmentParams> parse_environment(const std::string& text) {
-  const std::vector<std::string> all = words_of(text);
-  if (all.empty()) return {};
-  const EnvironmentKind* found = kind_named(all[0]);
+  const std::optional<LightText> all = environment_of_text(text);
+  if (!all) return {};
+  const EnvironmentKind* found = kind_named(all->kind);
   if (!found) {
     std::vector<std::string> names;
     for (const EnvironmentKind& k : environment_kinds()) names.emplace_back(k.name);
-    fail_usage(fmt::format("unknown environment '{}'", all[0]), "environment",
-               unknown_name_hint(all[0], names) + ", or the name of a file");
+    fail_usage(fmt::format("unknown environment '{}'", all->kind), "environment",
+               unknown_name_hint(all->kind, names) + ", or the name of a file");
   }
   const std::string owner = fmt::format("environment {}", found->name);
   ParamSet params = found->make_params();
-  set_params(params.schema, {all.begin() + 1, all.end()}, owner);
+  set_params(params.schema, all->words, owner);
   EnvironmentParams e = found->take(params);
   if (const auto* even = std::get_if<EvenEnvironmentParams>(&e)) light_color(even->color);
   if (const auto* picture = std::get_if<PictureEnvironmentParams>(&e); picture && picture->file.empty())
@@ -126,10 +115,10 @@ bool names_file(const std::string& word) {
 
 std::string environment_file(const std::string& text) {
   try {
-    const std::vector<std::string> all = words_of(text);
-    if (all.empty() || !equal_ignoring_case(all[0], picture_kind)) return {};
+    const std::optional<LightText> all = environment_of_text(text);
+    if (!all || !equal_ignoring_case(all->kind, picture_environment)) return {};
     std::string file;
-    for (const std::string& w : all)
+    for (const std::string& w : all->words)
       if (names_file(w)) file = w.substr(w.find('=') + 1);
     return file;
   } catch (const Error&) {  // a quote that is not closed: parse_environment() tells of it
@@ -138,9 +127,11 @@ std::string environment_file(const std::string& text) {
 }
 
 std::string with_environment_file(const std::string& text, const std::string& file) {
-  std::string r;
-  for (const std::string& w : words_of(text)) r += (r.empty() ? "" : " ") + quoted_word(names_file(w) ? "file=" + file : w);
-  return r;
+  std::optional<LightText> all = environment_of_text(text);
+  if (!all) return {};
+  for (std::string& w : all->words)
+    if (names_file(w)) w = "file=" + file;
+  return text_of_light(*all);
 }
 
 }  // namespace sg

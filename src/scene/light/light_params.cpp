@@ -6,9 +6,11 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/schema/color_params.h"
 #include "base/text/text.h"
 #include "color/parse_color.h"
 #include "image/image.h"
+#include "scene/light/light_text.h"
 
 namespace sg {
 
@@ -36,7 +38,7 @@ void describe_brightness(Schema& s, double& brightness) {
   s("brightness", brightness, "How bright a white surface at the target is that faces the light: 1 is white.").range(0, 1e9).positive();
 }
 void describe_strength(Schema& s, LightStrength& l) {
-  s("color", l.color, "Colour of the light.");
+  s("color", l.color, "Colour of the light.").unit(color_unit);
   describe_brightness(s, l.brightness);
   s("power", l.power,
     "Instead of brightness: all the light that it gives off, whatever its size and distance; 4 pi^2 from a point makes white what is at a "
@@ -130,7 +132,7 @@ void describe(Schema& s, DirectionalLightParams& p) {
   describe_way(s, p.way);
   s("direction", p.direction, "Instead of these: direction towards the light in the data's coordinates.");
   s("angle", p.angle, "Angle that it fills in the sky; shadows are the softer the larger it is, sharp at 0.").unit("deg").range(0, 170);
-  s("color", p.color, "Colour of the light.");
+  s("color", p.color, "Colour of the light.").unit(color_unit);
   describe_brightness(s, p.brightness);
 }
 void describe(Schema& s, SphereLightParams& p) {
@@ -177,22 +179,20 @@ std::span<const LightKind> light_kinds() {
 std::vector<LightParams> parse_lights(const std::string& text) {
   constexpr size_t most = 1000;
   std::vector<LightParams> lights;
-  for (const std::string_view part : split(text, ';')) {
-    const std::vector<std::string> all = quoted_words(part);
-    if (all.empty()) continue;
+  for (const auto& [kind, words] : lights_of_text(text)) {
     std::vector<std::string> names;
     const LightKind* found = nullptr;
     for (const LightKind& k : light_kinds()) {
       names.emplace_back(k.name);
-      if (equal_ignoring_case(k.name, all[0])) found = &k;
+      if (equal_ignoring_case(k.name, kind)) found = &k;
     }
     if (!found)
-      fail_usage(all[0].find('=') == std::string::npos ? fmt::format("unknown kind of light '{}'", all[0])
-                                                       : fmt::format("'{}' stands where the kind of light should", all[0]),
-                 "light", unknown_name_hint(all[0].substr(0, all[0].find('=')), names));
+      fail_usage(kind.find('=') == std::string::npos ? fmt::format("unknown kind of light '{}'", kind)
+                                                     : fmt::format("'{}' stands where the kind of light should", kind),
+                 "light", unknown_name_hint(kind.substr(0, kind.find('=')), names));
     const std::string owner = fmt::format("light {}", found->name);
     ParamSet params = found->make_params();
-    set_params(params.schema, {all.begin() + 1, all.end()}, owner);
+    set_params(params.schema, words, owner);
     lights.push_back(found->take(params));
     check(lights.back(), params, owner);
     if (lights.size() > most) fail_usage(fmt::format("more than {} lights", most), "light");

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/schema/color_params.h"
 #include "color/parse_color.h"
 #include "filter/field/automatic_values.h"
 
@@ -21,7 +22,7 @@ void describe(Schema& s, IsolineShow& p) {
   s("isoline_values", p.isoline_values, "The values of these lines instead.");
   s("isoline_field", p.isoline_field, "Point field of these values; default: the one that colours the surface.").takes(fields::on_points);
   s("isoline_width", p.isoline_width, "Width of these lines.").unit("pixels").range(0.1, 50);
-  s("isoline_color", p.isoline_color, "Colour of these lines.");
+  s("isoline_color", p.isoline_color, "Colour of these lines.").unit(color_unit);
 }
 
 std::optional<SurfaceIsolines> isolines_of(const Dataset& d, const IsolineShow& p, const std::optional<FieldColor>& color) {

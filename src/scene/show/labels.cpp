@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include "base/schema/color_params.h"
 #include "base/text/text.h"
 #include "color/parse_color.h"
 #include "data/cells/point_positions.h"
@@ -22,7 +23,7 @@ const Field* numbers(const Dataset& d, std::string_view name) {
 void describe(Schema& s, LabelsShow& p) {
   s("field", p.field, "Point field whose values are written; default: 'value', else the active scalar.");
   s("size", p.size, "Text size; 1 is the size of the axis numbers.").range(0.1, 20);
-  s("color", p.color, "Text colour; default: that of all text.");
+  s("color", p.color, "Text colour; default: that of all text.").unit(color_unit);
 }
 
 bool is_line_labels(const Dataset& d) { return d.as<PointCloud>() && numbers(d, "value") && numbers(d, "angle") && numbers(d, "line"); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/show/lines.h"
 
+#include "base/schema/color_params.h"
 #include "color/parse_color.h"
 #include "filter/mesh/surface.h"
 #include "scene/show/field_color.h"
@@ -15,7 +16,7 @@ void describe(Schema& s, LinesShow& p) {
   s("halo", p.halo, "Halo around each line that hides lines behind it, so that crossings show which is in front.")
       .unit("pixels")
       .range(0, 100);
-  s("halo_color", p.halo_color, "Colour of the halos.");
+  s("halo_color", p.halo_color, "Colour of the halos.").unit(color_unit);
 }
 
 std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const LinesShow& p, Context& context) {

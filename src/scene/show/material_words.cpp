@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/schema/color_params.h"
+
 namespace sg {
 
 bool MaterialShow::any() const {
@@ -39,6 +41,7 @@ void describe(Schema& s, MaterialShow& p) {
   s("specular_ior", p.specular_ior, "Index of refraction, instead of the material's.").range(1, 10);
   s("transmission_weight", p.transmission_weight, "Share of the body that is clear, instead of the material's.").range(0, 1);
   s("transmission_color", p.transmission_color, "Colour of light (red, green, blue) that has passed transmission_depth of the clear body.")
+      .unit(linear_color_unit)
       .range(0, 1);
   s("transmission_depth", p.transmission_depth, "Length after which light has that colour; 0 = at once, at the boundary.").at_least(0);
   s("subsurface_weight", p.subsurface_weight, "Share of the body in which light wanders below the surface, instead of the material's.")
@@ -46,7 +49,9 @@ void describe(Schema& s, MaterialShow& p) {
   s("subsurface_radius", p.subsurface_radius, "How far red, green and blue light get there on average, in the data's lengths.").at_least(0);
   s("coat_weight", p.coat_weight, "Share of the surface that has a clear coat, instead of the material's.").range(0, 1);
   s("coat_roughness", p.coat_roughness, "Roughness of that coat, instead of the material's.").range(0, 1);
-  s("emission", p.emission, "Light that the surface gives off by itself: radiance of red, green and blue.").at_least(0);
+  s("emission", p.emission, "Light that the surface gives off by itself: radiance of red, green and blue.")
+      .unit(linear_color_unit)
+      .at_least(0);
   s("thin_walled", p.thin_walled, "The surface is a sheet, without a body behind it.");
   s("dielectric_priority", p.dielectric_priority,
     "Of clear bodies that touch or overlap: the one of the highest is there, and refracts against the others. 0 = refracts against air.")

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/show/outline.h"
 
+#include "base/schema/color_params.h"
 #include "color/parse_color.h"
 
 namespace sg {
 
 void describe(Schema& s, OutlineShow& p) {
-  s("color", p.color, "Colour of the box.");
+  s("color", p.color, "Colour of the box.").unit(color_unit);
   s("width", p.width, "Width of the lines.").unit("pixels").positive();
 }
 

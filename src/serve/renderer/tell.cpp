@@ -10,6 +10,7 @@
 #include "base/text/utf8.h"
 #include "data/lattice.h"
 #include "pipeline/catalog/catalog.h"
+#include "serve/renderer/tell_scene.h"
 #include "serve/renderer/tell_transfer.h"
 #include "serve/renderer/view_camera.h"
 
@@ -88,7 +89,7 @@ Json::Members step_members(const PipelineFile& file, size_t i) {
 
 Json::Members show_members(const PipelineFile& file, size_t i) {
   const PipelineFile::Show& s = file.show[i];
-  return {{"kind", text(s.kind)}, {"of", text(shown_step(file, i))}, {"words", words_json(s.words)}};
+  return {{"kind", text(s.kind)}, {"of", text(shown_step(file, i))}, {"in", text(node_of(file, s))}, {"words", words_json(s.words)}};
 }
 
 Json picture_json(const PipelineFile& file) {
@@ -168,7 +169,9 @@ Json::Members tell_pipeline(const PipelineFile& file) {
   std::vector<Json> steps, shows;
   for (size_t i = 0; i < file.steps.size(); ++i) steps.emplace_back(step_members(file, i));
   for (size_t i = 0; i < file.show.size(); ++i) shows.emplace_back(show_members(file, i));
-  return {{"steps", Json(std::move(steps))}, {"show", Json(std::move(shows))}, {"picture", picture_json(file)}};
+  Json::Members members{{"steps", Json(std::move(steps))}, {"show", Json(std::move(shows))}, {"picture", picture_json(file)}};
+  for (auto& m : tell_scene(file)) members.push_back(std::move(m));
+  return members;
 }
 
 Json::Members tell_state(const PipelineFile& file, const PreparedPicture& prepared, const StepSeconds& seconds,
@@ -176,6 +179,7 @@ Json::Members tell_state(const PipelineFile& file, const PreparedPicture& prepar
   const Shown& shown = prepared.shown[0];
   Json::Members members{{"steps", steps_json(file, seconds, cache, context)}, {"show", shows_json(file, prepared, context)}};
   members.emplace_back("picture", picture_json(file));
+  for (auto& m : tell_scene(file)) members.push_back(std::move(m));
   const Box3& b = shown.box;
   members.emplace_back("bounds", b.empty() ? Json() : numbers({b.lo.x, b.hi.x, b.lo.y, b.hi.y, b.lo.z, b.hi.z}));
   members.emplace_back("stretch", numbers({shown.stretch.x, shown.stretch.y, shown.stretch.z}));

@@ -15,12 +15,12 @@ namespace sg::serve {
 /// What each step took when it last ran, by its name.
 using StepSeconds = std::map<std::string, double>;
 
-/// "steps", "show", "picture", "times", "time", "bounds", "length_unit", "camera", "notes". Steps run if nothing that is shown has needed
-/// them.
+/// "steps", "show", "picture", "lights", "environment", "scene", "times", "time", "bounds", "length_unit", "camera", "notes". Steps run if
+/// nothing that is shown has needed them.
 Json::Members tell_state(const PipelineFile& file, const PreparedPicture& prepared, const StepSeconds& seconds,
                          const std::shared_ptr<Cache>& cache, Context& context);
 
-/// The same of a pipeline that cannot be run: "steps", "show" and "picture" as they stand.
+/// The same of a pipeline that cannot be run: steps, what is shown, picture, lights and nodes as they stand.
 Json::Members tell_pipeline(const PipelineFile& file);
 
 Json text(std::string s);

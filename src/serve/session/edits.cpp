@@ -7,16 +7,13 @@
 #include <array>
 
 #include "base/error.h"
-#include "base/schema/file_params.h"
 #include "base/text/text.h"
 #include "base/text/utf8.h"
-#include "color/map_files/colormap_file.h"
-#include "io/options.h"
 #include "pipeline/catalog/catalog.h"
-#include "pipeline/file/transfer_file.h"
 #include "pipeline/picture/picture.h"
-#include "scene/light/environment_params.h"
-#include "scene/show/show.h"
+#include "serve/session/light_edits.h"
+#include "serve/session/node_edits.h"
+#include "serve/session/params_of.h"
 
 namespace sg::serve {
 
@@ -24,29 +21,31 @@ namespace {
 
 constexpr size_t most_edits = 200, most_steps = 1000, most_shows = 250;
 
-ParamSet params_of_step(const PipelineFile::Step& step) {
-  if (step.reads()) return make_param_set<ReadParams>();
-  return find_operation(step.operation).make_params();
+enum class Addition { step, show, light, environment, node };
+constexpr auto enum_words(Addition) {
+  using enum Addition;
+  return std::array{Word{"step", step}, Word{"show", show}, Word{"light", light}, Word{"environment", environment}, Word{"node", node}};
 }
-ParamSet params_of_show(const std::string& kind) {
-  if (kind == auto_show) return make_param_set<ColoringParams>();
-  return find_show(kind).make_params();
-}
-
-enum class Addition { step, show };
-constexpr auto enum_words(Addition) { return std::array{Word{"step", Addition::step}, Word{"show", Addition::show}}; }
 
 class Editing {
  public:
   Editing(PipelineFile& file, std::vector<EditMistake>& mistakes) : file_(file), mistakes_(mistakes) {}
 
+  // Throws Error(usage) where lights as they stand cannot be read.
   void make(const Json& edit) {
+    if (edit.contains("at")) return set(edit["at"].text(), edit["set"]);
+    if (edit.contains("move")) return move(edit["move"].text(), edit["to"]);
+    if (edit.contains("remove")) return remove(edit["remove"].text());
     const auto adds = value_of_word<Addition>(edit["add"].text());
-    if (edit.contains("at")) set(edit["at"].text(), edit["set"]);
-    else if (edit.contains("remove")) remove(edit["remove"].text());
-    else if (adds == Addition::step) add_step(edit);
-    else if (adds == Addition::show) add_show(edit);
-    else mistake("", "", "an edit has 'at' and 'set', 'add' or 'remove'");
+    if (!adds) return mistake("", "", "an edit has 'at' and 'set', 'add', 'move' or 'remove'");
+    const std::string kind = bytes_of_text(edit["kind"].text());
+    switch (*adds) {
+      case Addition::step: return add_step(edit);
+      case Addition::show: return add_show(edit);
+      case Addition::light: return add_light(file_, kind, edit["set"], mistakes_);
+      case Addition::environment: return put_environment(file_, kind, edit["set"], mistakes_);
+      case Addition::node: return add_node(file_, edit, mistakes_);
+    }
   }
 
  private:
@@ -67,40 +66,22 @@ class Editing {
     return at.starts_with("steps/") ? step_named(bytes_of_text(at.substr(6))) : nullptr;
   }
 
-  // Each word is checked by itself, so that a mistake is told at its control.
-  void set_words(const std::string& at, const Json& set, Schema& schema, std::vector<std::string>& words) {
-    for (const auto& [name, value] : set.members()) {
-      const std::string key = bytes_of_text(name);
-      if (key.empty() || key.find('=') != key.npos || !(value.is_text() || value.is_null())) {
-        mistake(at, key, "a word has a name and, as text, a value");
-        continue;
-      }
-      const std::string written = bytes_of_text(value.text());
-      if (value.is_text()) {
-        try {
-          set_param(schema, key, written, "");
-        } catch (const Error& e) {
-          mistake(at, key, e.what());
-          continue;
-        }
-      }
-      std::erase_if(words, [&](const std::string& w) { return std::string_view(w).substr(0, w.find('=')) == key; });
-      if (value.is_text()) words.push_back(key + "=" + written);
-    }
-  }
-
   void set(const std::string& at, const Json& words) {
     try {
       if (at == word_of(EntryKind::picture)) {
         PictureParams picture;
         Schema schema = schema_of(picture);
-        set_words(at, words, schema, file_.picture);
+        set_words(at, words, schema, file_.picture, mistakes_);
       } else if (PipelineFile::Step* step = step_at(at)) {
         ParamSet params = params_of_step(*step);
-        set_words(at, words, params.schema, step->words);
+        set_words(at, words, params.schema, step->words, mistakes_);
       } else if (PipelineFile::Show* show = show_at(at)) {
         ParamSet params = params_of_show(show->kind);
-        set_words(at, words, params.schema, show->words);
+        set_words(at, words, params.schema, show->words, mistakes_);
+      } else if (is_light_place(at)) {
+        set_light(file_, at, words, mistakes_);
+      } else if (is_node_place(at)) {
+        set_node(file_, at, words, mistakes_);
       } else {
         mistake(at, "", "there is nothing there to set");
       }
@@ -114,6 +95,8 @@ class Editing {
       file_.show.erase(file_.show.begin() + (show - file_.show.data()));
       return;
     }
+    if (is_light_place(at)) return remove_light(file_, at, mistakes_);
+    if (is_node_place(at)) return remove_node(file_, at, mistakes_);
     const PipelineFile::Step* step = step_at(at);
     if (!step) return mistake(at, "", "there is nothing there to remove");
     const std::string name = step->name;
@@ -124,6 +107,15 @@ class Editing {
       if (n.at == name) return mistake(at, "", fmt::format("node '{}' has its instances there; remove that first", n.name));
     std::erase_if(file_.show, [&](const auto& s) { return s.of == name; });
     std::erase_if(file_.steps, [&](const auto& s) { return s.name == name; });
+  }
+
+  // What is shown stands in a node, or with "" where the data lie.
+  void move(const std::string& at, const Json& to) {
+    PipelineFile::Show* show = show_at(at);
+    const auto node = node_named(file_, bytes_of_text(to.text()));
+    if (!show) return mistake(at, "", "there is nothing there to move");
+    if (!node) return mistake(at, "", fmt::format("there is no node '{}'", bytes_of_text(to.text())));
+    show->node = *node;
   }
 
   void add_step(const Json& edit) {
@@ -149,7 +141,9 @@ class Editing {
     if (!step_named(show.of)) return mistake("", "", fmt::format("there is no step '{}'", show.of));
     if (file_.show.size() >= most_shows) return mistake("", "", "there are too many ways to show");
     file_.show.push_back(show);
-    set(fmt::format("show/{}", file_.show.size() - 1), edit["set"]);
+    const std::string at = fmt::format("show/{}", file_.show.size() - 1);
+    if (edit.contains("in")) move(at, edit["in"]);
+    set(at, edit["set"]);
   }
 
   PipelineFile& file_;
@@ -166,34 +160,6 @@ void name_inputs(PipelineFile& file) {
     if (s.of.empty() && !file.steps.empty()) s.of = file.steps.back().name;
 }
 
-struct NamedFiles {
-  std::vector<std::string> read;
-  bool written = false;
-};
-
-void collect_files(const ParamSet& params, const std::vector<std::string>& words, NamedFiles& files) {
-  for (const std::string& w : words) {
-    const size_t sign = w.find('=');
-    const ParamDecl* d = params.schema.find(trim(std::string_view(w).substr(0, sign)));
-    if (!d || sign == w.npos) continue;
-    const std::string value = w.substr(sign + 1);
-    if (names_file(*d) || (d->name == "map" && names_colormap_file(value)) || (d->name == "transfer" && names_transfer_file(value)))
-      files.read.push_back(value);
-    else if (names_new_file(*d)) files.written = true;
-  }
-}
-
-NamedFiles files_of(const PipelineFile& file) {
-  NamedFiles files;
-  for (const PipelineFile::Step& s : file.steps)
-    if (s.reads() || known_operation(s.operation)) collect_files(params_of_step(s), s.words, files);
-  for (const PipelineFile::Show& s : file.show) collect_files(params_of_show(s.kind), s.words, files);
-  if (const std::string hall = environment_file(word_value(file.picture, "environment").value_or("")); !hall.empty())
-    files.read.push_back(hall);
-  files.written = files.written || word_value(file.picture, "output");
-  return files;
-}
-
 }  // namespace
 
 PipelineFile edited(PipelineFile file, const Json& edits, std::vector<EditMistake>& mistakes) {
@@ -205,20 +171,6 @@ PipelineFile edited(PipelineFile file, const Json& edits, std::vector<EditMistak
   Editing editing(file, mistakes);
   for (const Json& e : edits.items()) editing.make(e);
   return file;
-}
-
-std::vector<std::string> files_read(const PipelineFile& file) { return files_of(file).read; }
-
-std::vector<EditMistake> forbidden(const PipelineFile& before, const PipelineFile& after) {
-  std::vector<EditMistake> mistakes;
-  const NamedFiles known = files_of(before), wanted = files_of(after);
-  if (wanted.written && !known.written)
-    mistakes.push_back({"", "", "a window writes no files here: the browser saves pictures and pipelines"});
-  for (const std::string& path : wanted.read)
-    if (std::find(known.read.begin(), known.read.end(), path) == known.read.end())
-      mistakes.push_back(
-          {"", "", fmt::format("'{}' is no file of this session; files are chosen where a session is opened", printable(path))});
-  return mistakes;
 }
 
 }  // namespace sg::serve

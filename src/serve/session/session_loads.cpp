@@ -18,13 +18,10 @@ namespace {
 
 // Where a mistake belongs that only running has found: to what was just changed.
 EditMistake mistake_of(const Json& change, const std::string& what) {
-  EditMistake m{"", "", what};
   const Json& edits = change["edits"];
-  if (edits.size() == 0) return m;
+  if (edits.size() == 0) return {"", "", what};
   const Json& last = edits[edits.size() - 1];
-  m.at = last["at"].text();
-  if (last["set"].size() == 1) m.word = last["set"].members()[0].first;
-  return m;
+  return mistake_of_set(last["at"].text(), last["set"], what);
 }
 
 bool shows_automatically(const PipelineFile& file) {

@@ -13,6 +13,7 @@
 #include "pipeline/picture/picture.h"
 #include "serve/renderer/tell.h"
 #include "serve/renderer/wish.h"
+#include "serve/session/forbidden.h"
 #include "serve/session/limits.h"
 
 namespace sg::serve {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/schema/schema.h"
 
+#include "base/schema/color_params.h"
 #include "base/text/text.h"
 #include "support/test.h"
 
@@ -107,4 +108,24 @@ TEST_CASE("schema: JSON never holds infinities") {
   const std::string json = params_json(schema_of(p));
   CHECK(json.find("inf") == std::string::npos);
   CHECK(json.find("\"exclusiveMinimum\":0") != std::string::npos);
+}
+
+namespace {
+struct Colors {
+  std::string halo = "white";
+  Vec3 glow;
+};
+void describe(Schema& s, Colors& p) {
+  s("halo", p.halo, "Halo.").unit(color_unit);
+  s("glow", p.glow, "Glow.").unit(linear_color_unit);
+}
+}  // namespace
+
+TEST_CASE("schema: colours are told to windows, and are no units of measure to people") {
+  Colors p;
+  Schema s = schema_of(p);
+  CHECK(params_json(s).find("\"unit\":\"color\"") != std::string::npos);
+  CHECK(params_json(s).find("\"unit\":\"linear color\"") != std::string::npos);
+  CHECK(params_help(s).find("color") == std::string::npos);
+  CHECK(test::error_of([&] { set_param(s, "glow", "1,red,0", "op"); }).find("'red' in '1,red,0' is not a number") != std::string::npos);
 }

@@ -2,6 +2,7 @@
 #include "scene/light/light_params.h"
 
 #include "scene/light/environment_params.h"
+#include "scene/light/light_text.h"
 #include "scene/light/lighting.h"
 #include "scene/scene.h"
 #include "support/test.h"
@@ -135,4 +136,19 @@ TEST_CASE("lights: they stand where the viewer sees them, or by the compass, and
   CHECK(lamps[0].intensity == Approx(0.45));
   CHECK_FALSE(lamps[1].follows_camera);
   CHECK(lamps[1].intensity == Approx(0.9 * 0.2126));
+}
+
+TEST_CASE("lights: texts are taken apart and put together to the same") {
+  for (const std::string text :
+       {"sphere from=left size=0.3; sun", "file 'names=Lamp one,Window'", "rectangle color=#ff8800 position=1,2,3"}) {
+    CHECK(text_of_lights(lights_of_text(text)) == text);
+    CHECK(lights_of_text(text_of_lights(lights_of_text(text))) == lights_of_text(text));
+  }
+  CHECK(lights_of_text(" ; ").empty());
+  CHECK_FALSE(environment_of_text("  "));
+  const auto hall = environment_of_text("my/hall.hdr rotate=90");
+  REQUIRE(hall);
+  CHECK(hall->kind == "panorama");
+  CHECK(hall->words == std::vector<std::string>{"file=my/hall.hdr", "rotate=90"});
+  CHECK(environment_of_text(text_of_light(*hall)) == hall);
 }

@@ -7,7 +7,7 @@ import type { Context } from "./form";
 import { choice, choices, toggle } from "./choice";
 import { color } from "./color";
 import { field, fields } from "./field";
-import { kindOf } from "./kind";
+import { isColor, kindOf } from "./kind";
 import { ends, list, vector } from "./list";
 import { number } from "./number";
 import { mapChoice, text } from "./text";
@@ -20,7 +20,7 @@ export function idOf(c: Context): string {
 
 const unitOf = (c: Context): string => {
   const u = c.schema.unit;
-  if (!u || u === "file" || u === "new file") return "";
+  if (!u || u === "file" || u === "new file" || isColor(c.schema)) return "";
   if (u === "@field") return fieldOf(c)?.unit ?? "";
   if (u === "length" || u === "world length") return c.app.state?.length_unit ?? "";
   return u === "deg" ? "°" : u.startsWith("@") ? "" : u;

@@ -13,6 +13,7 @@ export interface FormOptions {
   step?: string; // whose fields are offered
   only?: string[];
   without?: string[];
+  begin?: string[]; // words that come first
 }
 
 /** What a control needs to know. */
@@ -34,9 +35,9 @@ const first = 9;
 const rare = new Set(["component", "linear_threshold", "below", "above", "nan", "clamp", "legend", "transfer", "save", "feature_angle", "flat"]);
 
 export function form(app: App, o: FormOptions): TemplateResult {
-  const all = Object.entries(o.entry.params.properties).filter(
-    ([name]) => (!o.only || o.only.includes(name)) && !o.without?.includes(name),
-  );
+  const all = Object.entries(o.entry.params.properties)
+    .filter(([name]) => (!o.only || o.only.includes(name)) && !o.without?.includes(name))
+    .sort(([a], [b]) => place(o, a) - place(o, b));
   const isSet = (name: string): boolean => app.session.word(o.at, name) !== undefined || app.session.edits.problem(o.at, name) !== undefined;
   const common = all.filter(([name]) => !rare.has(name)).slice(0, first);
   const main = o.only ? all : all.filter((x) => common.includes(x) || isSet(x[0]));
@@ -61,6 +62,11 @@ export function form(app: App, o: FormOptions): TemplateResult {
       : nothing}
   </div>`;
 }
+
+const place = (o: FormOptions, name: string): number => {
+  const at = o.begin?.indexOf(name) ?? -1;
+  return at < 0 ? (o.begin?.length ?? 0) : at;
+};
 
 function contextOf(app: App, o: FormOptions, name: string, schema: Schema): Context {
   const step = o.step ?? "";

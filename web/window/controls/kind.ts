@@ -19,11 +19,13 @@ export type Kind =
   | "file" // a path, as the server sees it
   | "text"; // free text: a name, an expression, a title
 
-const colors = new Set(["color", "below", "above", "nan", "background", "halo_color", "isoline_color"]);
+/** Units that say: the value is a colour. Three numbers may be those of the screen, or in proportion to the light. */
+export const isLinearColor = (s: Schema): boolean => s.unit === "linear color";
+export const isColor = (s: Schema): boolean => s.unit === "color" || isLinearColor(s);
 /** A list of words whose sentence begins with fields is one of fields: "Point fields to advect", "Names of the fields to leave out". */
 const listsFields = (s: Schema): boolean => /^(\w+ ){0,3}fields\b/i.test(s.description ?? "");
 // A choice or a field, an expression of fields, or a column of a table: free text with the fields suggested.
-const fieldWords = new Set(["size_by", "second", "expr", "function", "x", "y", "z"]);
+const fieldWords = new Set(["size_by", "second", "expr", "function", "x", "y", "z", "color"]);
 
 export const typesOf = (s: Schema): string[] => (Array.isArray(s.type) ? s.type : [s.type ?? "string"]).map((t) => t ?? "null");
 
@@ -34,6 +36,7 @@ export function kindOf(name: string, s: Schema): Kind {
   const types = typesOf(s);
   if (s.field) return "field";
   if (s.enum) return "choice";
+  if (isColor(s)) return "color";
   if (types.includes("boolean")) return "switch";
   if (types.includes("number") || types.includes("integer")) return "number";
   if (types.includes("array")) {
@@ -44,7 +47,6 @@ export function kindOf(name: string, s: Schema): Kind {
   }
   if (s.unit === "file" || s.unit === "new file") return "file";
   if (name === "map") return "map";
-  if (colors.has(name)) return "color";
   if (name === "opacity" || name === "second_opacity") return "opacity";
   return "text";
 }
@@ -64,6 +66,13 @@ export function sliderRange(s: Schema, fieldRange?: [number, number] | null): { 
   if (min === undefined || max === undefined || !(max > min)) return null;
   if (s.unit !== "@field" && max - min > 1000) return null;
   return { min, max, step: integer ? 1 : (max - min) / 500 };
+}
+
+/** The two ends of a slider of magnitudes: of what is above 0 and has a default, a factor such as the brightness of a light. */
+export function factorRange(s: Schema): { min: number; max: number } | null {
+  const d = s.default;
+  if (typesOf(s).includes("integer") || s.exclusiveMinimum !== 0 || typeof d !== "number" || !(d > 0) || s.maximum === undefined) return null;
+  return { min: d / 100, max: Math.min(s.maximum, d * 100) };
 }
 
 /** A default as people read it. */

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Several numbers: a fixed count, as a point or a direction, or as many as are wanted.
 import { html, nothing, type TemplateResult } from "lit";
+import { live } from "lit/directives/live.js";
 import { numbers, plain, short } from "../words";
 import { describedBy, fieldOf, invalid } from "./control";
 import type { Context } from "./form";
 import { held, typed, typing } from "./held";
+import { shiftReach } from "./reach";
 
 const letters = ["x", "y", "z"];
 
@@ -13,16 +15,24 @@ export function vector(c: Context, id: string): TemplateResult {
   const fallback = Array.isArray(c.schema.default) ? (c.schema.default as number[]) : [];
   const now = c.value === undefined ? [] : c.value.split(/[,\s]+/);
   const names = count === 3 ? letters : count === 6 ? ["x from", "x to", "y from", "y to", "z from", "z to"] : Array.from({ length: count }, (_, i) => String(i + 1));
-  const set = (i: number, text: string): void => {
+  const set = (i: number, text: string, moving = false): void => {
     const next = names.map((_, k) => (k === i ? text.trim() : (now[k] ?? String(fallback[k] ?? "0"))));
-    c.set(next.every((s) => s === "") || (text.trim() === "" && c.value === undefined) ? null : next.map((s) => s || "0").join(","));
+    c.set(next.every((s) => s === "") || (text.trim() === "" && c.value === undefined) ? null : next.map((s) => s || "0").join(","), moving);
   };
+  const reach = shiftReach(c);
   return html`<div class="vector n${count}" role="group" aria-label=${c.name}>
       ${names.map(
         (name, i) => html`<input id=${i === 0 ? id : nothing} type="text" inputmode="decimal" class="number" ${held(now[i] ?? "")} aria-label="${c.name} ${name}"
           placeholder=${fallback[i] === undefined ? name : plain(fallback[i])} aria-invalid=${invalid(c)} aria-describedby=${describedBy(c, id)}
           autocomplete="off" @input=${typing} @change=${(e: Event) => set(i, typed(e))} />`,
       )}
+      ${reach === null
+        ? nothing
+        : names.map((name, i) => {
+            const slide = (e: Event, moving: boolean): void => set(i, short(Number((e.target as HTMLInputElement).value)), moving);
+            return html`<input type="range" min=${-reach} max=${reach} step=${reach / 200} .value=${live(now[i] ?? "0")} class=${c.value === undefined ? "unset" : ""}
+              aria-label="Drag: ${c.name} ${name}" @input=${(e: Event) => slide(e, true)} @change=${(e: Event) => slide(e, false)} />`;
+          })}
     </div>
     ${count === 3 ? pinnedPoint(c) : nothing}`;
 }

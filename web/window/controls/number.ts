@@ -7,7 +7,7 @@ import { plain, short } from "../words";
 import { describedBy, fieldOf, invalid } from "./control";
 import type { Context } from "./form";
 import { held, typed, typing } from "./held";
-import { defaultText, sliderRange, typesOf } from "./kind";
+import { defaultText, factorRange, sliderRange, typesOf } from "./kind";
 
 /** A position along an axis that another word names goes from end to end of the data. */
 function alongAxis(c: Context): ReturnType<typeof sliderRange> {
@@ -25,13 +25,21 @@ export function number(c: Context, id: string): TemplateResult {
   const position = Number(value || fallback || (range ? (range.min + range.max) / 2 : 0));
   const marked = c.schema.unit === "@field" ? c.app.probe.valueOf(fieldOf(c)?.name) : null;
   const set = (text: string, moving = false): void => c.set(text.trim() === "" ? null : text.trim(), moving);
+  const factor = range ? null : factorRange(c.schema);
+  const slide = (e: Event, moving: boolean): void => set(short(Number((e.target as HTMLInputElement).value)), moving);
+  // A slider of magnitudes: each decade is as long as the next.
+  const slideFactor = (e: Event, moving: boolean): void => set(String(Number(Math.pow(10, Number((e.target as HTMLInputElement).value)).toPrecision(3))), moving);
   return html`${range
       ? html`<input
           type="range" min=${range.min} max=${range.max} step=${range.step} .value=${live(String(position))}
           aria-label=${c.name} class=${c.value === undefined ? "unset" : ""}
-          @input=${(e: Event) => set(short(Number((e.target as HTMLInputElement).value)), true)}
-          @change=${(e: Event) => set(short(Number((e.target as HTMLInputElement).value)))} />`
-      : nothing}
+          @input=${(e: Event) => slide(e, true)} @change=${(e: Event) => slide(e, false)} />`
+      : factor
+        ? html`<input
+          type="range" min=${Math.log10(factor.min)} max=${Math.log10(factor.max)} step="0.01" .value=${live(String(Math.log10(position)))}
+          aria-label=${c.name} aria-valuetext=${plain(position)} class=${c.value === undefined ? "unset" : ""}
+          @input=${(e: Event) => slideFactor(e, true)} @change=${(e: Event) => slideFactor(e, false)} />`
+        : nothing}
     <input
       id=${id} class="number" type="text" inputmode="decimal" autocomplete="off" spellcheck="false" ${held(value)}
       placeholder=${fallback === "" ? "auto" : plain(Number(fallback), 6)}

@@ -18,7 +18,7 @@ export function lookPanel(app: App): TemplateResult {
       <div class="row"><h2 class="grow">Shown</h2>${addShow(app)}</div>
       <ul class="list">
         ${s.show.map((x, i) => html`<li class="item ${i === index ? "chosen" : ""}">
-          <button class="grow item-name" aria-pressed=${i === index ? "true" : "false"} @click=${() => app.select(`show/${i}`)}><span>${x.kind}</span><span class="quiet">of ${x.of}</span></button>
+          <button class="grow item-name" aria-pressed=${i === index ? "true" : "false"} @click=${() => app.select(`show/${i}`)}><span>${x.kind}</span><span class="quiet">of ${x.of}${x.in ? ` in ${x.in}` : ""}</span></button>
           <button class="icon small" aria-label="Remove ${x.kind} of ${x.of}" ?disabled=${!s.may_edit} @click=${() => app.session.edit([{ remove: `show/${i}` }])}>${icon("close")}</button></li>`)}
         <li class="item ${app.selected === "picture" ? "chosen" : ""}"><button class="grow item-name" aria-pressed=${app.selected === "picture" ? "true" : "false"} @click=${() => app.select("picture")}><span>picture</span><span class="quiet">title, background, axes</span></button></li>
       </ul>
@@ -35,7 +35,7 @@ export function lookPanel(app: App): TemplateResult {
           ${form(app, { at: `show/${index}`, entry, step: shown.of, without: legendWords.filter((w) => w !== "legend") })}
         </section>`
       : nothing}
-    ${app.selected === "picture" ? html`<section><h2>Picture</h2>${form(app, { at: "picture", entry: app.catalog.picture, step: s.steps[0]?.name, without: ["size", "layout", "views", "samples", "adaptive", "measurements"] })}</section>` : nothing}`;
+    ${app.selected === "picture" ? html`<section><div class="row"><h2 class="grow">Picture</h2><button class="small" @click=${() => app.open("scene")}>Lights …</button></div>${form(app, { at: "picture", entry: app.catalog.picture, step: s.steps[0]?.name, without: ["size", "layout", "views", "samples", "adaptive", "measurements", "lights", "environment"] })}</section>` : nothing}`;
 }
 
 /** Another way to show the same: the words that both know are kept. */
@@ -44,7 +44,7 @@ function changeKind(app: App, index: number, kind: string): void {
   const entry = showEntry(app.catalog, kind);
   if (!old || !entry) return;
   const set = Object.fromEntries(Object.entries(old.words).filter(([w]) => w in entry.params.properties && w !== "opacity" && w !== "style"));
-  app.session.edit([{ remove: `show/${index}` }, { add: "show", kind, of: old.of, set }]);
+  app.session.edit([{ remove: `show/${index}` }, { add: "show", kind, of: old.of, ...(old.in ? { in: old.in } : {}), set }]);
 }
 
 function addShow(app: App): TemplateResult {

@@ -3,6 +3,7 @@
 import type { Camera, Cursor, Edit, FrameHeader, Problem, ServerMessage, Shown, State, Step } from "../protocol";
 import { Edits } from "./edits";
 import { Connection, Refused, type Connected } from "./socket";
+import { wordsAt } from "./words_at";
 
 export interface People {
   count: number;
@@ -58,7 +59,7 @@ export class Session {
     this.changed();
   }
 
-  /** Sets words of a step, of a way to show, or of the picture. */
+  /** Sets words of a step, of a way to show, of the picture, of a light, of the environment or of a node. */
   set(at: string, words: Record<string, string | null>, live = false): void {
     this.edit([{ at, set: words }], live);
   }
@@ -71,11 +72,7 @@ export class Session {
   }
 
   wordsAt(at: string): Record<string, string> {
-    const s = this.state;
-    if (!s) return {};
-    if (at === "picture") return s.picture ?? {};
-    if (at.startsWith("show/")) return s.show[Number(at.slice(5))]?.words ?? {};
-    return this.step(at.slice(6))?.words ?? {};
+    return this.state ? wordsAt(this.state, at) : {};
   }
 
   step(name: string): Step | undefined {

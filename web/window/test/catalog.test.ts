@@ -3,8 +3,8 @@
 import { execFileSync } from "node:child_process";
 import { existsSync } from "node:fs";
 import { describe, expect, it } from "vitest";
-import { search, stepEntry, takesKind, type Catalog, type Entry, type Schema } from "../catalog";
-import { choicesOf, kindOf, sliderRange, typesOf } from "../controls/kind";
+import { named, search, stepEntry, takesKind, wantsFile, type Catalog, type Entry, type Schema } from "../catalog";
+import { choicesOf, factorRange, isColor, kindOf, sliderRange, typesOf } from "../controls/kind";
 import { mapTable } from "../transfer/map_table";
 
 const program = process.env.SIGHTGLASS ?? "../build/sightglass";
@@ -23,6 +23,7 @@ const free: Record<string, string> = {
   "part blocks": "paths within a collection, which the session does not list",
   "clip colors widgets transfer": "a notation of their own; the tab of colours writes colors and widgets",
   "second shape size_by": "one of some words or a field, which are suggested",
+  "color": "of tensor glyphs: one of some words or a field; colours have a control of their own",
   "x y z": "a column of a table; the fields are suggested",
   "lights environment": "kinds with words of their own",
   "file": "the name of a camera in the file that is shown",
@@ -32,7 +33,7 @@ const known = new Set(Object.keys(free).flatMap((names) => names.split(" ")));
 
 describe.skipIf(!found)("the catalogue", () => {
   const catalog = found ? (JSON.parse(run("ops", "--json")) as Catalog) : ({} as Catalog);
-  const entries = found ? [...catalog.sources, ...catalog.operations, ...catalog.show, ...(catalog.readers ?? []), catalog.read, catalog.camera, catalog.picture] : [];
+  const entries = found ? [...catalog.sources, ...catalog.operations, ...catalog.show, ...(catalog.readers ?? []), catalog.read, catalog.camera, catalog.picture, ...catalog.lights, ...catalog.environments, ...catalog.nodes] : [];
   const all: [Entry, string, Schema][] = entries.flatMap((e) => Object.entries(e.params.properties).map(([n, s]): [Entry, string, Schema] => [e, n, s]));
 
   it("gives every parameter the control of its type", () => {
@@ -42,6 +43,7 @@ describe.skipIf(!found)("the catalogue", () => {
       const types = typesOf(s);
       const where = `${e.name}.${name}`;
       if (s.field) expect(kind, where).toBe("field");
+      else if (isColor(s)) expect(kind, where).toBe("color");
       else if (choicesOf(s).length > 0) expect(["choice", "choices"], where).toContain(kind);
       else if (types.includes("boolean")) expect(kind, where).toBe("switch");
       else if (types.includes("number") || types.includes("integer")) expect(kind, where).toBe("number");
@@ -55,9 +57,23 @@ describe.skipIf(!found)("the catalogue", () => {
     for (const [, name, s] of all) {
       const kind = kindOf(name, s);
       if ((kind === "text" || kind === "texts") && !known.has(name)) odd.add(name);
-      if (/colou?r/i.test(s.description ?? "") && /^(color|background|halo_color|isoline_color|below|above|nan)$/.test(name) && typesOf(s).includes("string") && !s.enum) expect(kind, name).toBe("color");
     }
     expect([...odd].sort()).toEqual([]);
+  });
+
+  it("knows every colour, as a word and as three numbers", () => {
+    const colors = new Set(all.filter(([, n, s]) => kindOf(n, s) === "color").map(([e, n]) => `${e.kind} ${e.name} ${n}`));
+    for (const c of ["show surface color", "show surface nan", "show lines halo_color", "show surface isoline_color", "show surface transmission_color", "show surface emission", "picture picture background", "operation trails color", "environment even color"])
+      expect(colors, c).toContain(c);
+    for (const light of catalog.lights.filter((l) => !["sun", "file"].includes(l.name))) expect(colors).toContain(`light ${light.name} color`);
+    expect(colors).not.toContain("operation tensor_glyphs color");
+    for (const [e, n, s] of all) if (/^Colour (of|where)\b/.test(s.description ?? "")) expect(isColor(s), `${e.name}.${n}`).toBe(true);
+  });
+
+  it("gives the strength of every light a slider of magnitudes", () => {
+    for (const e of catalog.lights) expect(factorRange(e.params.properties.brightness), e.name).toEqual({ min: 0.01, max: 100 });
+    expect(named(catalog.nodes, "node")?.params.properties.translate).toBeDefined();
+    expect(catalog.environments.filter(wantsFile).map((e) => e.name)).toEqual(["panorama"]);
   });
 
   it("gives sliders only where both ends are known and near", () => {
@@ -97,4 +113,8 @@ it("gives each kind of schema its control", () => {
   expect(kindOf("range", { type: "array", items: { type: "number" }, unit: "@field" })).toBe("ends");
   expect(sliderRange({ type: "number", unit: "@field" }, [3, 7])).toMatchObject({ min: 3, max: 7 });
   expect(sliderRange({ type: "integer", minimum: 0, maximum: 1e9 })).toBe(null);
+  expect(kindOf("color", { type: "string", unit: "color" })).toBe("color");
+  expect(kindOf("emission", { type: ["array", "null"], items: { type: "number" }, minItems: 3, maxItems: 3, unit: "linear color" })).toBe("color");
+  expect(factorRange({ type: "number", exclusiveMinimum: 0, maximum: 1e9, default: 1 })).toEqual({ min: 0.01, max: 100 });
+  expect(factorRange({ type: "number", exclusiveMinimum: 0, default: 1 })).toBe(null);
 });

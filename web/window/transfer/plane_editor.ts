@@ -6,7 +6,7 @@ import { live } from "lit/directives/live.js";
 import { ref } from "lit/directives/ref.js";
 import type { PlaneAnswer } from "../protocol";
 import { plain } from "../words";
-import { hexOf } from "../controls/color";
+import { hexOf } from "../controls/color_text";
 import { width, type Curve } from "./curve";
 import { paintArea, type Painting } from "./paint_area";
 import { widgetShape } from "./widget_shape";

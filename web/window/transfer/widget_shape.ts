@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One widget over the plane: its shape, its grips, what the pointer and the keys do to it.
 import { nothing, svg, type SVGTemplateResult } from "lit";
-import { hexOf } from "../controls/color";
+import { hexOf } from "../controls/color_text";
 import { beginDrag } from "../input/handle";
 import { plain } from "../words";
 import { corners, gripped, type Grip, type Widget } from "./widgets";
