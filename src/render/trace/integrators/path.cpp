@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "render/trace/integrators/integrator.h"
+#include "render/trace/integrators/roulette.h"
 #include "render/trace/integrators/subsurface_walk.h"
 #include "render/trace/light/fade.h"
 #include "render/trace/light/luminance.h"
@@ -120,7 +121,8 @@ class PathIntegrator : public Integrator {
       out.radiance += path.throughput * v.emission * power_weight(path.pdf, p);
     }
     const Vec3f wo = v.frame.to_local(-path.ray.direction);
-    if (path.bounces() < bounces_) {
+    const Lights& lights = mirrors_only_ ? world.lights() : world.lamps();
+    if (path.bounces() < bounces_ && lights.asks()) {
       const float choice = sampler.next();
       const Vec2f u = sampler.next2();
       if (!v.bsdf.delta_only()) {
@@ -130,8 +132,7 @@ class PathIntegrator : public Integrator {
           return {v.bsdf.evaluate(wo, wi) * std::abs(wi.z), mirrors_only_ ? 0 : v.bsdf.pdf(wo, wi)};
         };
         const auto from = [&](Vec3f direction) { return Start{leave(v.point, direction), v.onward(path.insides, along, direction)}; };
-        out.radiance += path.throughput * direct(world, mirrors_only_ ? world.lights() : world.lamps(), media, v.point.position, from,
-                                                 scattered, choice, u, sampler);
+        out.radiance += path.throughput * direct(world, lights, media, v.point.position, from, scattered, choice, u, sampler);
       }
     }
 
@@ -168,7 +169,7 @@ class PathIntegrator : public Integrator {
     if (s->crossed) path.insides = v.onward(path.insides, along, direction);
     if (passes) path.go_straight(from, hit.t);
     else path.turn(from, direction, s->delta ? infinite : s->pdf);
-    return path.turns <= 3 || survives(path, 0.95f, roulette);
+    return survives(path, path.turns, roulette);
   }
 
   /// On from where light leaves a body in which it wandered; false where the path ends.
@@ -180,9 +181,11 @@ class PathIntegrator : public Integrator {
       return {{share, share, share}, density};
     };
     const auto from = [&](Vec3f direction) { return Start{leave(v.point, direction), path.insides}; };
-    const float choice = sampler.next();
-    const Vec2f u = sampler.next2();
-    out.radiance += path.throughput * direct(world, world.lamps(), media, v.point.position, from, scattered, choice, u, sampler);
+    if (world.lamps().asks()) {
+      const float choice = sampler.next();
+      const Vec2f u = sampler.next2();
+      out.radiance += path.throughput * direct(world, world.lamps(), media, v.point.position, from, scattered, choice, u, sampler);
+    }
 
     const Vec3f direction = normalize(v.frame.to_world(cosine_hemisphere(sampler.next2())));
     const float roulette = sampler.next();
@@ -191,7 +194,7 @@ class PathIntegrator : public Integrator {
     path.throughput = path.throughput * s.share / s.pdf;
     if (!path.footprint.none()) path.footprint = path.footprint.turned(direction, opening_of(s.pdf));
     path.turn(leave(v.point, direction), direction, s.pdf);
-    return path.turns <= 3 || survives(path, 0.95f, roulette);
+    return survives(path, path.turns, roulette);
   }
 
   /// On from a place in a volume; false where the path ends.
@@ -206,10 +209,11 @@ class PathIntegrator : public Integrator {
       return {{density, density, density}, last ? 0 : density};
     };
     const auto start = [&](Vec3f) { return Start{from, path.insides}; };
-    const float choice = sampler.next();
-    const Vec2f u = sampler.next2();
-    out.radiance +=
-        path.throughput * direct(world, last ? world.lights() : world.lamps(), media, from, start, scattered, choice, u, sampler);
+    if (const Lights& lights = last ? world.lights() : world.lamps(); lights.asks()) {
+      const float choice = sampler.next();
+      const Vec2f u = sampler.next2();
+      out.radiance += path.throughput * direct(world, lights, media, from, start, scattered, choice, u, sampler);
+    }
 
     const Vec2f v = sampler.next2();
     const float roulette = sampler.next();
@@ -218,11 +222,11 @@ class PathIntegrator : public Integrator {
     const float pdf = c.density(along, direction);
     if (!path.footprint.none()) path.footprint = path.footprint.after(c.t).turned(direction, opening_of(pdf));
     path.turn(from, direction, pdf), ++path.turns_in_media;
-    return path.turns <= 3 || survives(path, 1, roulette);
+    return survives(path, 0, roulette);  // matter may scatter any number of times
   }
 
-  static bool survives(Path& path, float chance, float u) {
-    const float stay = std::min(chance, most(path.throughput) / path.share);
+  static bool survives(Path& path, int turns, float u) {
+    const float stay = chance_to_go_on(most(path.throughput) / path.share, turns);
     if (u >= stay) return false;
     path.throughput = path.throughput / stay;
     return true;

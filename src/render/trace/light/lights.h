@@ -95,6 +95,8 @@ class Lights {
 
   bool any() const { return choice_.has_value() || !environment_.dark(); }
   size_t count() const { return lights_.size(); }
+  /// Whether sample() may find one.
+  bool asks() const { return choice_.has_value(); }
   /// One of all lights, drawn by their power. Nothing where it does not shine on the point.
   std::optional<LightSample> sample(Vec3f from, float choice, Vec2f u) const;
   /// Radiance of all lights that are no items along the ray between t_min and t_max, and of what is infinitely far if that is infinite.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "render/trace/integrators/roulette.h"
 #include "render/trace/light/fade.h"
 #include "render/trace/light/luminance.h"
 #include "render/trace/sampling/warp.h"
@@ -91,7 +92,7 @@ class Walk {
       turn(here, v.start(direction), direction,
            s->delta ? double(s->eta) * double(s->eta) * double(std::abs(s->direction.z)) : double(s->pdf));
     }
-    return survives(v.level, 0.95f, roulette);
+    return survives(v.level, roulette);
   }
 
   // On from a place in a medium.
@@ -110,7 +111,7 @@ class Walk {
     const double pdf = double(c.density(-v.to_parent, direction));
     set_reverse(v, c.last ? 0 : pdf);
     turn(here, v.at.point.position, direction, pdf);
-    return survives(v.level, 1, roulette);
+    return survives(0, roulette);
   }
 
   // A vertex at the end of a ray that went on by t.
@@ -129,9 +130,9 @@ class Walk {
     last_ = here, since_ = 0, turned_at_ = from, pdf_ = pdf;
     ray_ = {from, direction, no_end};
   }
-  bool survives(int level, float chance, float u) {
-    if (!scene_.roulette || level <= 3) return true;
-    const float stay = std::min(chance, std::max({throughput_.x, throughput_.y, throughput_.z}) / start_);
+  bool survives(int turns, float u) {
+    if (!scene_.roulette) return true;
+    const float stay = chance_to_go_on(std::max({throughput_.x, throughput_.y, throughput_.z}) / start_, turns);
     if (u >= stay) return false;
     throughput_ = throughput_ / stay;
     return true;
