@@ -39,6 +39,31 @@ DatasetPtr read_mesh(const std::string& path) {
   return make_dataset(Mesh(std::move(m)));
 }
 
+/// In a cube of side 2 an extinction of 8 (1 - |p|^2) (0.55 + 0.45 sin 9x sin 9y sin 9z), nine tenths of it scattered to all sides.
+Scene cloud() {
+  constexpr size_t n = 129;
+  UniformGrid grid;
+  grid.dims = {n, n, n}, grid.origin = {-1, -1, -1}, grid.spacing = Vec3(2, 2, 2) / double(n - 1);
+  std::vector<float> values;
+  for (size_t i = 0; i < n * n * n; ++i) {
+    const Vec3 p = grid.origin + Vec3(double(i % n), double(i / n % n), double(i / (n * n))) * (2 / double(n - 1));
+    values.push_back(float(std::max(0.0, 1 - dot(p, p)) * (0.55 + 0.45 * std::sin(9 * p.x) * std::sin(9 * p.y) * std::sin(9 * p.z))));
+  }
+  FieldSet fields;
+  fields.add({"density", Association::point, Array::from_vector(std::move(values)), "", Role::scalars});
+  VolumeItem v;
+  v.data = make_dataset(Mesh(std::move(grid)), std::move(fields)), v.field = "density";
+  v.color.map.name = "white", v.color.map.colors = {{1, 1, 1}, {1, 1, 1}};
+  v.unit_distance = 1e-4;  // so short that the opacity rises evenly with the value
+  v.opacity.points = {{0, 0}, {1, 1 - std::exp(-8 * v.unit_distance)}};
+  v.scattering.albedo = 0.9;
+  Scene scene;
+  scene.items.emplace_back(v);
+  scene.lighting.environment = EnvironmentParams(EvenEnvironmentParams());
+  scene.background = {0, 0, 0};
+  return scene;
+}
+
 Scene scene_of(const DatasetPtr& mesh, const std::string& name) {
   Scene scene;
   SurfaceItem item;
@@ -70,10 +95,10 @@ Scene scene_of(const DatasetPtr& mesh, const std::string& name) {
 
 int main(int argc, char** argv) {
   if (argc != 7) {
-    fmt::print(stderr, "usage: {} MESH.raw even|lamp|metal|occlusion PATHS WIDTH HEIGHT OUT.f32\n", argv[0]);
+    fmt::print(stderr, "usage: {} MESH.raw even|lamp|metal|occlusion|cloud PATHS WIDTH HEIGHT OUT.f32\n", argv[0]);
     return 2;
   }
-  const Scene scene = scene_of(read_mesh(argv[1]), argv[2]);
+  const Scene scene = std::string(argv[2]) == "cloud" ? cloud() : scene_of(read_mesh(argv[1]), argv[2]);
   Camera camera;
   camera.position = {2.2, 2.6, 3.6}, camera.target = {0, 0, 0}, camera.up = {0, 1, 0}, camera.view_angle = 40;
   camera.near_plane = 0.1, camera.far_plane = 100;

@@ -217,3 +217,107 @@ TEST_CASE("gltf: texture coordinates of other files run upwards, and are turned 
   write_data(ply, read(triangle()).data, {}, context);
   CHECK(std::get<DatasetPtr>(read_data(ply, {}, context))->fields().require("TCoords").array.get(2, 1) == 0);
 }
+
+TEST_CASE("gltf materials: what is written is read again, with pictures, numbers and names") {
+  OrderedJson j = triangle();
+  const auto at = [](double x) {
+    return OrderedJson{{"index", 0},
+                       {"extensions", {{"KHR_texture_transform", {{"offset", {x, 0.25}}, {"rotation", 0.5}, {"scale", {2, -3}}}}}}};
+  };
+  const OrderedJson first = {{"index", 0}};
+  j["samplers"] = {{{"wrapS", 33648}, {"wrapT", 33071}, {"magFilter", 9728}}};
+  j["textures"][0]["sampler"] = 0;
+  j["materials"][0] = {
+      {"name", "wood"},
+      {"pbrMetallicRoughness",
+       {{"baseColorFactor", {0.5, 0.25, 1, 0.5}},
+        {"baseColorTexture", at(0.125)},
+        {"metallicFactor", 0.5},
+        {"roughnessFactor", 0.25},
+        {"metallicRoughnessTexture", first}}},
+      {"alphaMode", "MASK"},
+      {"alphaCutoff", 0.75},
+      {"emissiveFactor", {1, 0.5, 0}},
+      {"emissiveTexture", first},
+      {"normalTexture", {{"index", 0}, {"scale", -2}}},
+      {"occlusionTexture", {{"index", 0}, {"strength", 0.25}}},
+      {"extensions",
+       {{"KHR_materials_ior", {{"ior", 1.25}}},
+        {"KHR_materials_transmission", {{"transmissionFactor", 0.75}, {"transmissionTexture", first}}},
+        {"KHR_materials_volume", {{"thicknessFactor", 1}, {"attenuationDistance", 2}, {"attenuationColor", {1, 0.5, 0.5}}}},
+        {"KHR_materials_clearcoat", {{"clearcoatFactor", 0.5}, {"clearcoatRoughnessFactor", 0.125}, {"clearcoatRoughnessTexture", first}}},
+        {"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}}}}};
+  const Read from = read(j);
+  std::vector<std::string> said;
+  Context context;
+  context.on_log = [&](LogLevel, std::string_view text) { said.emplace_back(text); };
+  const std::string path = test::temp_file("again.glb", "");
+  write_data(path, from.data, {}, context);
+  CHECK(said.empty());
+  const DatasetPtr to = std::get<DatasetPtr>(read_data(path, {}, context));
+  const MaterialLook &a = from.look(), &b = to->fields().require("MaterialIds").materials->looks.at(1);
+  CHECK(b.base_color == a.base_color);
+  CHECK(b.opacity == a.opacity);
+  CHECK(b.alpha == a.alpha);
+  CHECK(b.alpha_cutoff == a.alpha_cutoff);
+  CHECK(b.metallic == a.metallic);
+  CHECK(b.roughness == a.roughness);
+  CHECK(b.emission == a.emission);
+  CHECK(b.ior == a.ior);
+  CHECK(b.transmission == a.transmission);
+  CHECK(b.thin == a.thin);
+  CHECK(b.attenuation_color == a.attenuation_color);
+  CHECK(b.attenuation_distance == a.attenuation_distance);
+  CHECK(b.coat == a.coat);
+  CHECK(b.coat_roughness == a.coat_roughness);
+  CHECK(b.normal_scale == a.normal_scale);
+  CHECK(b.occlusion_strength == a.occlusion_strength);
+  REQUIRE(b.factors.size() == a.factors.size());
+  for (size_t i = 0; i < a.factors.size(); ++i)
+    for (size_t k = 0; k < a.factors[i].channels.size(); ++k) CHECK(b.factors[i].channels[k].factor == a.factors[i].channels[k].factor);
+  for (const auto& [p, q] : {std::pair{&a.base_picture, &b.base_picture},
+                             {&a.emission_picture, &b.emission_picture},
+                             {&a.normal_picture, &b.normal_picture},
+                             {&a.occlusion_picture, &b.occlusion_picture}}) {
+    CHECK(text_of(q->file) == png(7));
+    CHECK(q->beyond_u == p->beyond_u);
+    CHECK(q->beyond_v == p->beyond_v);
+    CHECK(q->nearest == p->nearest);
+    for (size_t i = 0; i < 6; ++i) CHECK(q->place[i] == Approx(p->place[i]).epsilon(1e-6));
+  }
+  // One picture, however often it is used.
+  CHECK(a.base_picture.file != b.base_picture.file);
+  CHECK(b.base_picture.file == b.normal_picture.file);
+  bool named = false;
+  for (const auto& [note, text] : to->notes()) named = named || test::contains(text, "1=wood");
+  CHECK(named);
+}
+
+TEST_CASE("gltf materials: those of other files are written, turned round where these run upwards; what glTF cannot say is told") {
+  test::temp_file("oak.png", png(200));
+  test::temp_file("looks.mtl",
+                  "newmtl wood\nKd 0.5 0.5 0.5\nmap_Kd -s 2 3 1 -o 0.25 0.5 oak.png\nmap_Pr oak.png\nnewmtl plain\nKd 1 0 0\n");
+  const std::string obj = test::temp_file("upward_looks.obj",
+                                          "mtllib looks.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+                                          "usemtl wood\nf 1/1 2/2 3/3\nusemtl plain\nf 1/1 3/3 4/4\n"),
+                    path = test::temp_file("upward_looks.glb", "");
+  std::string said;
+  Context context;
+  context.on_log = [&](LogLevel, std::string_view text) { said += text; };
+  write_data(path, read_data(obj, {}, context), {}, context);
+  CHECK(test::contains(said, "of numbers of a material"));  // roughness in red
+  CHECK_FALSE(test::contains(said, "MaterialIds"));
+  const auto parts = std::get<CollectionPtr>(read_data(path, {}, context));
+  REQUIRE(parts->parts.size() == 2);
+  const auto& d = *std::get<DatasetPtr>(parts->parts[0].data);
+  const Field& numbers = d.fields().require("MaterialIds");
+  const MaterialLook& look = numbers.materials->looks.at(int64_t(numbers.array.get(0)));
+  const auto& p = look.base_picture.place;
+  const Field& uv = d.fields().require("TEXCOORD_0");
+  const double places[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  for (size_t i = 0; i < 4; ++i) {
+    const double s = uv.array.get(i, 0), t = uv.array.get(i, 1);
+    CHECK(p[0] * s + p[1] * t + p[2] == Approx(2 * places[i][0] + 0.25).scale(1));
+    CHECK(p[3] * s + p[4] * t + p[5] == Approx(3 * places[i][1] + 0.5).scale(1));
+  }
+}

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // Surfaces and point clouds as glTF 2.0: one node and mesh per dataset, with a primitive for its triangles, lines and vertices each.
-// Point fields other than normals, texture coordinates and colours become attributes _NAME; glTF has no cell fields. A .gltf holds
-// its buffer as a data: URI.
+// Triangles of materials that the data have looks of are a primitive for each. Point fields other than normals, texture coordinates and
+// colours become attributes _NAME; glTF has no cell fields. A .gltf holds its buffer as a data: URI.
 #include <fmt/core.h>
+#include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "base/file/file.h"
+#include "data/fields/label_names.h"
+#include "data/fields/material_numbers.h"
 #include "data/fields/texture_coordinates.h"
 #include "io/formats.h"
 #include "io/gltf/gltf_bytes.h"
+#include "io/gltf/gltf_write_materials.h"
 #include "io/surface/surface_parts.h"
 #include "io/write_losses.h"
 
@@ -40,12 +46,25 @@ std::string free_key(const OrderedJson& attributes, std::string key) {
   return key;
 }
 
+/// The triangles of each material.
+std::map<int64_t, std::vector<int64_t>> triangles_by_number(const SurfaceMesh& mesh, const Field& numbers) {
+  std::map<int64_t, std::vector<int64_t>> all;
+  const PolygonList p = surface_polygons(mesh);
+  for (size_t c = 0; c < p.source.size(); ++c) {
+    const double number = numbers.array.get(p.source[c]);
+    std::vector<int64_t>& t = all[std::isfinite(number) ? int64_t(number) : 0];
+    for (size_t k = p.offsets[c] + 2; k < p.offsets[c + 1]; ++k) t.insert(t.end(), {p.ids[p.offsets[c]], p.ids[k - 1], p.ids[k]});
+  }
+  return all;
+}
+
 struct Writer {
   const std::string& path;
   Context& context;
   WriteLosses& losses;
   OrderedJson root;
   std::string bytes{};
+  GltfMaterialWriter materials{root, bytes, losses};
 
   // Elements padded to multiples of four bytes; returns the accessor.
   int put(const Array& a, int target, bool normalized = false, bool with_range = false) {
@@ -79,14 +98,17 @@ struct Writer {
     return put(Array::from_vector(std::vector<uint32_t>(ids.begin(), ids.end())), 34963);
   }
 
-  OrderedJson attributes(const Dataset& d, const Points& points) {
+  /// `coordinates` receives the fields that become TEXCOORD_0, _1, ...; `drawn`: the numbers of materials that are written, or null.
+  OrderedJson attributes(const Dataset& d, const Points& points, const Field* drawn, std::vector<std::string>& coordinates) {
     OrderedJson r;
     if (!survives(points.xyz, ElementType::f32)) losses.rounds("positions", points.xyz.type(), ElementType::f32);
     r["POSITION"] = put(points.xyz.converted(ElementType::f32), 34962, false, true);
-    int tcoords = 0, colors = 0;
+    int colors = 0;
     for (const Field& f : d.fields()) {
       if (f.association != Association::point) {
-        losses.leaves_out(f);
+        const bool in_materials =
+            drawn && (&f == drawn || f.name == "BaseColor" || f.name == "BaseColorMultiplier" || f.name == "MaterialColors");
+        if (!in_materials) losses.leaves_out(f);
         continue;
       }
       losses.drops_unit(f);
@@ -96,9 +118,10 @@ struct Writer {
         losses.renames(f, "NORMAL"), losses.rounds(f, ElementType::f32);
         r["NORMAL"] = put(f.array.converted(ElementType::f32), 34962);
       } else if (f.role == Role::tcoords && n == 2) {
-        losses.renames(f, fmt::format("TEXCOORD_{}", tcoords)), losses.rounds(f, ElementType::f32);
-        r[fmt::format("TEXCOORD_{}", tcoords++)] =
-            put(runs_down(f.name) ? f.array.converted(ElementType::f32) : turned_round(f.array), 34962);
+        const std::string key = fmt::format("TEXCOORD_{}", coordinates.size());
+        losses.renames(f, key), losses.rounds(f, ElementType::f32);
+        coordinates.push_back(f.name);
+        r[key] = put(runs_down(f.name) ? f.array.converted(ElementType::f32) : turned_round(f.array), 34962);
       } else if (f.role == Role::colors && (n == 3 || n == 4) && (byte || is_float(f.array.type()))) {
         losses.renames(f, fmt::format("COLOR_{}", colors));
         if (!byte) losses.rounds(f, ElementType::f32);
@@ -122,15 +145,33 @@ struct Writer {
     const size_t n = points.count();
     if (n == 0) return context.warn(fmt::format("{}: '{}' has no points and is left out", path, name));
     OrderedJson primitives;
-    const OrderedJson of_points = attributes(d, points);
-    auto primitive = [&](int mode, const std::vector<int64_t>& ids) {
-      if (!ids.empty()) primitives.push_back({{"attributes", of_points}, {"indices", put_indices(ids, n)}, {"mode", mode}});
+    const Field* numbers = cloud ? nullptr : material_numbers(d);
+    std::vector<std::string> coordinates;
+    const OrderedJson of_points = attributes(d, points, numbers, coordinates);
+    auto primitive = [&](int mode, const std::vector<int64_t>& ids, std::optional<int> material = {}) {
+      if (ids.empty()) return;
+      primitives.push_back({{"attributes", of_points}, {"indices", put_indices(ids, n)}, {"mode", mode}});
+      if (material) primitives.back()["material"] = *material;
     };
     if (!cloud) {
       const auto& mesh = *d.as<SurfaceMesh>();
       std::vector<int64_t> ids;
       const CellsView lines = cells_view(mesh.lines), vertices = cells_view(mesh.vertices);
-      primitive(4, surface_triangles(mesh));
+      if (numbers) {
+        std::map<double, std::string> names;
+        for (const auto& [note, text] : d.notes())
+          if (note == "labels of " + numbers->name) names = names_in_note(text);
+        for (const auto& [number, triangles] : triangles_by_number(mesh, *numbers)) {
+          const auto look = numbers->materials->looks.find(number);
+          const auto name = names.find(double(number));
+          primitive(4, triangles,
+                    look == numbers->materials->looks.end()
+                        ? std::nullopt
+                        : std::optional(materials.add(look->second, name == names.end() ? "" : name->second, coordinates)));
+        }
+      } else {
+        primitive(4, surface_triangles(mesh));
+      }
       for (size_t c = 0; c < lines.count; ++c)
         for (size_t k = 1; k < lines.size(c); ++k) ids.insert(ids.end(), {lines.point(c, k - 1), lines.point(c, k)});
       primitive(1, ids);

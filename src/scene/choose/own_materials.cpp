@@ -5,12 +5,6 @@
 
 namespace sg {
 
-const Field* material_numbers(const Dataset& d) {
-  for (const Field& f : d.fields())
-    if (f.materials && f.association == Association::cell && f.components() == 1) return &f;
-  return nullptr;
-}
-
 bool has_own_materials(const Dataset& d) {
   const Field* numbers = material_numbers(d);
   if (!numbers) return false;

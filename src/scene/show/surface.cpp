@@ -52,7 +52,7 @@ void check(const SurfaceShow& p) {
 }
 
 const Field* automatic_field(const SurfaceShow& p, const Dataset& d) {
-  if (p.picture.any()) return nullptr;
+  if (p.picture.any() || p.material.material) return nullptr;
   return p.own_materials ? automatic_field(d) : automatic_field_without_materials(d);
 }
 

@@ -36,7 +36,7 @@ struct SurfaceShow {
 void describe(Schema& s, SurfaceShow& p);
 /// Throws Error(usage) for what no data could make right.
 void check(const SurfaceShow& p);
-/// The field that colours when none is named: none under a picture, and none where the data has materials of its own.
+/// The field that colours when none is named: none under a picture and of a stated material, and none where the data has its own.
 const Field* automatic_field(const SurfaceShow& p, const Dataset& data);
 
 /// All parts are one body.
