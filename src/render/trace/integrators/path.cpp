@@ -152,7 +152,7 @@ class PathIntegrator : public Integrator {
     // On to the next surface.
     const float choice = sampler.next();
     const auto s = v.bsdf.sample(wo, choice, sampler.next2());
-    const float roulette = sampler.next();
+    const uint64_t roulette = sampler.stream();
     if (!s || is_dark(s->weight) || (mirrors_only_ && !s->delta)) return false;
     const bool passes = s->delta && s->transmitted && s->eta == 1 && dot(s->direction, wo) < -0.9999f;
     if (!passes && path.bounces() >= bounces_) return false;  // what is translucent is seen through all the same
@@ -188,7 +188,7 @@ class PathIntegrator : public Integrator {
     }
 
     const Vec3f direction = normalize(v.frame.to_world(cosine_hemisphere(sampler.next2())));
-    const float roulette = sampler.next();
+    const uint64_t roulette = sampler.stream();
     const Scattered s = scattered(direction);
     if (!(s.pdf > 0)) return false;
     path.throughput = path.throughput * s.share / s.pdf;
@@ -216,7 +216,7 @@ class PathIntegrator : public Integrator {
     }
 
     const Vec2f v = sampler.next2();
-    const float roulette = sampler.next();
+    const uint64_t roulette = sampler.stream();
     if (last) return false;
     const Vec3f direction = c.sample(along, v);
     const float pdf = c.density(along, direction);
@@ -225,9 +225,10 @@ class PathIntegrator : public Integrator {
     return survives(path, 0, roulette);  // matter may scatter any number of times
   }
 
-  static bool survives(Path& path, int turns, float u) {
+  static bool survives(Path& path, int turns, uint64_t stream) {
     const float stay = chance_to_go_on(most(path.throughput) / path.share, turns);
-    if (u >= stay) return false;
+    if (stay >= 1) return true;
+    if (RandomStream(stream).next() >= stay) return false;
     path.throughput = path.throughput / stay;
     return true;
   }
