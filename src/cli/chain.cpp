@@ -176,6 +176,9 @@ PipelineFile pipeline_of(const Options& o) {
   if (o.inputs.empty() == o.source.empty())
     fail_usage(o.inputs.empty() ? "name a file to read, or a source to compute with --source" : "give files or a --source, not both",
                fmt::format("sightglass {}", word_of(o.command)), fmt::format("see: sightglass {} --help", word_of(o.command)));
+  for (const std::string& in : o.inputs)
+    if (const std::string ending = extension_of(in); (ending == "yaml" || ending == "yml") && file_exists(in))
+      fail_usage("is a pipeline file, not data", in, fmt::format("sightglass run {}", in));
   Chains chains(o);
   for (size_t i = 0; i < o.inputs.size(); ++i)
     chains.add({o.inputs.size() == 1 ? "input" : fmt::format("input{}", i + 1), "read", read_words(o.inputs[i], o.read), {}, 0});

@@ -101,6 +101,14 @@ TEST_CASE("bad input: unknown fields, operations, parameters and ways to show, w
   check_refused({"rendre", "a.vti"}, 2, {"rendre", "did you mean 'render'"}, f);
 }
 
+TEST_CASE("bad input: a pipeline file is run, not read") {
+  const std::string path = test::temp_folder() + "picture.yaml";
+  write_file(path, "sightglass: 1\nsteps: {a: {sphere: {}}}\n");
+  const auto r = sightglass({"render", path});
+  CHECK(r.status == 2);
+  CHECK(test::contains(r.err, "sightglass run"));
+}
+
 TEST_CASE("bad input: unreadable options") {
   const std::string f = fresh_folder("options");
   write_grid(f + "a.vti", ramp(512), {8, 8, 8});
