@@ -64,7 +64,15 @@ struct Writer {
   WriteLosses& losses;
   OrderedJson root;
   std::string bytes{};
-  GltfMaterialWriter materials{root, bytes, losses};
+  GltfMaterialWriter materials{[this](std::string_view picture) { return put_bytes(picture); }, losses};
+
+  /// A view of bytes that are no numbers.
+  size_t put_bytes(std::string_view some) {
+    while (bytes.size() % 4) bytes += '\0';
+    root["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", some.size()}});
+    bytes += some;
+    return root["bufferViews"].size() - 1;
+  }
 
   // Elements padded to multiples of four bytes; returns the accessor.
   int put(const Array& a, int target, bool normalized = false, bool with_range = false) {
@@ -200,6 +208,7 @@ void write_gltf(const std::string& path, const Data& data, const WriteOptions&, 
   Writer w{path, context, losses, {{"asset", {{"version", "2.0"}, {"generator", "sightglass"}}}, {"scene", 0}}};
   for_each_dataset(data, [&](const std::string& name, const DatasetPtr& d) { w.add(name, *d); });
   if (w.root["meshes"].empty()) fail_usage("there is no surface to write", path);
+  w.root.update(OrderedJson::parse(w.materials.text()));
   losses.tell(context);
   while (w.bytes.size() % 4) w.bytes += '\0';
   OrderedJson buffer = {{"byteLength", w.bytes.size()}};

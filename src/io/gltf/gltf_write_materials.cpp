@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
 
 #include "data/fields/texture_coordinates.h"
 
@@ -54,50 +57,70 @@ std::optional<OrderedJson> transform(const MaterialPicture& picture, bool field_
 
 }  // namespace
 
-void GltfMaterialWriter::use(const char* extension) {
-  OrderedJson& used = root_["extensionsUsed"];
+struct GltfMaterialWriter::Document {
+  PutBytes put_bytes;
+  WriteLosses& losses;
+  OrderedJson root = OrderedJson::object();
+  std::map<std::string, int> materials{};  // by what they are, as text
+  std::map<const PictureFile*, std::optional<int>> images{};
+
+  OrderedJson material(const MaterialLook& look, const std::vector<std::string>& coordinates);
+  void put_factors(OrderedJson& pbr, OrderedJson& extensions, const MaterialLook& look, const std::vector<std::string>& coordinates);
+  /// A textureInfo; null where there is no such picture.
+  OrderedJson texture(const MaterialPicture& picture, const std::vector<std::string>& coordinates);
+  std::optional<int> image(const PictureFilePtr& file);
+  int sampler(const MaterialPicture& picture);
+  void use(const char* extension);
+};
+
+GltfMaterialWriter::GltfMaterialWriter(PutBytes put, WriteLosses& losses)
+    : document_(std::make_unique<Document>(Document{std::move(put), losses})) {}
+GltfMaterialWriter::~GltfMaterialWriter() = default;
+
+std::string GltfMaterialWriter::text() const { return document_->root.dump(-1, ' ', false, OrderedJson::error_handler_t::replace); }
+
+void GltfMaterialWriter::Document::use(const char* extension) {
+  OrderedJson& used = root["extensionsUsed"];
   if (std::find(used.begin(), used.end(), extension) == used.end()) used.push_back(extension);
 }
 
-std::optional<int> GltfMaterialWriter::image(const PictureFilePtr& file) {
-  const auto [known, fresh] = images_.try_emplace(file.get());
+std::optional<int> GltfMaterialWriter::Document::image(const PictureFilePtr& file) {
+  const auto [known, fresh] = images.try_emplace(file.get());
   if (!fresh) return known->second;
   const char* mime = mime_of(file->bytes);
   if (!mime) {
-    losses_.also(fmt::format("leaves out the picture '{}', which is neither PNG nor JPEG", file->name));
+    losses.also(fmt::format("leaves out the picture '{}', which is neither PNG nor JPEG", file->name));
     return {};
   }
-  while (bytes_.size() % 4) bytes_ += '\0';
-  root_["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", file->bytes.size()}});
-  bytes_.append(reinterpret_cast<const char*>(file->bytes.data()), file->bytes.size());
-  root_["images"].push_back({{"bufferView", root_["bufferViews"].size() - 1}, {"mimeType", mime}});
-  return known->second = int(root_["images"].size()) - 1;
+  const size_t view = put_bytes({reinterpret_cast<const char*>(file->bytes.data()), file->bytes.size()});
+  root["images"].push_back({{"bufferView", view}, {"mimeType", mime}});
+  return known->second = int(root["images"].size()) - 1;
 }
 
-int GltfMaterialWriter::sampler(const MaterialPicture& p) {
+int GltfMaterialWriter::Document::sampler(const MaterialPicture& p) {
   constexpr int nearest = 9728, linear = 9729, all_levels = 9987;
   const OrderedJson wanted = {{"magFilter", p.nearest ? nearest : linear},
                               {"minFilter", all_levels},
                               {"wrapS", wrap_of(p.beyond_u)},
                               {"wrapT", wrap_of(p.beyond_v)}};
-  OrderedJson& all = root_["samplers"];
+  OrderedJson& all = root["samplers"];
   const auto known = std::find(all.begin(), all.end(), wanted);
   if (known != all.end()) return int(known - all.begin());
   all.push_back(wanted);
   return int(all.size()) - 1;
 }
 
-OrderedJson GltfMaterialWriter::texture(const MaterialPicture& p, const std::vector<std::string>& coordinates) {
+OrderedJson GltfMaterialWriter::Document::texture(const MaterialPicture& p, const std::vector<std::string>& coordinates) {
   if (!p.file) return {};
   const auto set = p.coordinates.empty() ? coordinates.begin() : std::find(coordinates.begin(), coordinates.end(), p.coordinates);
   if (set == coordinates.end()) {
-    losses_.also(fmt::format("leaves out the picture '{}', which has no texture coordinates", p.file->name));
+    losses.also(fmt::format("leaves out the picture '{}', which has no texture coordinates", p.file->name));
     return {};
   }
   const auto source = image(p.file);
   if (!source) return {};
   const OrderedJson wanted = {{"source", *source}, {"sampler", sampler(p)}};
-  OrderedJson& all = root_["textures"];
+  OrderedJson& all = root["textures"];
   auto known = std::find(all.begin(), all.end(), wanted);
   const auto number = int(known - all.begin());
   if (known == all.end()) all.push_back(wanted);
@@ -105,7 +128,7 @@ OrderedJson GltfMaterialWriter::texture(const MaterialPicture& p, const std::vec
   if (set != coordinates.begin()) info["texCoord"] = set - coordinates.begin();
   const auto moved = transform(p, runs_down(*set));
   if (!moved) {
-    losses_.also(fmt::format("drops the slanting place of the picture '{}'", p.file->name));
+    losses.also(fmt::format("drops the slanting place of the picture '{}'", p.file->name));
   } else if (!moved->is_null()) {
     info["extensions"]["KHR_texture_transform"] = *moved;
     use("KHR_texture_transform");
@@ -114,8 +137,8 @@ OrderedJson GltfMaterialWriter::texture(const MaterialPicture& p, const std::vec
 }
 
 // Pictures of numbers, each where glTF has a place for it with just these channels.
-void GltfMaterialWriter::put_factors(OrderedJson& pbr, OrderedJson& extensions, const MaterialLook& l,
-                                     const std::vector<std::string>& coordinates) {
+void GltfMaterialWriter::Document::put_factors(OrderedJson& pbr, OrderedJson& extensions, const MaterialLook& l,
+                                               const std::vector<std::string>& coordinates) {
   using enum MaterialFactor;
   struct Place {
     MaterialFactor factor;
@@ -140,13 +163,13 @@ void GltfMaterialWriter::put_factors(OrderedJson& pbr, OrderedJson& extensions, 
       if (!written) break;
       if (OrderedJson info = texture(f.picture, coordinates); !info.is_null()) place->in[place->key] = std::move(info);
     }
-    if (!written) losses_.also(fmt::format("leaves out the picture '{}' of numbers of a material", f.picture.file->name));
+    if (!written) losses.also(fmt::format("leaves out the picture '{}' of numbers of a material", f.picture.file->name));
   }
   if (!clear.is_null()) extensions["KHR_materials_transmission"] = std::move(clear);
   if (!coated.is_null()) extensions["KHR_materials_clearcoat"] = std::move(coated);
 }
 
-OrderedJson GltfMaterialWriter::material(const MaterialLook& l, const std::vector<std::string>& coordinates) {
+OrderedJson GltfMaterialWriter::Document::material(const MaterialLook& l, const std::vector<std::string>& coordinates) {
   OrderedJson m, pbr, extensions;
   const auto put = [](OrderedJson& in, const char* key, OrderedJson value) {
     if (!value.is_null()) in[key] = std::move(value);
@@ -194,10 +217,11 @@ OrderedJson GltfMaterialWriter::material(const MaterialLook& l, const std::vecto
 int GltfMaterialWriter::add(const MaterialLook& look, const std::string& name, const std::vector<std::string>& coordinates) {
   OrderedJson m;
   if (!name.empty()) m["name"] = name;
-  m.update(material(look, coordinates));
-  const auto [known, fresh] = materials_.try_emplace(m.dump(-1, ' ', false, OrderedJson::error_handler_t::replace), int(materials_.size()));
-  if (fresh) root_["materials"].push_back(std::move(m));
-  return known->second;
+  m.update(document_->material(look, coordinates));
+  auto& known = document_->materials;
+  const auto [at, fresh] = known.try_emplace(m.dump(-1, ' ', false, OrderedJson::error_handler_t::replace), int(known.size()));
+  if (fresh) document_->root["materials"].push_back(std::move(m));
+  return at->second;
 }
 
 }  // namespace sg
