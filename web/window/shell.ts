@@ -18,6 +18,7 @@ import { stepsPanel } from "./panels/steps";
 import { tablePanel } from "./panels/table";
 import { timeline } from "./panels/timeline";
 import { toolbar } from "./panels/toolbar";
+import type { FrameHeader } from "./protocol";
 import { probeText } from "./questions/probe";
 import { themeButton } from "./theme";
 import { colorPanel } from "./transfer/panel";
@@ -109,8 +110,17 @@ function status(app: App): TemplateResult {
     <span class="grow probe">${here ? probeText(here, app.state?.length_unit) : html`<span class="quiet">${toolHint(app.tool)}</span>`}</span>
     ${p ? html`<span class="progress"><progress max="1" .value=${p.share} aria-label="Progress"></progress> ${p.doing}</span>` : nothing}
     ${session.people.count > 1 ? people(app) : nothing}
-    ${f ? html`<span class="quiet facts-line">${f.of[0]}×${f.of[1]} · ${Math.round(f.milliseconds)} ms${app.view.camera?.parallel ? " · parallel" : ""}${f.told ? ` · ${f.told}` : ""}${f.final ? "" : f.coarse > 1 ? ` · ${plain(f.coarse)}× coarser` : " · refining"}</span>` : nothing}
+    ${f ? html`<span class="quiet facts-line" title=${factsText(app, f)}>${factsText(app, f)}</span>` : nothing}
   </footer>`;
+}
+
+/** What the frame is, and how far it has come. */
+function factsText(app: App, f: FrameHeader): string {
+  const facts = [`${f.of[0]}×${f.of[1]}`, `${Math.round(f.milliseconds)} ms`];
+  if (app.view.camera?.parallel) facts.push("parallel");
+  if (f.told) facts.push(f.told);
+  if (!f.final) facts.push(f.coarse > 1 ? `${plain(f.coarse)}× coarser` : "refining");
+  return facts.join(" · ");
 }
 
 function people(app: App): TemplateResult {
