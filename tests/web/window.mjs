@@ -310,6 +310,11 @@ await test("a line is dragged in the picture, and its values are plotted", async
   await page.keyboard.press("l");
   await dragOn(page, [middle[0] - 60, middle[1]], [120, 30]);
   await page.waitForSelector(".panel .uplot canvas");
+  // The handles get their places when the overlay is drawn next.
+  await page.waitForFunction(() => {
+    const all = [...document.querySelectorAll(".ruler-end")];
+    return all.length === 2 && all.every((e) => e.getBoundingClientRect().x > 0);
+  });
   const ends = await page.locator(".ruler-end").evaluateAll((all) => all.map((e) => { const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; }));
   assert.equal(ends.length, 2, "the line lies in the picture");
   for (const [end, at] of [[ends[0], [middle[0] - 60, middle[1]]], [ends[1], [middle[0] + 60, middle[1] + 30]]])
