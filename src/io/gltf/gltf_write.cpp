@@ -3,7 +3,6 @@
 // Triangles of materials that the data have looks of are a primitive for each. Point fields other than normals, texture coordinates and
 // colours become attributes _NAME; glTF has no cell fields. A .gltf holds its buffer as a data: URI.
 #include <fmt/core.h>
-#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -51,8 +50,7 @@ std::map<int64_t, std::vector<int64_t>> triangles_by_number(const SurfaceMesh& m
   std::map<int64_t, std::vector<int64_t>> all;
   const PolygonList p = surface_polygons(mesh);
   for (size_t c = 0; c < p.source.size(); ++c) {
-    const double number = numbers.array.get(p.source[c]);
-    std::vector<int64_t>& t = all[std::isfinite(number) ? int64_t(number) : 0];
+    std::vector<int64_t>& t = all[material_number(numbers, p.source[c])];
     for (size_t k = p.offsets[c] + 2; k < p.offsets[c + 1]; ++k) t.insert(t.end(), {p.ids[p.offsets[c]], p.ids[k - 1], p.ids[k]});
   }
   return all;

@@ -250,11 +250,11 @@ std::vector<Column> columns_of(const Dataset& d, Association association, std::s
     for (char& c : name)
       if (c == ' ' || c == '\t' || c == '\n' || c == '\r') c = '_';
     const bool wide = element_size(f.array.type()) == 8;
-    if (wide) losses.rounds(f, ElementType::f64);
-    losses.drops_unit(f);
     const bool down = f.role == Role::tcoords && n == 2 && runs_down(f.name);
+    if (wide && !down) losses.rounds(f, ElementType::f64);
+    losses.drops_unit(f);
     const std::string own_name = down ? "TCoords" : f.name;
-    if (down) losses.renames(f, own_name);
+    if (down) losses.renames(f, own_name), losses.rounds(f, ElementType::f32);
     const Array a = down ? turned_round(f.array) : wide ? f.array.converted(ElementType::f64) : f.array;
     const size_t first = r.size();
     for (int c = 0; c < n; ++c) {

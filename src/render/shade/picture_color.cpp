@@ -64,16 +64,13 @@ TexturePlace place_in(const PlacedPicture& picture, const TriangleSet& triangles
   return place;
 }
 
-namespace {
-
-Vec4f under_picture(const PictureSet& pictures, const TriangleSet& triangles, size_t triangle, const PictureRay& ray, Vec4f rgba) {
+Vec4f under_picture(const PictureSet& pictures, const TexturePlace& place, Vec4f rgba) {
   using Alpha = SurfacePictures::Alpha;
   for (int k = 0; k < 3; ++k) rgba[k] *= pictures.tint[k];
   if (!pictures.color) {
     if (pictures.alpha == Alpha::cutout) rgba.w = rgba.w < pictures.cutoff ? 0.f : 1.f;
     return rgba;
   }
-  const TexturePlace place = place_in(*pictures.color, triangles, triangle, ray);
   if (!std::isfinite(place.at.x + place.at.y)) return rgba;  // corners without coordinates
   const Vec4f seen = pictures.color->lookup(*pictures.color->texture, place);
   if (seen.w > 0)
@@ -86,10 +83,8 @@ Vec4f under_picture(const PictureSet& pictures, const TriangleSet& triangles, si
   return rgba;
 }
 
-}  // namespace
-
 Vec4f picture_color(const PictureSet& pictures, const TriangleSet& triangles, size_t triangle, const PictureRay& ray, Vec4f rgba) {
-  rgba = under_picture(pictures, triangles, triangle, ray, rgba);
+  rgba = under_picture(pictures, pictures.color ? place_in(*pictures.color, triangles, triangle, ray) : TexturePlace(), rgba);
   if (!pictures.isolines) return rgba;
   const float line = line_cover(*pictures.isolines, triangles, triangle, ray);
   for (int k = 0; k < 3; ++k) rgba[k] += line * (pictures.isolines->color[k] - rgba[k]);

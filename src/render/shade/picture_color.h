@@ -16,7 +16,11 @@ struct PictureRay {
 /// The footprint of the ray's pixel in a picture: perspective-correct, from the differentials of the ray (Igehy 1999).
 TexturePlace place_in(const PlacedPicture& picture, const TriangleSet& triangles, size_t triangle, const PictureRay& ray);
 
-/// `rgba`: the surface's own colour, linear, straight alpha; it is returned changed.
+/// What tint, picture and alpha make of the surface's own colour `rgba`, linear with straight alpha, at a place of the picture of colours
+/// (of none: any).
+Vec4f under_picture(const PictureSet& pictures, const TexturePlace& place, Vec4f rgba);
+
+/// The same on a triangle, with the lines of equal value.
 Vec4f picture_color(const PictureSet& pictures, const TriangleSet& triangles, size_t triangle, const PictureRay& ray, Vec4f rgba);
 
 }  // namespace sg::raster

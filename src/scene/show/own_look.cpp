@@ -93,12 +93,6 @@ SurfaceMaterial matter_of(const MaterialLook& l) {
   return m;
 }
 
-/// The number of a cell's material; 0 for none.
-int64_t number_of(const Field& numbers, size_t cell) {
-  const double v = numbers.array.get(cell);
-  return v == v && std::abs(v) < 1e15 ? int64_t(v) : 0;
-}
-
 /// The polygons and strips of each number, in rising order. Kept with the data.
 using CellsByNumber = std::map<int64_t, std::vector<int64_t>>;
 std::shared_ptr<const CellsByNumber> cells_by_number(const DatasetPtr& data, const Field& numbers) {
@@ -110,7 +104,7 @@ std::shared_ptr<const CellsByNumber> cells_by_number(const DatasetPtr& data, con
   std::vector<int64_t>* list = nullptr;
   int64_t before = 0;
   for (size_t c = first; c < last; ++c) {
-    const int64_t n = number_of(numbers, c);
+    const int64_t n = material_number(numbers, c);
     if (!list || n != before) list = &cells[n], before = n;
     list->push_back(int64_t(c));
   }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "render/prepare/picture_set.h"
+#include "render/shade/picture_color.h"
 
 namespace sg::offline {
 
@@ -33,12 +33,8 @@ raster::ColorSource baked_colors(const raster::PreparedItem& item) {
   raster::ColorSource color = item.color;
   if (!item.pictures || color.kind == Kind::scalar || color.per_cell) return color;
   const raster::PictureSet& pictures = *item.pictures;
-  const auto tinted = [&](Vec4f c) {
-    for (int k = 0; k < 3; ++k) c[k] *= pictures.tint[k];
-    return c;
-  };
   if (!pictures.color && color.kind == Kind::constant) {
-    color.constant = tinted(color.constant);
+    color.constant = under_picture(pictures, {}, color.constant);
     return color;
   }
   const size_t points = item.triangles.positions.count();
@@ -46,19 +42,16 @@ raster::ColorSource baked_colors(const raster::PreparedItem& item) {
   float* out = nullptr;
   const Array baked = Array::make<float>(points, 4, &out);
   for (size_t p = 0; p < points; ++p) {
-    Vec4f c = color.constant;
+    Vec4f own = color.constant;
     if (color.kind == Kind::direct)
-      for (size_t k = 0; k < 4; ++k) c[int(k)] = color.data()[4 * p + k];
-    c = tinted(c);
+      for (size_t k = 0; k < 4; ++k) own[int(k)] = color.data()[4 * p + k];
+    TexturePlace place;
     if (pictures.color) {
       const float* uv = pictures.color->uv() + 2 * p;
-      const TexturePlace place{{double(uv[0]), double(uv[1])}, {reach[p], 0}, {0, reach[p]}};
-      const Vec4f seen = pictures.color->lookup(*pictures.color->texture, place);
-      if (seen.w > 0)
-        for (int k = 0; k < 3; ++k) c[k] *= seen[k] / seen.w;
-      if (pictures.alpha != SurfacePictures::Alpha::none && std::isfinite(place.at.x + place.at.y)) c.w *= seen.w;
+      place = {{double(uv[0]), double(uv[1])}, {reach[p], 0}, {0, reach[p]}};
     }
-    for (size_t k = 0; k < 4; ++k) out[4 * p + k] = c[int(k)];
+    const Vec4f seen = under_picture(pictures, place, own);
+    for (size_t k = 0; k < 4; ++k) out[4 * p + k] = seen[int(k)];
   }
   color.kind = Kind::direct, color.values = baked, color.scale = nullptr, color.table.clear();
   return color;
