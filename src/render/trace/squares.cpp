@@ -22,6 +22,7 @@ namespace {
 
 constexpr int side = 8;  // of the squares of pixels that are finished together
 constexpr int most_pixels = side * side;
+static_assert(most_pixels == most_paths);
 
 struct Square {
   uint32_t paths = 0;
@@ -50,60 +51,43 @@ class Drawing {
   uint32_t most() const { return most_; }
   uint32_t paths(size_t square) const { return squares_[square].paths; }
 
-  int pixels(size_t square) const {
-    const Place at = place(square);
-    return at.w * at.h;
-  }
+  int pixels(size_t square) const { return place(square).count(); }
 
   /// Up to so many paths a pixel, unless the noise is reached before.
   void draw(size_t square, uint32_t to, PixelSum* sums) {
-    const Place at = place(square);
+    const PixelBox at = place(square);
     const LightOptions& o = picture_.options;
     Sampler sampler(o.sampler, o.seed, o.paths);
     Square& told = squares_[square];
     while (told.paths < std::min(to, most_) && !told.reached) {
       const uint32_t n = told.paths, end = std::min({to, most_, n + pass_ - n % pass_});
-      for (int p = 0; p < at.w * at.h; ++p) {
-        const int x = at.x + p % at.w, y = at.y + p / at.w;
-        for (uint32_t k = n; k < end; ++k) {
-          sampler.start(uint32_t(x), uint32_t(y), k);
-          const Vec2f in_pixel = sampler.next2(), on_lens = picture_.camera.has_lens() ? concentric_disc(sampler.next2()) : Vec2f();
-          const Vec2f in_picture{float(x) + in_pixel.x, float(y) + in_pixel.y};
-          const Ray ray = picture_.camera.ray(in_picture, on_lens);
-          const RayFootprint footprint = picture_.world.has_pictures() ? picture_.camera.footprint(in_picture) : RayFootprint();
-          Vec3f around = picture_.backdrop.seen ? picture_.backdrop.radiance(ray.direction) : picture_.around[size_t(y)];
-          if (picture_.marks) around = seen_behind(*picture_.marks, pixel(at, p), around);
-          sums[p].add(integrator_.along(picture_.world, ray, sampler, footprint), around);
-        }
-      }
+      for (uint32_t k = n; k < end; ++k) add_path(at, k, sampler, sums);
       told.paths = end, told.variance = 0;
-      for (int p = 0; p < at.w * at.h && end > 1; ++p)
-        told.variance += displayed_variance(sums[p].mean(end), sums[p].variance(end)) / (at.w * at.h);
+      for (int p = 0; p < at.count() && end > 1; ++p)
+        told.variance += displayed_variance(sums[p].mean(end), sums[p].variance(end)) / at.count();
       // Looked at where the next pass would begin, however the way there was divided.
       told.reached = (end % pass_ == 0 || end == most_) && end > 1 && told.variance <= o.noise * o.noise;
     }
   }
 
   void develop(size_t square, const PixelSum* sums) {
-    const Place at = place(square);
+    const PixelBox at = place(square);
     const uint32_t n = squares_[square].paths;
-    for (int p = 0; p < at.w * at.h; ++p) {
+    for (int p = 0; p < at.count(); ++p) {
       const size_t i = pixel(at, p);
       for (int c = 0; c < 3; ++c) {
         frame_.rgba[4 * i + size_t(c)] = float(sums[p].light[c] / n);
         if (picture_.backdrop.seen) behind_[3 * i + size_t(c)] = float(sums[p].behind[c] / n);
       }
       frame_.rgba[4 * i + 3] = float(1 - sums[p].passed / n);
-      const double variance = n > 1 ? sums[p].variance(n) : 0;
+      if (n < 2) continue;
+      const double variance = sums[p].variance(n);
       variance_[i] = float(variance), error_[i] = float(std::sqrt(displayed_variance(sums[p].mean(n), variance)));
     }
   }
 
   /// What the middle of each pixel sees.
-  void look(size_t square, MediaWalk* media) {
-    const Place at = place(square);
-    for (int p = 0; p < at.w * at.h; ++p) see_first_met(picture_.world, picture_.camera, media, pixel(at, p), frame_);
-  }
+  void look(size_t square, MediaWalk* media) { see_first_met(picture_.world, picture_.camera, media, place(square), frame_); }
 
   void report(TraceReport& r) const {
     r.paths = 0, r.reached = true;
@@ -118,14 +102,30 @@ class Drawing {
   }
 
  private:
-  struct Place {
-    int x, y, w, h;
-  };
-  Place place(size_t square) const {
+  /// Path k of each pixel of a square.
+  void add_path(const PixelBox& at, uint32_t k, Sampler& sampler, PixelSum* sums) const {
+    CameraPath paths[most_pixels];
+    Estimate found[most_pixels];
+    for (int p = 0; p < at.count(); ++p) {
+      const int x = at.column(p), y = at.row(p);
+      sampler.start(uint32_t(x), uint32_t(y), k);
+      const Vec2f in_pixel = sampler.next2(), on_lens = picture_.camera.has_lens() ? concentric_disc(sampler.next2()) : Vec2f();
+      const Vec2f in_picture{float(x) + in_pixel.x, float(y) + in_pixel.y};
+      CameraPath& path = paths[p] = {picture_.camera.ray(in_picture, on_lens), {}, uint32_t(x), uint32_t(y), k, sampler.dimension()};
+      if (picture_.world.has_pictures()) path.footprint = picture_.camera.footprint(in_picture);
+    }
+    integrator_.along_all(picture_.world, {paths, size_t(at.count())}, sampler, found);
+    for (int p = 0; p < at.count(); ++p) {
+      Vec3f around = picture_.backdrop.seen ? picture_.backdrop.radiance(paths[p].ray.direction) : picture_.around[paths[p].y];
+      if (picture_.marks) around = seen_behind(*picture_.marks, pixel(at, p), around);
+      sums[p].add(found[p], around);
+    }
+  }
+  PixelBox place(size_t square) const {
     const int x = int(square % across_) * side, y = int(square / across_) * side;
     return {x, y, std::min(side, frame_.width - x), std::min(side, frame_.height - y)};
   }
-  size_t pixel(const Place& at, int p) const { return size_t(at.y + p / at.w) * size_t(frame_.width) + size_t(at.x + p % at.w); }
+  size_t pixel(const PixelBox& at, int p) const { return size_t(at.row(p)) * size_t(frame_.width) + size_t(at.column(p)); }
 
   const LitPicture& picture_;
   const Integrator& integrator_;

@@ -136,21 +136,22 @@ bool Geometry::blocked(const Ray& ray) const {
   return false;
 }
 
-uint32_t Geometry::blocked(const Ray* rays, int count) const {
-  if (count < 0 || count > several_rays) fail_internal("at most 8 rays are followed in turn");
-  uint32_t stopped = 0;
+uint64_t Geometry::blocked(const Ray* rays, int count) const {
+  if (count < 0 || count > stream_rays) fail_internal("at most 64 rays are followed together");
+  uint64_t stopped = 0;
   if (tree_) {
-    for (int i = 0; i < count; ++i) stopped |= uint32_t(blocked(rays[i])) << i;
+    for (int i = 0; i < count; ++i) stopped |= uint64_t(blocked(rays[i])) << i;
     return stopped;
   }
+  if (objects_.size() == 1 && objects_[0]->as_placed()) return objects_[0]->blocked_rays(rays, count);
   for (const auto& o : objects_) {
-    Ray inner[several_rays];
-    int number[several_rays], going = 0;
+    Ray inner[stream_rays];
+    int number[stream_rays], going = 0;
     for (int i = 0; i < count; ++i) {
       const bool meets = BoxRay(rays[i]).enter(&o->box().lo.x, &o->box().hi.x, rays[i].t_max) <= rays[i].t_max;
       if (meets && !(stopped >> i & 1)) inner[going] = o->inward(rays[i]), number[going++] = i;
     }
-    const uint32_t here = o->blocked_rays(inner, going);
+    const uint64_t here = o->blocked_rays(inner, going);
     for (int k = 0; k < going; ++k) stopped |= (here >> k & 1) << number[k];
   }
   return stopped;

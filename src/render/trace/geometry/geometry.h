@@ -37,8 +37,8 @@ class Geometry {
   uint32_t nearest(const Ray* rays, int count, Hit* hits) const;
   /// Whether anything is met at 0 < t <= ray.t_max.
   bool blocked(const Ray& ray) const;
-  /// The same of up to 8 rays: bit i of the result of rays[i]. Faster than one by one.
-  uint32_t blocked(const Ray* rays, int count) const;
+  /// The same of up to 64 rays: bit i of the result of rays[i]. Faster than one by one.
+  uint64_t blocked(const Ray* rays, int count) const;
   /// The place of a hit of this ray.
   SurfacePoint at(const Ray& ray, const Hit& hit) const;
 

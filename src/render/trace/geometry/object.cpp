@@ -73,7 +73,7 @@ class SurfaceObject : public Geometry::Object {
   }
   bool nearest(const Ray& ray, Hit& hit) const override { return kept_->triangles.nearest(ray, hit); }
   bool blocked(const Ray& ray) const override { return kept_->triangles.blocked(ray); }
-  uint32_t blocked_rays(const Ray* rays, int count) const override { return kept_->triangles.blocked(rays, count); }
+  uint64_t blocked_rays(const Ray* rays, int count) const override { return kept_->triangles.blocked(rays, count); }
   uint32_t nearest_packet(const Ray* rays, int count, Hit* hits) const override {
     return kept_->triangles.nearest_packet(rays, count, hits);
   }
@@ -203,9 +203,9 @@ class GlyphObject : public Geometry::Object {
 
 }  // namespace
 
-uint32_t Geometry::Object::blocked_rays(const Ray* rays, int count) const {
-  uint32_t stopped = 0;
-  for (int i = 0; i < count; ++i) stopped |= uint32_t(blocked(rays[i])) << i;
+uint64_t Geometry::Object::blocked_rays(const Ray* rays, int count) const {
+  uint64_t stopped = 0;
+  for (int i = 0; i < count; ++i) stopped |= uint64_t(blocked(rays[i])) << i;
   return stopped;
 }
 

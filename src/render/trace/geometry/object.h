@@ -17,7 +17,7 @@ class Geometry::Object {
   /// As of Geometry, in the object's coordinates; t in their unit. What is farther than hit.t is no hit either.
   virtual bool nearest(const Ray& ray, Hit& hit) const = 0;
   virtual bool blocked(const Ray& ray) const = 0;
-  virtual uint32_t blocked_rays(const Ray* rays, int count) const;
+  virtual uint64_t blocked_rays(const Ray* rays, int count) const;
   virtual uint32_t nearest_packet(const Ray* rays, int count, Hit* hits) const;
   /// A place on the surface in double, and its directions.
   struct Place {
@@ -50,6 +50,7 @@ class Geometry::Object {
     return out;
   }
   double ratio() const { return ratio_; }
+  bool as_placed() const { return ratio_ == 1 && !moved_; }  ///< its coordinates are the scene's
   Vec3 outward(Vec3 local_place) const { return (local_place - offset_) / ratio_; }
   /// What the rounding of a ray's start in local coordinates is worth in the scene's.
   Vec3 moving_error(Vec3 local_place) const {

@@ -36,8 +36,8 @@ struct alignas(64) TriangleBlock {
 
 /// What a packet of rays is: so many, whatever the width of vectors.
 constexpr int packet_rays = 16;
-/// Rays of any origin and direction that are followed in turn.
-constexpr int several_rays = 8;
+/// The most rays of a stream: rays of any origin and direction that are followed together.
+constexpr int stream_rays = 64;
 
 class Triangles {
  public:
@@ -49,8 +49,8 @@ class Triangles {
   bool nearest(const Ray& ray, Hit& hit) const;
   /// Whether any triangle is met at 0 < t <= ray.t_max.
   bool blocked(const Ray& ray) const;
-  /// The same of up to several_rays: bit i of the result of rays[i]. Faster than one by one, as each waits for memory in turn.
-  uint32_t blocked(const Ray* rays, int count) const;
+  /// The same of up to stream_rays: bit i of the result of rays[i]. Faster than one by one, the more so the more of their way they share.
+  uint64_t blocked(const Ray* rays, int count) const;
   /// Like nearest() for rays that start and go in about the same way (16 at a time), up to twice as fast; others are right, too.
   /// Sets bit i of the result where hits[i] was found.
   uint32_t nearest_packet(const Ray* rays, int count, Hit* hits) const;

@@ -42,13 +42,13 @@ HWY_INLINE void prefetch_node(const WideNode* n) { prefetch_lines(n, 4); }
 template <bool many>
 struct NodeRay {
   float near_origin[3], far_origin[3], near_inverse[3], far_inverse[3];
-  int near_side[3], far_side[3];
+  size_t near_side[3], far_side[3];  // where they stand in a node
 
   HWY_INLINE explicit NodeRay(const BoxRay& r) {
     for (int a = 0; a < 3; ++a) {
       near_origin[a] = far_origin[a] = r.origin[a];
       near_inverse[a] = r.near_inverse[a], far_inverse[a] = r.far_inverse[a];
-      near_side[a] = 2 * a + r.backwards[a], far_side[a] = 2 * a + !r.backwards[a];
+      near_side[a] = size_t(2 * a + r.backwards[a]) * wide, far_side[a] = size_t(2 * a + !r.backwards[a]) * wide;
     }
   }
   /// Takes in another one of the same signs: a box that it meets is met.
@@ -71,14 +71,18 @@ struct NodeRay {
     for (int i = 0; i < wide; i += lanes8) {
       F8 near = set(d, 0), far = set(d, t_max);
       for (int a = 0; a < 3; ++a) {
-        near = max((hn::Load(d, n.side[near_side[a]] + i) - near_origin[a]) * near_inverse[a], near);
+        near = max((hn::Load(d, &n.side[0][0] + near_side[a] + i) - near_origin[a]) * near_inverse[a], near);
         // Of one ray both origins are the same number, which then needs one register.
-        far = min((hn::Load(d, n.side[far_side[a]] + i) - (many ? far_origin : near_origin)[a]) * far_inverse[a], far);
+        far = min((hn::Load(d, &n.side[0][0] + far_side[a] + i) - (many ? far_origin : near_origin)[a]) * far_inverse[a], far);
       }
       hn::Store(near, d, near_out + i);
       bits |= bits_of(d, near <= far) << i;
     }
     return bits;
+  }
+  HWY_INLINE uint32_t meet(const WideNode& n, float t_max) const {
+    HWY_ALIGN float near[wide];
+    return meet(n, t_max, near);
   }
 };
 
@@ -129,14 +133,13 @@ HWY_INLINE void walk(const WideNode* nodes, const Bounds& ray, const float& t_ma
 template <class Bounds, class Leaf, class Fetch>
 HWY_INLINE void walk_any(const WideNode* nodes, const Bounds& ray, float t_max, Leaf&& leaf, Fetch&& fetch) {
   uint32_t stack[WideBvh::stack_size];
-  HWY_ALIGN float near[wide];
   size_t top = 0;
   for (uint32_t at = 0;;) {
     if (at & leaf_bit) {
       if (leaf(at & ~leaf_bit)) return;
     } else {
       const WideNode& n = nodes[at];
-      for (uint32_t bits = ray.meet(n, t_max, near); bits; bits &= bits - 1) {
+      for (uint32_t bits = ray.meet(n, t_max); bits; bits &= bits - 1) {
         const uint32_t child = n.child[std::countr_zero(bits)];
         if (child & leaf_bit) fetch(child & ~leaf_bit);
         else prefetch_node(nodes + child);
@@ -145,6 +148,64 @@ HWY_INLINE void walk_any(const WideNode* nodes, const Bounds& ray, float t_max, 
     }
     if (top == 0) return;
     at = stack[--top];
+  }
+}
+
+/// Up to 64 rays, bit i of `going` for each: meet(node, i) tells which boxes ray i meets, leaf(number, rays) which rays have been stopped
+/// so far, of all. Leaves wait until there are some, so that they have come from memory when they are looked at.
+template <class Meet, class Leaf, class Fetch>
+HWY_INLINE void walk_together(const WideNode* nodes, uint64_t going, Meet&& meet, Leaf&& leaf, Fetch&& fetch) {
+  struct Visit {
+    uint64_t rays;
+    uint32_t at;
+  };
+  constexpr int enough = 16;
+  Visit stack[WideBvh::stack_size], waiting[enough + wide];
+  size_t top = 0;
+  int leaves = 0;
+  uint64_t met[8] = {};  // by ray 8 k + i, in byte i of met[k]: a bit for each box
+  for (Visit v{going, 0};;) {
+    const WideNode& n = nodes[v.at];
+    const auto put = [&](int box, uint64_t rays) {
+      const uint32_t child = n.child[box];
+      if (child & leaf_bit) {
+        waiting[leaves++] = {rays, child & ~leaf_bit};
+        fetch(child & ~leaf_bit);
+      } else {
+        stack[top++] = {rays, child};
+        prefetch_node(nodes + child);
+      }
+    };
+    if (std::has_single_bit(v.rays)) {
+      for (uint32_t bits = meet(n, std::countr_zero(v.rays)); bits; bits &= bits - 1) put(std::countr_zero(bits), v.rays);
+    } else {
+      const int first = std::countr_zero(v.rays) / 8, end = 8 - std::countl_zero(v.rays) / 8;
+      for (int k = first; k < end; ++k) met[k] = 0;
+      uint32_t by_any = 0;
+      for (uint64_t rays = v.rays; rays; rays &= rays - 1) {
+        const int i = std::countr_zero(rays);
+        const uint32_t boxes = meet(n, i);
+        by_any |= boxes, met[i / 8] |= uint64_t(boxes) << (i % 8 * 8);
+      }
+      for (; by_any; by_any &= by_any - 1) {
+        const int box = std::countr_zero(by_any);
+        uint64_t rays = 0;
+        // One bit of each of eight bytes, gathered by a product.
+        for (int k = first; k < end; ++k) rays |= ((met[k] >> box & 0x0101010101010101u) * 0x0102040810204080u >> 56) << (8 * k);
+        put(box, rays);
+      }
+    }
+    for (;;) {
+      if (leaves >= enough || top == 0) {
+        for (int k = 0; k < leaves; ++k)
+          if (const uint64_t here = waiting[k].rays & going) going &= ~leaf(waiting[k].at, here);
+        leaves = 0;
+      }
+      if (top == 0) return;
+      v = stack[--top];
+      v.rays &= going;
+      if (v.rays != 0) break;
+    }
   }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "render/trace/integrators/world.h"
 #include "render/trace/sampling/sampler.h"
@@ -18,11 +19,30 @@ struct Estimate {
 /// Most turns of a path in media for each one at a surface that it may make: matter turns light much more often.
 constexpr int matter_turns = 128;
 
+/// A ray of the camera, and which of the sampler's numbers follow.
+struct CameraPath {
+  Ray ray;
+  RayFootprint footprint;
+  uint32_t x = 0, y = 0, sample = 0, dimension = 0;  ///< as of Sampler::start()
+};
+
+/// The most paths that are followed together: one for each pixel of a square of 8 x 8.
+constexpr int most_paths = 64;
+
 class Integrator {
  public:
   virtual ~Integrator() = default;
   /// Unbiased but for what each kind states. `ray` starts outside of everything.
   virtual Estimate along(const World& world, const Ray& ray, Sampler& sampler, const RayFootprint& footprint = {}) const = 0;
+  /// The same of up to most_paths through neighbouring pixels, `estimates` as many: to the same bytes as one by one.
+  virtual void along_all(const World& world, std::span<const CameraPath> paths, Sampler& sampler, Estimate* estimates) const {
+    for (size_t i = 0; i < paths.size(); ++i) estimates[i] = along(world, paths[i], sampler);
+  }
+  /// One of them.
+  Estimate along(const World& world, const CameraPath& path, Sampler& sampler) const {
+    sampler.start(path.x, path.y, path.sample, path.dimension);
+    return along(world, path.ray, sampler, path.footprint);
+  }
   /// Paths a pixel between two looks at its error.
   virtual uint32_t pass() const { return 16; }
 };

@@ -1,16 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <bit>
 #include <limits>
 
 #include "render/trace/integrators/integrator.h"
+#include "render/trace/sampling/cosine_strata.h"
 #include "render/trace/sampling/warp.h"
 
 namespace sg::trace {
 
 namespace {
 
-/// Rays to the open for each from the camera, in as many strata of the hemisphere along each axis: edges of pixels need fewer.
-constexpr int strata = 4;
+/// The rays from a point to the open, one in each stratum: samples of a pixel spread over the strata, and edges of pixels need fewer.
+struct RaysToOpen {
+  Vec3f from, directions[cosine_strata_count];
+  uint32_t above;  ///< bit i of directions[i]; the others are those that a rounded normal has below the face
+
+  RaysToOpen(const SurfacePoint& point, Vec3f seen_along, Vec2f in) {
+    const bool below = dot(point.face_normal, seen_along) > 0;
+    const Vec3f normal = below ? -point.shading_normal : point.shading_normal, out = below ? -point.face_normal : point.face_normal;
+    above = cosine_strata(in, LocalFrame::about(normal), out, directions), from = leave(point, out);
+  }
+};
+
+/// Bit i where hits[i] was found.
+uint64_t nearest_of(const Geometry& geometry, std::span<const CameraPath> paths, Hit* hits) {
+  constexpr size_t packet = 16;
+  uint64_t met = 0;
+  for (size_t i = 0; i < paths.size(); i += packet) {
+    Ray rays[packet];
+    const size_t n = std::min(packet, paths.size() - i);
+    for (size_t k = 0; k < n; ++k) rays[k] = paths[i + k].ray;
+    met |= uint64_t(geometry.nearest(rays, int(n), hits + i)) << i;
+  }
+  return met;
+}
 
 class OcclusionIntegrator : public Integrator {
  public:
@@ -42,34 +66,56 @@ class OcclusionIntegrator : public Integrator {
       if (!met) break;
       const SurfacePoint point = world.geometry().at(ray, hit);
       const Vec4f color = world.color(ray, hit, footprint);
-      const bool below = dot(point.face_normal, ray.direction) > 0;
-      const Vec3f normal = below ? -point.shading_normal : point.shading_normal;
-      const LocalFrame frame = LocalFrame::about(normal);
-      const float side = below ? -1.f : 1.f;
-      // At the same place in each stratum: systematic sampling, whose places samples of a pixel spread over the stratum.
-      const Vec2f in = sampler.next2();
-      int open = 0;
-      for (int row = 0; row < strata; row += strata / 2) {
-        Ray rays[strata * strata / 2];
-        int above = 0;
-        for (int i = row * strata; i < row * strata + strata * strata / 2; ++i) {
-          const Vec2f u{(float(i % strata) + in.x) / strata, (float(i / strata) + in.y) / strata};
-          const Vec3f direction = normalize(frame.to_world(cosine_hemisphere(u)));
-          // Directions below the face are those that the rounded normal would have, not the surface.
-          if (dot(direction, point.face_normal) * side > 0) rays[above++] = {leave(point, direction), direction, reach_};
-        }
-        open += above - std::popcount(world.geometry().blocked(rays, above));
-      }
-      out.radiance += Vec3f(color.x, color.y, color.z) * (share * color.w * float(open) / (strata * strata));
+      const RaysToOpen to_open(point, ray.direction, sampler.next2());
+      Ray rays[cosine_strata_count];
+      int n = 0;
+      for (uint32_t bits = to_open.above; bits; bits &= bits - 1)
+        rays[n++] = {to_open.from, to_open.directions[std::countr_zero(bits)], reach_};
+      const int open = n - std::popcount(world.geometry().blocked(rays, n));
+      out.radiance += Vec3f(color.x, color.y, color.z) * (share * color.w * (float(open) / cosine_strata_count));
       share *= 1 - color.w;
       ray = {leave(point, ray.direction), ray.direction}, footprint = footprint.after(hit.t);
     }
     out.passed = share;
     return out;
   }
+
+  // Where what is met is opaque: the rays of one stratum go about the same way through the tree.
+  void along_all(const World& world, std::span<const CameraPath> paths, Sampler& sampler, Estimate* estimates) const override {
+    if (world.has_media()) return Integrator::along_all(world, paths, sampler, estimates);
+    Hit hits[most_paths];
+    const uint64_t met = nearest_of(world.geometry(), paths, hits);
+    std::fill_n(estimates, paths.size(), Estimate{.passed = 1});
+    if (met == 0) return;
+    Ray rays[cosine_strata_count][most_paths];
+    uint8_t path_of[cosine_strata_count][most_paths];
+    int count[cosine_strata_count] = {}, open[most_paths] = {};
+    for (uint64_t seen = met; seen; seen &= seen - 1) {
+      const int i = std::countr_zero(seen);
+      const CameraPath& path = paths[size_t(i)];
+      const Vec4f color = world.color(path.ray, hits[i], path.footprint);
+      if (color.w != 1) {
+        estimates[i] = along(world, path, sampler), open[i] = cosine_strata_count;
+        continue;
+      }
+      estimates[i] = {{color.x, color.y, color.z}, 0};
+      sampler.start(path.x, path.y, path.sample, path.dimension);
+      const RaysToOpen to_open(world.geometry().at(path.ray, hits[i]), path.ray.direction, sampler.next2());
+      open[i] = std::popcount(to_open.above);
+      for (uint32_t bits = to_open.above; bits; bits &= bits - 1) {
+        const int k = std::countr_zero(bits), n = count[k]++;
+        rays[k][n] = {to_open.from, to_open.directions[k], reach_}, path_of[k][n] = uint8_t(i);
+      }
+    }
+    for (int k = 0; k < cosine_strata_count; ++k)
+      for (uint64_t bits = world.geometry().blocked(rays[k], count[k]); bits; bits &= bits - 1) --open[path_of[k][std::countr_zero(bits)]];
+    for (size_t i = 0; i < paths.size(); ++i) estimates[i].radiance *= float(open[i]) / cosine_strata_count;
+  }
+
   uint32_t pass() const override { return 4; }  // each with many rays
 
  private:
+  using Integrator::along;
   float reach_;
 };
 

@@ -12,13 +12,16 @@ namespace sg::trace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// Uniform on the unit disc, by rings (Shirley, Chiu 1997).
+/// Uniform on the unit disc, by rings (Shirley, Chiu 1997). The angle is within pi / 4 of an axis, where the first terms of the series of
+/// sine and cosine are exact to a rounding.
 inline Vec2f concentric_disc(Vec2f u) {
   const float x = 2 * u.x - 1, y = 2 * u.y - 1;
   if (x == 0 && y == 0) return {};
   const bool wide = std::abs(x) > std::abs(y);
-  const float r = wide ? x : y, angle = wide ? (pi / 4) * (y / x) : pi / 2 - (pi / 4) * (x / y);
-  return {r * std::cos(angle), r * std::sin(angle)};
+  const float r = wide ? x : y, angle = (pi / 4) * ((wide ? y : x) / r), a = angle * angle;
+  const float cosine = 1 - a * (1 / 2.f - a * (1 / 24.f - a * (1 / 720.f - a * (1 / 40320.f))));
+  const float sine = angle - angle * (a * (1 / 6.f - a * (1 / 120.f - a * (1 / 5040.f - a * (1 / 362880.f)))));
+  return wide ? Vec2f{r * cosine, r * sine} : Vec2f{r * sine, r * cosine};
 }
 inline float concentric_disc_pdf() { return 1 / pi; }
 

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "render/trace/sampling/cosine_strata.h"
 #include "render/trace/sampling/distribution.h"
 #include "render/trace/sampling/sampler.h"
 #include "support/statistics.h"
@@ -83,6 +84,34 @@ TEST_CASE("warp: corners of the square stay inside, narrow cones stay exact") {
     CHECK(std::hypot(d.x, d.y) < 1.0001e-5f);
   }
   CHECK(uniform_cone({0, 0}, 5e-11f).x == Approx(-7.07e-6).epsilon(1e-3));
+}
+
+TEST_CASE("warp: discs are exact to a few roundings") {
+  for (int i = 0; i < 10'000; ++i) {
+    const Vec2f u{float(i % 100) / 100 + 0.003f, float(i / 100) / 100 + 0.004f}, d = concentric_disc(u);
+    const double x = 2 * double(u.x) - 1, y = 2 * double(u.y) - 1;
+    const bool wide = std::abs(x) > std::abs(y);
+    const double r = wide ? x : y, angle = wide ? M_PI / 4 * (y / x) : M_PI / 2 - M_PI / 4 * (x / y);
+    CHECK(std::hypot(double(d.x) - r * std::cos(angle), double(d.y) - r * std::sin(angle)) < 3e-7);
+  }
+}
+
+TEST_CASE("warp: strata side by side are the same bytes as one by one") {
+  Sampler s(SamplerKind::independent, 5, 1);
+  for (int i = 0; i < 1000; ++i) {
+    s.start(uint32_t(i), 0, 0);
+    const Vec3f normal = uniform_sphere(s.next2()), above = normalize(normal + uniform_sphere(s.next2()) * 0.5f);
+    const Vec2f in = i == 0 ? Vec2f{} : s.next2();
+    const LocalFrame frame = LocalFrame::about(normal);
+    Vec3f directions[cosine_strata_count];
+    const uint32_t bits = cosine_strata(in, frame, above, directions);
+    for (int k = 0; k < cosine_strata_count; ++k) {
+      const Vec2f u{(float(k % 4) + in.x) / 4, (float(k / 4) + in.y) / 4};
+      const Vec3f one = normalize(frame.to_world(cosine_hemisphere(u)));
+      CHECK(directions[k] == one);
+      CHECK(bool(bits >> k & 1) == (dot(one, above) > 0));
+    }
+  }
 }
 
 TEST_CASE("distribution: what is sampled is in proportion, a cell without weight is never met, and rest is uniform") {

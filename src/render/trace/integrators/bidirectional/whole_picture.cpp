@@ -116,9 +116,9 @@ class Gathering {
 };
 
 void depths_and_ids(const World& world, const PictureCamera& camera, Frame& frame) {
-  parallel_for(frame.pixels(), size_t(frame.width), [&](size_t begin, size_t end) {
+  parallel_for(size_t(frame.height), 1, [&](size_t y, size_t) {
     const Media::Borrowed media = world.borrow_media();
-    for (size_t i = begin; i < end; ++i) see_first_met(world, camera, media.get(), i, frame);
+    see_first_met(world, camera, media.get(), {0, int(y), frame.width, 1}, frame);
   });
 }
 
