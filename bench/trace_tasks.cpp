@@ -174,6 +174,18 @@ void add_trace_tasks(std::vector<Task>& tasks, const std::string& folder) {
         return hits;
       });
     });
+    add("embree_ao", "sixty-four at once", [](const Scene1M& s) {
+      return counted(s.diffuse.size(), rays_per_chunk, [&](size_t begin, size_t end) {
+        size_t hits = 0;
+        for (size_t i = begin; i < end; i += stream_rays) {
+          Ray rays[stream_rays];
+          const size_t n = std::min(size_t(stream_rays), end - i);
+          for (size_t k = 0; k < n; ++k) rays[k] = {s.diffuse[i + k].origin, s.diffuse[i + k].direction, 0.3f};
+          hits += size_t(std::popcount(s.triangles.blocked(rays, int(n))));
+        }
+        return hits;
+      });
+    });
   }
 }
 

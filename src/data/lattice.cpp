@@ -2,12 +2,20 @@
 #include "data/lattice.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sg {
 
 bool is_lattice(const Mesh& mesh) {
   return std::holds_alternative<UniformGrid>(mesh) || std::holds_alternative<RectilinearGrid>(mesh) ||
          std::holds_alternative<CurvilinearGrid>(mesh);
+}
+
+double shortest_spacing(const UniformGrid& grid) {
+  double shortest = 0;
+  for (int a = 0; a < 3; ++a)
+    if (const double s = std::abs(grid.spacing[a]); grid.dims[size_t(a)] > 1 && (shortest == 0 || s < shortest)) shortest = s;
+  return shortest;
 }
 
 std::array<size_t, 3> lattice_dims(const Mesh& mesh) {

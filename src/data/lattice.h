@@ -51,6 +51,8 @@ class Lattice {
 
 /// Uniform, rectilinear or curvilinear?
 bool is_lattice(const Mesh& mesh);
+/// Between two points along an axis that has some; 0 where there is but one point.
+double shortest_spacing(const UniformGrid& grid);
 /// Points per axis of a lattice; {count,1,1} for other meshes.
 std::array<size_t, 3> lattice_dims(const Mesh& mesh);
 

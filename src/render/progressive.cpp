@@ -34,7 +34,7 @@ Frame render_progressively(const Scene& scene, const Camera& camera, const Rende
     Scene rough = scene;
     for (Item& item : rough.items)
       if (auto* volume = std::get_if<VolumeItem>(&item))
-        volume->sampling.tolerance = std::min(0.125, 2 * factor * volume->sampling.tolerance);
+        volume->sampling.tolerance = std::min(0.125, 2 * factor * volume->sampling.within());
     RenderOptions coarse = options;
     coarse.width = std::max(1, (options.width + factor - 1) / factor), coarse.height = std::max(1, (options.height + factor - 1) / factor);
     coarse.samples = 1;

@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/text/text.h"
+#include "render/volume/measured_steps.h"
 #include "scene/show/volume.h"
 
 namespace sg {
@@ -19,8 +20,8 @@ constexpr double per_pixel = 1e-7, per_byte = 1e-9, per_step = 3e-7;
 
 double surface_seconds(double bytes, double pixels) { return pixels * per_pixel + bytes * per_byte; }
 // Of five times the tolerance half the steps are taken.
-double volume_seconds(double bytes, double pixels, double tolerance = VolumeSampling().tolerance) {
-  const double samples_along = std::cbrt(bytes / 4), usual = VolumeSampling().tolerance;
+double volume_seconds(double bytes, double pixels, double tolerance = VolumeSampling::usual_tolerance) {
+  const double samples_along = std::cbrt(bytes / 4), usual = VolumeSampling::usual_tolerance;
   const double less = tolerance > 0 ? std::pow(tolerance / usual, -std::log(2) / std::log(5)) : 1;
   return pixels * (per_pixel + samples_along * per_step * less);
 }
@@ -55,12 +56,13 @@ std::string explain_drawing(const PipelineFile& file, const PipelineGraph& built
 }
 
 std::string note_of_long_drawing(const Scene& scene, double pixels) {
-  constexpr double is_long = 15;  // seconds of processor time
+  if (steps_may_be_measured(scene)) return "";  // told when that is known
+  constexpr double is_long = 15;                // seconds of processor time
   double seconds = 0, tolerance = 0;
   for (const Item& item : scene.items) {
     const auto* volume = std::get_if<VolumeItem>(&item);
-    if (!volume || !volume->shaded || volume->mode != RayFunction::composite) continue;
-    tolerance = volume->sampling.tolerance;
+    if (!volume || !volume->shaded || volume->mode != RayFunction::composite || volume->sampling.step > 0) continue;
+    tolerance = volume->sampling.within();
     seconds += volume_seconds(4 * double(volume->data->point_count()), pixels, tolerance);
   }
   if (seconds < is_long) return "";

@@ -12,7 +12,7 @@ namespace sg {
 /// few, as opacity ends rays early.
 std::string explain_drawing(const PipelineFile& file, const PipelineGraph& built);
 
-/// Before a volume is drawn that will take long: for how long, why, and what takes less. "" for others.
+/// Before a volume is drawn within a tolerance that will take long: for how long, why, and what takes less. "" for others.
 std::string note_of_long_drawing(const Scene& scene, double pixels);
 
 }  // namespace sg

@@ -10,6 +10,7 @@
 #include "pipeline/picture/picture_parts.h"
 #include "pipeline/picture/report/picture_report.h"
 #include "render/render.h"
+#include "render/volume/measured_steps.h"
 
 namespace sg {
 
@@ -127,13 +128,14 @@ Plane<float> placed(const Plane<float>& part, size_t each, const Rect& at, int w
 
 }  // namespace
 
-DrawnPicture draw_picture(const Scene& scene, const Camera& camera, const StatedPicture& s, const Annotation& annotation,
+DrawnPicture draw_picture(const Scene& stated, const Camera& camera, const StatedPicture& s, const Annotation& annotation,
                           const DrawHow& how, Context& context) {
   const Rect area = picture_beside_legends(annotation, s);
   RenderOptions options;
   options.width = int(area.width), options.height = int(area.height), options.samples = s.picture.samples;
   options.adaptive = s.picture.adaptive, options.coarser = how.coarser;
-  options.light = light_of(scene, s, how);
+  options.light = light_of(stated, s, how);
+  const Scene scene = options.light ? stated : with_measured_steps(stated, context);
   const bool beside = options.width < s.width || options.height < s.height;
   // The frame, one of single samples, and one of all pixels if a legend is next to it.
   check_picture_memory(s.width, s.height, 1 + (beside || options.adaptive > 0 ? 1 : 0));

@@ -106,7 +106,7 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
     const double span = std::abs(item.color.hi - item.color.lo);
     plan.lo = std::min(item.color.lo, item.color.hi) - span, plan.hi = std::max(item.color.lo, item.color.hi) + span, plan.base = 0;
   }
-  plan.accuracy = 0.25 * item.sampling.tolerance, plan.faint = 0.5 / diagonal,
+  plan.accuracy = 0.25 * item.sampling.within(), plan.faint = 0.5 / diagonal,
   plan.most_tau = 1e8 / source.edge;  // hides what lies behind the corner of a cell
   const double most_detail = 1e-5 * plan.most_tau;
   v.medium = std::make_unique<Medium>(item.color, item.opacity, plan);
@@ -117,7 +117,7 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
     if (item.light.ink > 0 && item.mode == RayFunction::composite)
       v.detail->ink = std::min(float(minus_log_one_minus(item.light.ink) / plan.unit), float(most_detail));
   }
-  v.budget = {item.sampling.tolerance, diagonal, knobs.stop_below > 0 ? float(0.2 * item.sampling.tolerance) : 0};
+  v.budget = {item.sampling.within(), diagonal, knobs.stop_below > 0 ? float(0.2 * item.sampling.within()) : 0};
   v.step = item.sampling.step, v.unit = plan.unit;
   if (v.step > 0 && diagonal / v.step > 1e7)
     fail_usage(fmt::format("a step of {} takes {:.3g} samples through a volume of size {}", v.step, diagonal / v.step, diagonal), "volume",

@@ -6,10 +6,12 @@
 namespace sg {
 
 void describe(Schema& s, VolumeSampling& p) {
-  ParamDecl& tolerance = s("tolerance", p.tolerance,
-                           "Largest error of a pixel in linear light, as a share of full scale; rays are sampled as finely as needed. "
-                           "Opacity and colours of the value stay within it; gradient lighting, second axes and overlapping volumes are "
-                           "estimated, and single pixels of rough fields may exceed it.");
+  ParamDecl& tolerance =
+      s("tolerance", p.tolerance,
+        "Largest error of a pixel in linear light, as a share of full scale; rays are sampled as finely as needed. "
+        "Opacity and colours of the value stay within it; gradient lighting, second axes and overlapping volumes are "
+        "estimated, and single pixels of rough fields may exceed it. Default: 1/512; where lit, rough data would take very long for "
+        "that, fixed steps whose error is measured on some rays and told.");
   tolerance.positive().hi = 1;
   s("step", p.step, "Fixed step length along the rays; 0 samples by the tolerance.").unit("world length").at_least(0);
   s("classify", p.classify,

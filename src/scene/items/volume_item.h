@@ -71,13 +71,16 @@ constexpr auto enum_words(LightStyle) {
 
 /// How finely a ray looks.
 struct VolumeSampling {
-  double tolerance = 1.0 / 512;                    ///< of full scale: largest error of a pixel that the integral may have
+  std::optional<double> tolerance;                 ///< of full scale: largest error of a pixel that the integral may have
   double step = 0;                                 ///< world length of fixed steps; 0 = by the tolerance
   VolumeClassify classify = VolumeClassify::post;  ///< with steps
   bool jitter = false;                             ///< with steps: the first sample anywhere in the first step
   Kernel kernel = Kernel::linear;                  ///< what the field is between its samples
   GradientKind gradient = GradientKind::central;
   VolumeAntialias antialias = VolumeAntialias::none;
+
+  static constexpr double usual_tolerance = 1.0 / 512;
+  double within() const { return tolerance.value_or(usual_tolerance); }
 };
 void describe(Schema& s, VolumeSampling& p);
 

@@ -14,11 +14,7 @@ namespace {
 // The length of the shortest edge of a voxel; 0 where cells have no common size.
 double voxel_edge(const Dataset& data) {
   const auto* grid = data.as<UniformGrid>();
-  if (!grid) return 0;
-  double shortest = HUGE_VAL;
-  for (int a = 0; a < 3; ++a)
-    if (grid->dims[size_t(a)] > 1) shortest = std::min(shortest, std::abs(grid->spacing[a]));
-  return std::isfinite(shortest) ? shortest : 0;
+  return grid ? shortest_spacing(*grid) : 0;
 }
 
 }  // namespace
@@ -31,7 +27,7 @@ Scene rough(Scene scene, Quality quality, double coarse) {
     if (!volume || volume->method != VolumeMethod::ray) continue;
     if (const double edge = voxel_edge(*volume->data); edge > 0)
       volume->sampling.step = moving ? edge * std::max(1.0, coarse / most_pixels_a_sample) : edge / 2;
-    else volume->sampling.tolerance = std::max(volume->sampling.tolerance, moving ? 0.125 : 0.02);
+    else volume->sampling.tolerance = std::max(volume->sampling.within(), moving ? 0.125 : 0.02);
     volume->sampling.jitter = false, volume->sampling.antialias = VolumeAntialias::none;
     if (moving) volume->sampling.kernel = Kernel::linear, volume->sampling.classify = VolumeClassify::post;
   }

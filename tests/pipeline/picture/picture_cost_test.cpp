@@ -45,10 +45,12 @@ TEST_CASE("drawing: a lit volume that takes long says so, others do not") {
     kind.add(scene, data, show_params(kind, words), context);
     return note_of_long_drawing(scene, pixels);
   };
-  CHECK(note({}, 3840.0 * 2160).find("tolerance=0.0098 takes about half") != std::string::npos);
-  CHECK_FALSE(note({}, 1920.0 * 1080).empty());
+  CHECK(note({"tolerance=0.002"}, 3840.0 * 2160).find("tolerance=0.01 takes about half") != std::string::npos);
+  CHECK_FALSE(note({"tolerance=0.002"}, 1920.0 * 1080).empty());
+  CHECK(note({}, 3840.0 * 2160).empty());  // steps are measured first
+  CHECK(note({"step=0.1"}, 3840.0 * 2160).empty());
   CHECK(note({"tolerance=0.1"}, 1920.0 * 1080).empty());  // takes a fifth of it
-  CHECK(note({}, 800.0 * 600).empty());
+  CHECK(note({"tolerance=0.002"}, 800.0 * 600).empty());
   CHECK(note({"shaded=false"}, 3840.0 * 2160).empty());
   CHECK(note({"mode=maximum"}, 3840.0 * 2160).empty());
 }

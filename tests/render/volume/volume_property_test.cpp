@@ -17,7 +17,7 @@ void random_light(Random& r, VolumeLight& l) {
 
 /// One volume, within the tolerance that it states.
 void keeps_tolerance(const RandomVolume& v, const Shot& shot, bool single) {
-  const double tolerance = v.item.sampling.tolerance, allowed = tolerance + 1e-4;  // what the tests' own integral has wrong, and f32
+  const double tolerance = v.item.sampling.within(), allowed = tolerance + 1e-4;  // what the tests' own integral has wrong, and f32
   check(compare({v}, scene_of({v.item}), shot.view, single, allowed, 1),
         fmt::format("{}{}, {}, {}, tolerance {:.5f}", v.words, shot.words, v.item.shaded ? "lit" : "not lit", single ? "single" : "packets",
                     tolerance),

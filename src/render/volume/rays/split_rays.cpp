@@ -74,8 +74,8 @@ class SplitRays {
       : slabs_(slabs), scene_(scene), projection_(projection), fragments_(fragments), frame_(frame), knobs_(knobs), cast_(cast) {
     for (Item& item : scene_.items)
       if (auto* v = std::get_if<VolumeItem>(&item)) {
-        v->sampling.antialias = VolumeAntialias::none, v->sampling.tolerance /= double(slabs.size());
-        dark_ = std::min(dark_, float(0.2 * v->sampling.tolerance));
+        v->sampling.antialias = VolumeAntialias::none, v->sampling.tolerance = v->sampling.within() / double(slabs.size());
+        dark_ = std::min(dark_, float(0.2 * v->sampling.within()));
         if (!first_id_) first_id_ = uint32_t(&item - scene_.items.data()) + 1;
       }
   }

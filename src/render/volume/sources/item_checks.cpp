@@ -18,8 +18,8 @@ void check(const VolumeItem& item) {
   if (!(item.sampling.step >= 0) || !std::isfinite(item.sampling.step))
     fail_usage(fmt::format("the step {} is not a valid length", item.sampling.step), "volume",
                "give a length above 0, or 0 to sample by the tolerance");
-  if (!(item.sampling.tolerance > 0 && item.sampling.tolerance <= 1))
-    fail_usage(fmt::format("the tolerance {} is not a valid share of full scale", item.sampling.tolerance), "volume",
+  if (!(item.sampling.within() > 0 && item.sampling.within() <= 1))
+    fail_usage(fmt::format("the tolerance {} is not a valid share of full scale", item.sampling.within()), "volume",
                "give a number above 0 and at most 1; 0.002 (1/512) is the default");
   if (!(item.unit_distance >= 0) || !std::isfinite(item.unit_distance))
     fail_usage(fmt::format("the unit distance {} is not a valid length", item.unit_distance), "volume",

@@ -19,13 +19,17 @@ HWY_NOINLINE void cast_all(const Plan& plan, int x0, int y0, int x1, int y1, Fra
   constexpr int lanes = lanes_of<D>, width = packet_width<D>, height = lanes / width;
   RayPacket rays;
   PacketResult result;
+  [[maybe_unused]] uint64_t turns = 0;
   for (int y = y0; y < y1; y += height)
     for (int x = x0; x < x1; x += width) {
       if (!set_up<D>(plan, x, y, x1, y1, frame, rays)) continue;
       Packet<D, T, shaded> packet(plan, rays);
       packet.run(result);
+      if constexpr (requires { packet.turns(); }) turns += packet.turns();
       put(plan.volume, part_of(plan), rays, result, lanes, frame);
     }
+  if constexpr (requires { plan.turns; })
+    if (plan.turns) *plan.turns += turns;
 }
 
 template <template <class, class, bool> class Packet, class D, class T, class Plan>

@@ -42,7 +42,7 @@ class StridingPackets : public PacketEngine<StridingPlan> {
  public:
   explicit StridingPackets(const EngineInput& in)
       : PacketEngine(StridingPlan{integral_of(in), nullptr, in.knobs.skip_empty}), tables_{MediumSums(*in.volume.medium), passages(in)} {
-    plan_.tables = &tables_;
+    plan_.tables = &tables_, plan_.turns = in.knobs.turns;
     if (in.volume.effects) plan_.scattered = &scattered_.emplace(*in.volume.effects, in.lamps, *in.lattice);
   }
 

@@ -74,6 +74,7 @@ struct StridingPlan : IntegralPlan {
   const StrideTables* tables = nullptr;  ///< null: cell by cell
   bool skip_empty = true;                ///< without tables: leap over empty bricks by the volume's distances
   const LatticePart* part = nullptr;
+  std::atomic<uint64_t>* turns = nullptr;  ///< as in Knobs
 };
 
 /// Rectilinear grids, cell by cell.

@@ -97,6 +97,7 @@ class StridingPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
     };
     Passage here = passage(cell);
     for (M going = on(); any(going); going = on()) {
+      turns_ += hn::CountTrue(d, going);
       const M leaping = going & here.empty();
       if (any(leaping)) {
         find_cells(leaping);
@@ -121,6 +122,8 @@ class StridingPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
     }
     store(result);
   }
+  /// How often a lane went on.
+  uint64_t turns() const { return turns_; }
 
  private:
   HWY_INLINE void places_at(F t, Place<D> p[3]) const {
@@ -349,6 +352,7 @@ class StridingPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
   LitPlace<D> here_lit_;
   GradientPath<D> path_;
   M lit_;  // the lanes for which it is the place where they are
+  uint64_t turns_ = 0;
 };
 
 namespace {

@@ -50,7 +50,7 @@ class Projector {
       : input_(input),
         volume_(make_cell_volume(input.item, input.context)),
         medium_(make_medium(input.item, volume_)),
-        table_(medium_, volume_.range, float(input.item.sampling.tolerance)),
+        table_(medium_, volume_.range, float(input.item.sampling.within())),
         eye_(volume_, input.projection, input.context),
         lamps_(lamps_of(input.lights, input.projection)) {}
 
@@ -245,7 +245,7 @@ class Projector {
     seen_along(lamps_, ray.direction, s.lit.lights);
     s.lit.material = material_of(input_.item.light);
     const float edge = float(volume_.mesh->edge), per_scale = float(1 / std::max(0.002 * (volume_.range.hi - volume_.range.lo), 1e-30));
-    const double tolerance = input_.item.sampling.tolerance;
+    const double tolerance = input_.item.sampling.within();
     const Look look{medium_, {tolerance, std::max(volume_.mesh->bounds.diagonal(), 1e-30), 0}, 0, &s.lit, per_scale, edge};
     ProjectedLight field(volume_, *gradients_);
     field.start(ray.origin, ray.direction, 0, 0);

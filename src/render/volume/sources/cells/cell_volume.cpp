@@ -369,7 +369,7 @@ Medium make_medium(const VolumeItem& item, const CellVolume& volume) {
   const Range& r = volume.range;
   plan.lo = r.empty() ? item.color.lo : r.lo + double(volume.base), plan.hi = r.empty() ? item.color.hi : r.hi + double(volume.base);
   plan.base = volume.base;
-  plan.accuracy = 0.25 * item.sampling.tolerance, plan.faint = 0.5 / diagonal;
+  plan.accuracy = 0.25 * item.sampling.within(), plan.faint = 0.5 / diagonal;
   plan.most_tau = 1e6 / (volume.mesh->edge > 0 ? volume.mesh->edge : diagonal);
   return Medium(item.color, item.opacity, plan);
 }

@@ -5,6 +5,7 @@
 // uniform grids, world coordinates per axis for rectilinear ones); and "u", sample indices, where sample i lies at u = i.
 #pragma once
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -27,6 +28,7 @@ struct Knobs {
   bool bricks_in_packets = true;                 ///< false: single rays through volumes larger than memory
   double coarser = 1;                            ///< RenderOptions::coarser
   const std::vector<uint8_t>* wanted = nullptr;  ///< per tile of 16 x 16 pixels, see composite_volumes; null = all
+  std::atomic<uint64_t>* turns = nullptr;        ///< gets how often rays within a tolerance went on, in uniform grids
 };
 void composite_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context,
                        const Knobs& knobs);

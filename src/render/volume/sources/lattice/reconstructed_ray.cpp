@@ -299,7 +299,7 @@ std::unique_ptr<RaySource> reconstructed_source(std::shared_ptr<const Volume> vo
   const double range = volume->samples->lo < volume->samples->hi ? volume->samples->hi - volume->samples->lo : 0;
   // Below some units in the last place there is nothing to gain.
   const double rounding = 1e-6 * std::max(std::abs(volume->samples->lo), std::abs(volume->samples->hi));
-  const double error = std::max(sampling.tolerance / 128 * range, std::isfinite(rounding) ? rounding : 0);
+  const double error = std::max(sampling.within() / 128 * range, std::isfinite(rounding) ? rounding : 0);
   Shared shared{volume, std::move(field), TapPolynomials(kernel), gradient, float(error), {}};
   for (int a = 0; a < 3 && !volume->affine; ++a) {
     shared.along[a].assign(volume->coordinates[a].begin(), volume->coordinates[a].end());

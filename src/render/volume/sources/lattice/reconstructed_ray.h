@@ -20,7 +20,7 @@ bool wants_reconstruction(const VolumeSampling& sampling);
 /// Stretches: nearest is constant per voxel. Others are cubics through four places of a part of a cell, the part halved until the cubic
 /// lies within `error` of the field; for splines, which are polynomials of degree 9 along a ray, that bound holds everywhere (ten points
 /// determine such a polynomial; 2.4 is the Lebesgue constant of these points), for gaussian and sinc to the error of degree 9 (1e-6 of the
-/// range). error = sampling.tolerance / 128 of the range of the values.
+/// range). error = sampling.within() / 128 of the range of the values.
 ///
 /// Where there is a value: as with linear, in cells whose corners all have one (cell fields: in the voxels of samples that have one;
 /// nearest: likewise, and not in hidden cells). Samples without a value that contribute further out are filled, see fill_holes().
