@@ -205,7 +205,8 @@ Look choose_for(const PipelineFile::Show& wanted, Data data, bool alone, Pipelin
   if (const Field* u = displacement_of(*largest)) look.reason += fmt::format("; -f warp shows its shape displaced by '{}'", u->name);
   if (is_shape_of_file(file, end))
     if (const std::string up = stand_upright(parts, extension, look.camera); !up.empty()) look.reason += "; " + up;
-  face_detail(look, parts, extension, context);
+  if (const CameraParams camera = stated_in(file).camera; !camera.position && !camera.direction && !camera.view)
+    face_detail(look, parts, extension, context);
   cut_open(look, largest, field, context);
   if (parts.size() == 1) show_flow(look, largest, field, context);
   cut_to_crowd(data, field, look);

@@ -72,7 +72,7 @@ std::string MeasuredSteps::text() const {
         tolerance, 5 * tolerance);
   return fmt::format(
       "rough data in light: rays take steps of 1/{} of the distance of samples; of {} rays that were measured 99 in 100 are within {:.2g} "
-      "of their true light, all within {:.2g}; tolerance={:.2g} keeps all within that, in many times the time",
+      "of their true light, all within {:.2g}; tolerance={:.2g} keeps all within that and takes many times as long",
       parts, rays, usual, largest, tolerance);
 }
 
