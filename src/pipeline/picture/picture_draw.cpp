@@ -135,7 +135,9 @@ DrawnPicture draw_picture(const Scene& stated, const Camera& camera, const State
   options.width = int(area.width), options.height = int(area.height), options.samples = s.picture.samples;
   options.adaptive = s.picture.adaptive, options.coarser = how.coarser;
   options.light = light_of(stated, s, how);
-  const Scene scene = options.light ? stated : with_measured_steps(stated, context);
+  const std::optional<MeasuredSteps> measured = options.light ? std::nullopt : measure_steps(stated, context);
+  if (measured) context.info(measured->text());
+  const Scene scene = measured ? in_steps(stated, *measured) : stated;
   const bool beside = options.width < s.width || options.height < s.height;
   // The frame, one of single samples, and one of all pixels if a legend is next to it.
   check_picture_memory(s.width, s.height, 1 + (beside || options.adaptive > 0 ? 1 : 0));
@@ -163,7 +165,7 @@ DrawnPicture draw_picture(const Scene& stated, const Camera& camera, const State
     for (uint32_t& id : frame.ids) id = id > 0 && id <= scene.shows.size() ? scene.shows[id - 1] : 0;
     Seen seen{std::move(frame.depth), std::move(frame.ids), std::move(planes), {}};
     if (how.layers) seen.rgba = std::move(frame.rgba);
-    return DrawnPicture{std::move(image), std::move(seen), std::move(light)};
+    return DrawnPicture{std::move(image), std::move(seen), std::move(light), measured ? measured->text() : ""};
   };
   if (how.on_finer)
     options.watch = {[&](const Frame& frame, const TraceReport& light) { return how.on_finer(finish(frame, light)); }, how.every};

@@ -69,6 +69,7 @@ struct DrawnPicture {
   Image image;
   Seen seen;
   TraceReport light;  ///< of pictures by paths, without planes
+  std::string told;   ///< of volumes in measured steps: how exact they are
 };
 
 /// How a picture is drawn, beside what is stated.

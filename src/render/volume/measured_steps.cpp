@@ -37,7 +37,7 @@ bool is_left_to_us(const VolumeItem& v) {
   return !s.tolerance && s.step == 0 && s.classify == VolumeClassify::post && !s.jitter && s.kernel == Kernel::linear &&
          s.gradient == GradientKind::central && s.antialias == VolumeAntialias::none && v.method == VolumeMethod::ray &&
          v.mode == RayFunction::composite && v.shaded && v.detail.plain() && v.light.style == LightStyle::none && v.light.ink == 0 &&
-         v.color.labels.empty() && v.group == 0 && !volume::scatters_by_map(v) && v.data->as<UniformGrid>() && !v.data->bricks();
+         v.color.labels.empty() && v.group == 0 && !volume::scatters_by_map(v) && v.data && v.data->as<UniformGrid>() && !v.data->bricks();
 }
 
 Frame small_picture(const Scene& scene, const Camera& camera, std::atomic<uint64_t>* turns, Context& context) {
@@ -97,7 +97,7 @@ std::optional<MeasuredSteps> measure_steps(const Scene& given, Context& outer) {
   const Frame truth = small_picture(scene, camera, &turns, context);
   m.rays = errors(truth, truth).size(), m.turns = double(turns) / (side * side);
   outer.log(LogLevel::debug, fmt::format("rays within the tolerance go on {:.0f} times on average", m.turns));
-  if (m.turns < many_turns) return {};
+  if (m.turns < many_turns || m.rays == 0) return {};
   for (const int parts : {2, 4, 8}) {
     drawn.sampling.step = spacing / parts;
     const std::vector<float> off = errors(truth, small_picture(scene, camera, nullptr, context));
@@ -111,11 +111,8 @@ std::optional<MeasuredSteps> measure_steps(const Scene& given, Context& outer) {
   return m;
 }
 
-Scene with_measured_steps(Scene scene, Context& context) {
-  if (const auto measured = measure_steps(scene, context)) {
-    context.info(measured->text());
-    only_volume(scene.items)->sampling.step = measured->step;
-  }
+Scene in_steps(Scene scene, const MeasuredSteps& measured) {
+  only_volume(scene.items)->sampling.step = measured.step;
   return scene;
 }
 

@@ -26,7 +26,7 @@ bool steps_may_be_measured(const Scene& scene);
 /// lights alone, not on camera and size, so that all pictures of a scene are drawn alike. Shadows and occlusion are left out. O(6400 rays).
 std::optional<MeasuredSteps> measure_steps(const Scene& scene, Context& context);
 
-/// The scene as it is drawn: with the steps measured, if any, which are told to the context.
-Scene with_measured_steps(Scene scene, Context& context);
+/// The scene as it is drawn then.
+Scene in_steps(Scene scene, const MeasuredSteps& measured);
 
 }  // namespace sg

@@ -178,7 +178,7 @@ DrawnView LocalRenderer::draw_whole(const PreparedPicture& prepared, const State
     DrawnView drawn;
     drawn.width = stated.width, drawn.height = stated.height, drawn.camera = view_camera(panel.camera);
     drawn.type = final ? "image/png" : "image/jpeg", drawn.bytes = final ? png_of(picture.image) : jpeg_of(picture.image);
-    if (light) drawn.told = light_text(picture.light);
+    drawn.told = light ? light_text(picture.light) : picture.told;
     set_area(area, drawn), drawn.seconds = seconds_since(begin);
     return drawn;
   };

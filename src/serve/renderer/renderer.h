@@ -40,7 +40,7 @@ struct DrawnView {
   std::array<int, 4> area{};  ///< x, y, width, height of the part in which the camera looks; legends stand beside it
   double coarse = 1;          ///< pixels of the view that one of the picture stands for, along each side
   double seconds = 0;         ///< that it took
-  std::string told;           ///< of pictures by paths: how exact it is; "" for others
+  std::string told;           ///< of pictures by paths and volumes in measured steps: how exact it is; "" for others
 };
 
 /// Gets pictures that are better than the last one and not yet what was asked for. Called by the thread that draws.

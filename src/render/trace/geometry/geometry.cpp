@@ -12,6 +12,8 @@
 
 namespace sg::trace {
 
+static_assert(Geometry::most_in_packet == packet_rays && Geometry::most_in_stream == stream_rays);
+
 namespace {
 
 /// The scene's diagonal without what it depends on: the boxes of the arrays, lines and points without their radius.

@@ -7,7 +7,7 @@
 namespace sg::trace {
 
 void see_first_met(const World& world, const PictureCamera& camera, MediaWalk* media, const PixelBox& pixels, Frame& frame) {
-  constexpr int packet = 16;
+  constexpr int packet = Geometry::most_in_packet;
   for (int p = 0; p < pixels.count(); p += packet) {
     const int n = std::min(packet, pixels.count() - p);
     Vec2f middle[packet];

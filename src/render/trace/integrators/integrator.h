@@ -27,7 +27,7 @@ struct CameraPath {
 };
 
 /// The most paths that are followed together: one for each pixel of a square of 8 x 8.
-constexpr int most_paths = 64;
+constexpr int most_paths = Geometry::most_in_stream;
 
 class Integrator {
  public:

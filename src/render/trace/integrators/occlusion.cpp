@@ -25,7 +25,7 @@ struct RaysToOpen {
 
 /// Bit i where hits[i] was found.
 uint64_t nearest_of(const Geometry& geometry, std::span<const CameraPath> paths, Hit* hits) {
-  constexpr size_t packet = 16;
+  constexpr size_t packet = Geometry::most_in_packet;
   uint64_t met = 0;
   for (size_t i = 0; i < paths.size(); i += packet) {
     Ray rays[packet];
