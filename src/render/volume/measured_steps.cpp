@@ -89,8 +89,8 @@ std::optional<MeasuredSteps> measure_steps(const Scene& given, Context& outer) {
   drawn.light.shadows = drawn.light.occlusion = drawn.light.depth_cue = 0;
   const double spacing = shortest_spacing(*drawn.data->as<UniformGrid>());
   const Camera camera = fit_camera(drawn.data->bounds(), {1, -2, 1}, {0, 0, 1}, 1, 0.02);
-  Context context(outer, 0, 0.02);
-  context.on_log = nullptr;
+  Context context(outer, 0, 1);
+  context.on_log = nullptr, context.on_progress = nullptr;
 
   MeasuredSteps m;
   std::atomic<uint64_t> turns = 0;

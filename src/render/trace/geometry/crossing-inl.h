@@ -9,7 +9,7 @@
 #endif
 #include "render/trace/geometry/triangle_test.h"
 #include "render/trace/geometry/triangles.h"
-#include "render/trace/geometry/wide_bvh-inl.h"
+#include "render/trace/tree/wide_bvh-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::trace::HWY_NAMESPACE {

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "base/error.h"
-#include "render/trace/geometry/bvh.h"
 #include "render/trace/geometry/object.h"
 #include "render/trace/geometry/triangles.h"
+#include "render/trace/tree/bvh.h"
 
 namespace sg::trace {
 

@@ -7,9 +7,9 @@
 
 #include "base/context.h"
 #include "render/prepare/prepare.h"
-#include "render/trace/geometry/ray.h"
 #include "render/trace/geometry/surface_point.h"
-#include "render/trace/geometry/wide_bvh.h"
+#include "render/trace/tree/ray.h"
+#include "render/trace/tree/wide_bvh.h"
 
 namespace sg::trace {
 

@@ -6,7 +6,7 @@
 
 #include "base/parallel.h"
 #include "render/trace/geometry/surface_point.h"
-#include "render/trace/geometry/wide_bvh.h"
+#include "render/trace/tree/wide_bvh.h"
 
 namespace sg::trace {
 

@@ -7,8 +7,8 @@
 
 #include "base/context.h"
 #include "render/prepare/glyph_set.h"
-#include "render/trace/geometry/ray.h"
 #include "render/trace/geometry/triangles.h"
+#include "render/trace/tree/ray.h"
 
 namespace sg::trace {
 

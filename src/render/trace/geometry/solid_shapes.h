@@ -4,7 +4,7 @@
 #pragma once
 #include <cstdint>
 
-#include "render/trace/geometry/ray.h"
+#include "render/trace/tree/ray.h"
 
 namespace sg::trace {
 

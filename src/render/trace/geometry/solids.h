@@ -11,7 +11,7 @@
 #include "base/context.h"
 #include "base/parallel.h"
 #include "render/trace/geometry/solid_shapes.h"
-#include "render/trace/geometry/wide_bvh.h"
+#include "render/trace/tree/wide_bvh.h"
 
 namespace sg::trace {
 

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/trace/geometry/ray.h"
+#include "render/trace/tree/ray.h"
 
 namespace sg::trace {
 

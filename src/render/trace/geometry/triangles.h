@@ -8,8 +8,8 @@
 
 #include "base/context.h"
 #include "base/huge_allocator.h"
-#include "render/trace/geometry/ray.h"
-#include "render/trace/geometry/wide_bvh.h"
+#include "render/trace/tree/ray.h"
+#include "render/trace/tree/wide_bvh.h"
 
 namespace sg::trace {
 

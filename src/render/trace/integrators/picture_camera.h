@@ -3,8 +3,8 @@
 #pragma once
 #include <optional>
 
-#include "render/trace/geometry/ray.h"
 #include "render/trace/integrators/ray_footprint.h"
+#include "render/trace/tree/ray.h"
 #include "scene/camera.h"
 
 namespace sg::trace {

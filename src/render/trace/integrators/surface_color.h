@@ -3,8 +3,8 @@
 #pragma once
 #include "render/prepare/picture_set.h"
 #include "render/prepare/prepared.h"
-#include "render/trace/geometry/ray.h"
 #include "render/trace/integrators/ray_footprint.h"
+#include "render/trace/tree/ray.h"
 
 namespace sg::trace {
 

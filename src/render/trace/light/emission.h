@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "render/trace/geometry/ray.h"
 #include "render/trace/light/lights.h"
+#include "render/trace/tree/ray.h"
 
 namespace sg::trace {
 

@@ -8,9 +8,9 @@
 #include <variant>
 #include <vector>
 
-#include "render/trace/geometry/ray.h"
 #include "render/trace/light/environment.h"
 #include "render/trace/sampling/distribution.h"
+#include "render/trace/tree/ray.h"
 
 namespace sg::raster {
 struct PlacedPicture;

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/trace/geometry/ray.h"
 #include "render/trace/media/collision.h"
+#include "render/trace/tree/ray.h"
 #include "render/volume/rays/cast.h"
 
 namespace sg::trace {

@@ -29,17 +29,17 @@ uint32_t strata(Vec2f in, const LocalFrame& frame, Vec3f above, Vec3f* direction
   for (int i = 0; i < n; i += int(hn::MaxLanes(d))) {
     // concentric_disc
     const F x = 2.f * ((hn::Load(d, column + i) + in.x) / across) - 1.f, y = 2.f * ((hn::Load(d, row + i) + in.y) / across) - 1.f;
-    const auto wide = hn::Abs(x) > hn::Abs(y);
+    const auto wide = abs(x) > abs(y);
     const F r = select(wide, x, y), angle = (pi / 4) * (select(wide, y, x) / r), a = angle * angle;
     const F cosine = 1.f - a * (1 / 2.f - a * (1 / 24.f - a * (1 / 720.f - a * (1 / 40320.f))));
     const F sine = angle - angle * (a * (1 / 6.f - a * (1 / 120.f - a * (1 / 5040.f - a * (1 / 362880.f)))));
     const auto middle = r == 0.f;
     const F u = select(middle, set(d, 0), r * select(wide, cosine, sine)), v = select(middle, set(d, 0), r * select(wide, sine, cosine));
     // raised to the sphere, in the frame
-    const F w = hn::Sqrt(max(1.f - u * u - v * v, 0.f));
+    const F w = sqrt(max(1.f - u * u - v * v, 0.f));
     F to[3];
     for (int k = 0; k < 3; ++k) to[k] = (frame.x[k] * u + frame.y[k] * v) + frame.z[k] * w;
-    const F length = hn::Sqrt((to[0] * to[0] + to[1] * to[1]) + to[2] * to[2]);
+    const F length = sqrt((to[0] * to[0] + to[1] * to[1]) + to[2] * to[2]);
     for (int k = 0; k < 3; ++k) to[k] = to[k] / length, hn::Store(to[k], d, out[k] + i);
     hn::Store((to[0] * above.x + to[1] * above.y) + to[2] * above.z, d, side + i);
   }

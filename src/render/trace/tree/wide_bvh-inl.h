@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "base/simd/vector-inl.h"
-#include "render/trace/geometry/wide_bvh.h"
+#include "render/trace/tree/wide_bvh.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::trace::HWY_NAMESPACE {

@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "base/huge_allocator.h"
-#include "render/trace/geometry/bvh.h"
+#include "render/trace/tree/bvh.h"
 
 namespace sg::trace {
 

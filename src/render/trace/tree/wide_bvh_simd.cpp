@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/vector_targets.h"
-#include "render/trace/geometry/wide_bvh.h"
+#include "render/trace/tree/wide_bvh.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "render/trace/geometry/wide_bvh_simd.cpp"
+#define HWY_TARGET_INCLUDE "render/trace/tree/wide_bvh_simd.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "render/trace/geometry/wide_bvh-inl.h"
+#include "render/trace/tree/wide_bvh-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::trace::HWY_NAMESPACE {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/trace/geometry/wide_bvh.h"
+#include "render/trace/tree/wide_bvh.h"
 
 #include <algorithm>
 #include <limits>

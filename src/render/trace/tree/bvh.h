@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "index/box_tree.h"
-#include "render/trace/geometry/ray.h"
+#include "render/trace/tree/ray.h"
 
 namespace sg::trace {
 

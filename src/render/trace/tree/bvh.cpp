@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/trace/geometry/bvh.h"
+#include "render/trace/tree/bvh.h"
 
 #include <cmath>
 
