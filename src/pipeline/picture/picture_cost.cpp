@@ -55,9 +55,9 @@ std::string explain_drawing(const PipelineFile& file, const PipelineGraph& built
   return text + rounded(seconds / threads) + "\n";
 }
 
-std::string note_of_long_drawing(const Scene& scene, double pixels) {
-  if (steps_may_be_measured(scene)) return "";  // told when that is known
-  constexpr double is_long = 15;                // seconds of processor time
+std::string note_of_long_drawing(const Scene& scene, double pixels, const Context& context) {
+  if (steps_may_be_measured(scene, context)) return "";  // told when that is known
+  constexpr double is_long = 15;                         // seconds of processor time
   double seconds = 0, tolerance = 0;
   for (const Item& item : scene.items) {
     const auto* volume = std::get_if<VolumeItem>(&item);

@@ -13,6 +13,6 @@ namespace sg {
 std::string explain_drawing(const PipelineFile& file, const PipelineGraph& built);
 
 /// Before a volume is drawn within a tolerance that will take long: for how long, why, and what takes less. "" for others.
-std::string note_of_long_drawing(const Scene& scene, double pixels);
+std::string note_of_long_drawing(const Scene& scene, double pixels, const Context& context);
 
 }  // namespace sg

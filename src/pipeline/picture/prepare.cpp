@@ -159,7 +159,7 @@ PreparedPicture prepare_picture(PipelineFile& file, const PictureOptions& option
     s.patient = all_most(int(s.patient), context.communicator) > 0;
   }
   for (const Shown& s : shown)
-    if (const std::string note = note_of_long_drawing(s.scene, double(stated.width) * double(stated.height)); !note.empty())
+    if (const std::string note = note_of_long_drawing(s.scene, double(stated.width) * double(stated.height), context); !note.empty())
       once.info(note);
   const bool traced = std::all_of(shown.begin(), shown.end(), [](const Shown& s) { return scatters_light(s.scene); });
   if (const std::string note = note_of_lost_light(stated); !note.empty() && !traced) once.info(note);

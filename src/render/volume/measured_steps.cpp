@@ -48,11 +48,17 @@ Frame small_picture(const Scene& scene, const Camera& camera, std::atomic<uint64
   return frame;
 }
 
-/// Of the pixels that the first shows something in, in ascending order.
-std::vector<float> errors(const Frame& truth, const Frame& frame) {
+std::vector<size_t> pixels_with_something(const Frame& frame) {
+  std::vector<size_t> found;
+  for (size_t i = 0; i < frame.pixels(); ++i)
+    if (frame.rgba[4 * i + 3] > 0) found.push_back(i);
+  return found;
+}
+
+/// Of some pixels, in ascending order.
+std::vector<float> errors(const Frame& truth, const Frame& frame, const std::vector<size_t>& pixels) {
   std::vector<float> found;
-  for (size_t i = 0; i < truth.pixels(); ++i) {
-    if (truth.rgba[4 * i + 3] == 0) continue;
+  for (const size_t i : pixels) {
     float most = 0;
     for (size_t c = 0; c < 4; ++c) most = std::max(most, std::abs(truth.rgba[4 * i + c] - frame.rgba[4 * i + c]));
     found.push_back(most);
@@ -76,14 +82,14 @@ std::string MeasuredSteps::text() const {
       parts, rays, usual, largest, tolerance);
 }
 
-bool steps_may_be_measured(const Scene& scene) {
+bool steps_may_be_measured(const Scene& scene, const Context& context) {
   const VolumeItem* v = only_volume(scene.items);
-  return v && is_left_to_us(*v) && shortest_spacing(*v->data->as<UniformGrid>()) > 0;
+  return v && !context.communicator && is_left_to_us(*v) && shortest_spacing(*v->data->as<UniformGrid>()) > 0;
 }
 
 std::optional<MeasuredSteps> measure_steps(const Scene& given, Context& outer) {
+  if (!steps_may_be_measured(given, outer)) return {};
   Scene scene = given;
-  if (outer.communicator || !steps_may_be_measured(scene)) return {};
   scene.items = {*only_volume(scene.items)};
   auto& drawn = std::get<VolumeItem>(scene.items[0]);
   drawn.light.shadows = drawn.light.occlusion = drawn.light.depth_cue = 0;
@@ -95,12 +101,13 @@ std::optional<MeasuredSteps> measure_steps(const Scene& given, Context& outer) {
   MeasuredSteps m;
   std::atomic<uint64_t> turns = 0;
   const Frame truth = small_picture(scene, camera, &turns, context);
-  m.rays = errors(truth, truth).size(), m.turns = double(turns) / (side * side);
+  const std::vector<size_t> pixels = pixels_with_something(truth);
+  m.rays = pixels.size(), m.turns = double(turns) / (side * side);
   outer.log(LogLevel::debug, fmt::format("rays within the tolerance go on {:.0f} times on average", m.turns));
   if (m.turns < many_turns || m.rays == 0) return {};
   for (const int parts : {2, 4, 8}) {
     drawn.sampling.step = spacing / parts;
-    const std::vector<float> off = errors(truth, small_picture(scene, camera, nullptr, context));
+    const std::vector<float> off = errors(truth, small_picture(scene, camera, nullptr, context), pixels);
     m.usual = double(off[off.size() * 99 / 100]), m.largest = double(off.back());
     outer.log(LogLevel::debug,
               fmt::format("steps of 1/{}: 99 in 100 rays are within {:.4f}, all within {:.4f}", parts, m.usual, m.largest));

@@ -19,8 +19,9 @@ struct MeasuredSteps {
   std::string text() const;
 };
 
-/// Whether the only volume of a scene is a uniform grid without a stated tolerance or step, lit and composited along rays.
-bool steps_may_be_measured(const Scene& scene);
+/// Whether the only volume of a scene is a uniform grid without a stated tolerance or step, lit and composited along rays, and all of it
+/// is here (Context::communicator).
+bool steps_may_be_measured(const Scene& scene, const Context& context);
 /// Of such a scene: whether rays go on so often, as through noise, that steps of 1/2, 1/4 or 1/8 of the distance of samples are better;
 /// the longest for which 99 rays in 100 are within eight times the usual tolerance. Empty for all others. Depends on the volume and the
 /// lights alone, not on camera and size, so that all pictures of a scene are drawn alike. Shadows and occlusion are left out. O(6400 rays).

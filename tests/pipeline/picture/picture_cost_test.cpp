@@ -43,7 +43,7 @@ TEST_CASE("drawing: a lit volume that takes long says so, others do not") {
     Scene scene;
     Context context;
     kind.add(scene, data, show_params(kind, words), context);
-    return note_of_long_drawing(scene, pixels);
+    return note_of_long_drawing(scene, pixels, context);
   };
   CHECK(note({"tolerance=0.002"}, 3840.0 * 2160).find("tolerance=0.01 takes about half") != std::string::npos);
   CHECK_FALSE(note({"tolerance=0.002"}, 1920.0 * 1080).empty());

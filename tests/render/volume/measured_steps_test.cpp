@@ -54,7 +54,7 @@ TEST_CASE("measured steps: what is stated is kept, and so is what is not lit or 
   const auto measured = [&](auto&& change) {
     Scene s = scene(0.5);
     change(s);
-    return steps_may_be_measured(s) && measure_steps(s, context).has_value();
+    return steps_may_be_measured(s, context) && measure_steps(s, context).has_value();
   };
   CHECK(measured([](Scene&) {}));
   CHECK_FALSE(measured([](Scene& s) { volume_of(s).sampling.tolerance = 1.0 / 512; }));

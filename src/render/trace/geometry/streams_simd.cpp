@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Streams of rays against a tree of triangles: every node and leaf on the way of any of them is looked at once, by those that come there
-// one after the other (Barringer, Akenine-Moller 2014, "Dynamic ray stream traversal"). The same result as for one ray.
+// one after the other (Barringer, Akenine-Möller 2014, "Dynamic ray stream traversal"). The same result as for one ray.
 #include <optional>
 
 #include "base/vector_targets.h"
