@@ -58,9 +58,12 @@ Sampler::Sampler(SamplerKind kind, uint64_t seed, int samples_per_pixel) : kind_
   columns_ = uint32_t(std::sqrt(double(count_)));
   rows_ = (count_ + columns_ - 1) / columns_;
   while (count_ > 1u << curve_bits_) ++curve_bits_;
-  if (kind == SamplerKind::blue_noise) block_bits_ = curve_bits_ <= 4 ? curve_bits_ : curve_bits_ % 2 ? 3 : 4;  // the rest by twos
-  else
+  if (kind == SamplerKind::blue_noise) {
+    block_bits_ = curve_bits_ <= 4 ? curve_bits_ : curve_bits_ % 2 ? 3 : 4;  // the rest by twos
+    of_block_.resize(size_t(kept_dimensions) * pixels_of_square);
+  } else {
     while (block_bits_ < 4 && count_ % (2u << block_bits_) == 0) ++block_bits_;
+  }
 }
 
 void Sampler::start(uint32_t x, uint32_t y, uint32_t sample, uint32_t dimension) {
@@ -99,24 +102,44 @@ uint64_t Sampler::shuffled_digit(uint64_t key, int shift) const {
 }
 
 // The place along the curve in an order that is shuffled within every square of 2^k pixels; blocks of samples of a pixel as above.
-uint64_t Sampler::curve_index(uint64_t key) {
-  const int in_square = curve_bits_ + 6;
-  OfSquare& of_square = of_square_[size_t(key) % of_square_.size()];
-  if (const uint64_t square = along_curve_ >> in_square; of_square.key != key || of_square.square != square) {
-    of_square = {key, square, 0};
-    for (int shift = curve_bits_ + 30; shift >= in_square; shift -= 2) of_square.shuffled |= shuffled_digit(key, shift);
-  }
+uint64_t Sampler::curve_index(uint64_t key, OfSquare& of_square, OfBlock& of_block) const {
   const uint64_t block = along_curve_ >> block_bits_;
   const uint32_t in_block = uint32_t(along_curve_) & ((1u << block_bits_) - 1);
-  uint64_t shuffled = of_square.shuffled | permuted(in_block, 1u << block_bits_, random_bits(key + 64, block));
-  for (int shift = in_square - 2; shift >= block_bits_; shift -= 2) shuffled |= shuffled_digit(key, shift);
-  return shuffled;
+  if (of_block.key != key || of_block.block != block) {
+    const int in_square = curve_bits_ + 6;
+    if (const uint64_t square = along_curve_ >> in_square; of_square.square != square) {
+      of_square.square = square, of_square.shuffled = 0;
+      for (int shift = curve_bits_ + 30; shift >= in_square; shift -= 2) of_square.shuffled |= shuffled_digit(key, shift);
+    }
+    of_block = {key, block, of_square.shuffled, all_permuted(1u << block_bits_, random_bits(key + 64, block))};
+    for (int shift = in_square - 2; shift >= block_bits_; shift -= 2) of_block.shuffled |= shuffled_digit(key, shift);
+  }
+  return of_block.shuffled | (of_block.places >> 4 * in_block & 15);
+}
+
+Sampler::Point Sampler::point(uint32_t dimension) {
+  if (kind_ == SamplerKind::sobol) {
+    const uint64_t key = random_bits(key_, dimension);
+    return {block_index(key), random_bits(~key, 0)};
+  }
+  const uint32_t slot = dimension % kept_dimensions;
+  OfSquare& of_square = of_square_[slot];
+  if (of_square.dimension != dimension || of_square.pattern != key_) {
+    const uint64_t key = random_bits(key_, dimension);
+    of_square = {.pattern = key_, .dimension = dimension, .key = key, .digits = random_bits(~key, 0)};
+  }
+  OfBlock& of_block = of_block_[slot * pixels_of_square + (along_curve_ >> curve_bits_) % pixels_of_square];
+  return {curve_index(of_square.key, of_square, of_block), of_square.digits};
 }
 
 uint64_t Sampler::stream() { return random_bits(random_bits(key_ ^ seed_, along_curve_), uint64_t(index_) << 32 | dimension_++); }
 
 float Sampler::next() {
   const uint32_t dimension = dimension_++;
+  if (is_sobol()) {
+    const Point p = point(dimension);
+    return unit_float(scrambled_reverse(uint32_t(p.index), lower(p.digits)));
+  }
   const uint64_t key = random_bits(key_, dimension);
   switch (kind_) {
     case SamplerKind::independent: return unit_float(upper(key));
@@ -127,14 +150,20 @@ float Sampler::next() {
       const uint32_t index = dimension < prime_count ? index_ : permuted(index_, count_, key);
       return owen_radical_inverse(prime(dimension % prime_count), index, count_, key);
     }
-    case SamplerKind::sobol: return unit_float(owen_scrambled(sobol_first(block_index(key)), lower(random_bits(~key, 0))));
-    case SamplerKind::blue_noise: return unit_float(owen_scrambled(sobol_first(curve_index(key)), lower(random_bits(~key, 0))));
+    case SamplerKind::sobol:
+    case SamplerKind::blue_noise: break;
   }
   return 0;
 }
 
 Vec2f Sampler::next2() {
   const uint32_t dimension = dimension_;
+  if (is_sobol()) {
+    dimension_ += 2;
+    const Point p = point(dimension);
+    return {unit_float(scrambled_reverse(uint32_t(p.index), upper(p.digits))),
+            unit_float(scrambled_reverse(sobol_second_digits(p.index), lower(p.digits)))};
+  }
   const uint64_t key = random_bits(key_, dimension);
   switch (kind_) {
     case SamplerKind::independent: dimension_ += 2; return {unit_float(upper(key)), unit_float(lower(key))};
@@ -160,13 +189,7 @@ Vec2f Sampler::next2() {
       return {x, next()};
     }
     case SamplerKind::sobol:
-    case SamplerKind::blue_noise: {
-      dimension_ += 2;
-      const uint64_t index = kind_ == SamplerKind::sobol ? block_index(key) : curve_index(key);
-      const uint64_t digits = random_bits(~key, 0);
-      return {unit_float(owen_scrambled(sobol_first(index), upper(digits))),
-              unit_float(owen_scrambled(sobol_second(index), lower(digits)))};
-    }
+    case SamplerKind::blue_noise: break;
   }
   return {};
 }

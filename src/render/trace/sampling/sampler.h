@@ -12,6 +12,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "base/schema/enum_words.h"
 #include "base/vec.h"
@@ -50,13 +51,27 @@ class Sampler {
   uint32_t dimension() const { return dimension_; }
 
  private:
-  /// Along the curve: what a square of 8 x 8 pixels has in common, for a dimension.
+  /// Along the curve, for a dimension: what a pattern and a square of 8 x 8 pixels have in common.
   struct OfSquare {
-    uint64_t key = 0, square = ~uint64_t(0), shuffled = 0;
+    uint64_t pattern = 0, dimension = ~uint64_t(0);
+    uint64_t key = 0, digits = 0;
+    uint64_t square = ~uint64_t(0), shuffled = 0;
   };
+  /// And what the samples of a block have.
+  struct OfBlock {
+    uint64_t key = 0, block = ~uint64_t(0), shuffled = 0;
+    uint64_t places = 0;  ///< of sample i in four bits from 4 i on
+  };
+  /// Of Sobol's sequence, and what scrambles the digits of a dimension.
+  struct Point {
+    uint64_t index, digits;
+  };
+  static constexpr uint32_t kept_dimensions = 32, pixels_of_square = 64;
 
+  bool is_sobol() const { return kind_ == SamplerKind::sobol || kind_ == SamplerKind::blue_noise; }
+  Point point(uint32_t dimension);
   uint32_t block_index(uint64_t key) const;
-  uint64_t curve_index(uint64_t key);
+  uint64_t curve_index(uint64_t key, OfSquare& of_square, OfBlock& of_block) const;
   uint64_t shuffled_digit(uint64_t key, int shift) const;
 
   SamplerKind kind_;
@@ -67,7 +82,8 @@ class Sampler {
   uint64_t seed_;             // mixed
   uint64_t key_ = 0;          // of pixel and pattern; independent: of the sample; blue noise: of the pattern
   uint64_t along_curve_ = 0;  // blue noise: pixel and sample as one number
-  std::array<OfSquare, 32> of_square_;
+  std::array<OfSquare, kept_dimensions> of_square_;
+  std::vector<OfBlock> of_block_;  // blue noise: of the pixels of a square, dimension by dimension
   uint32_t index_ = 0;  // of the sample in its pattern
   uint32_t dimension_ = 0;
 };

@@ -15,17 +15,18 @@ namespace sg::trace {
 /// less than that.
 constexpr uint32_t sobol_first(uint64_t index) { return reverse_bits(uint32_t(index)); }
 
-/// Second coordinate. Its generator matrix is Pascal's triangle mod 2, binomial(j, i) for digit i and bit j of the index, which is odd
-/// where the bits of i are among those of j: each digit is the sum of the bits of the index whose numbers include its own. Six halvings add
-/// them up.
-constexpr uint32_t sobol_second(uint64_t index) {
+/// The digits of the second coordinate, the first one in the lowest bit. Its generator matrix is Pascal's triangle mod 2, binomial(j, i) for
+/// digit i and bit j of the index, which is odd where the bits of i are among those of j: each digit is the sum of the bits of the index
+/// whose numbers include its own. Six halvings add them up.
+constexpr uint32_t sobol_second_digits(uint64_t index) {
   index ^= (index & 0xAAAAAAAAAAAAAAAAull) >> 1;
   index ^= (index & 0xCCCCCCCCCCCCCCCCull) >> 2;
   index ^= (index & 0xF0F0F0F0F0F0F0F0ull) >> 4;
   index ^= (index & 0xFF00FF00FF00FF00ull) >> 8;
   index ^= (index & 0xFFFF0000FFFF0000ull) >> 16;
-  index ^= index >> 32;
-  return reverse_bits(uint32_t(index));
+  return uint32_t(index ^ index >> 32);
 }
+/// Second coordinate.
+constexpr uint32_t sobol_second(uint64_t index) { return reverse_bits(sobol_second_digits(index)); }
 
 }  // namespace sg::trace
