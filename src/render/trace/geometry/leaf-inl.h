@@ -40,9 +40,10 @@ HWY_INLINE Crossing<D8> cross_block(const LeafRay& r, const TriangleBlock& block
   return Crossing<D8>(x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2], set(d, r.ray.sz));
 }
 
-/// Takes what is nearer in the block; `found`: the hit is one already.
-HWY_INLINE void nearest_in(const LeafRay& r, const TriangleBlock& block, Hit& hit, bool& found) {
+/// Takes what is nearer in the block, and whether there is any; `found`: the hit is one already.
+HWY_INLINE bool nearest_in(const LeafRay& r, const TriangleBlock& block, Hit& hit, bool& found) {
   const D8 d;
+  bool nearer = false;
   for (int i = 0; i < wide; i += lanes8) {
     const Crossing<D8> c = cross_block(r, block, i);
     if (none(c.met)) continue;
@@ -58,9 +59,10 @@ HWY_INLINE void nearest_in(const LeafRay& r, const TriangleBlock& block, Hit& hi
       const float at = in_front >> lane & 1 ? ts[lane] : exact(r.ray, block, i + lane, far[lane]);
       const uint32_t number = block.triangle[i + lane];
       if (!(at < hit.t || (at == hit.t && (!found || number < hit.primitive)))) continue;
-      hit.t = at, hit.primitive = number, hit.u = us[lane], hit.v = vs[lane], found = true;
+      hit.t = at, hit.primitive = number, hit.u = us[lane], hit.v = vs[lane], found = nearer = true;
     }
   }
+  return nearer;
 }
 
 HWY_INLINE bool any_in(const LeafRay& r, const TriangleBlock& block, float t_max) {

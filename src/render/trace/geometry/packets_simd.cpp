@@ -37,7 +37,8 @@ HWY_INLINE uint32_t bits_of_rays(Mask<DP> m) {
   return uint32_t(bytes[0]) | uint32_t(bytes[1]) << 8;
 }
 
-HWY_INLINE void meet_packet(Packet& p, const TriangleBlock& block, int place) {
+/// Whether the triangle is the nearest of some.
+HWY_INLINE bool meet_packet(Packet& p, const TriangleBlock& block, int place) {
   const DP d;
   const hn::RebindToUnsigned<DP> du;
   const uint32_t number = block.triangle[place];
@@ -75,10 +76,11 @@ HWY_INLINE void meet_packet(Packet& p, const TriangleBlock& block, int place) {
     hn::Store(select(better, c.wc / c.det, hn::Load(d, p.v + i)), d, p.v + i);
     hn::Store(select(better, set(du, number), before), du, p.primitive + i);
   }
-  if (!nearer) return;
+  if (!nearer) return false;
   FP far = set(d, 0);
   for (int i = 0; i < packet_rays; i += lanes_p) far = max(far, hn::Load(d, p.t + i));
   p.farthest = hn::GetLane(hn::MaxOfLanes(d, far));
+  return true;
 }
 
 /// Sixteen rays with the same longest axis and signs; of fewer the last one stands in for the others.
@@ -100,7 +102,8 @@ uint32_t packet_triangles(const Triangles& in, const Ray* rays, int count, const
       in.tree().nodes().data(), bounds, p.farthest,
       [&](uint32_t leaf) {
         const TriangleBlock& b = blocks[leaf];
-        for (int k = 0; k < wide && b.triangle[k] != UINT32_MAX; ++k) meet_packet(p, b, k);
+        for (int k = 0; k < wide && b.triangle[k] != UINT32_MAX; ++k)
+          if (meet_packet(p, b, k)) in.fetch(b.triangle[k]);
         return false;
       },
       [&](uint32_t leaf) { prefetch_lines(blocks + leaf, 5); });

@@ -23,7 +23,7 @@ bool nearest_triangle(const Triangles& in, const Ray& ray, Hit& hit) {
   walk(
       in.tree().nodes().data(), NodeRay<false>(BoxRay(ray)), hit.t,
       [&](uint32_t leaf) {
-        nearest_in(r, blocks[leaf], hit, found);
+        if (nearest_in(r, blocks[leaf], hit, found)) in.fetch(hit.primitive);
         return false;
       },
       [&](uint32_t leaf) { prefetch_lines(blocks + leaf, 5); });
