@@ -21,7 +21,7 @@ struct GeometryOptions;
 class Geometry {
  public:
   class Object;
-  static constexpr int most_in_packet = 16, most_in_stream = 64;  ///< rays that are followed together
+  static constexpr int most_together = 64;  ///< rays that are followed together
   Geometry();
   Geometry(Geometry&&) noexcept;
   Geometry& operator=(Geometry&&) noexcept;
@@ -33,12 +33,12 @@ class Geometry {
 
   /// The nearest hit with 0 < t <= ray.t_max; false leaves `hit` as it is.
   bool nearest(const Ray& ray, Hit& hit) const;
-  /// Of up to most_in_packet rays that start at about the same place in about the same direction, as those of neighbouring pixels: faster
-  /// than one by one, with the same result. Bit i tells whether hits[i] was set.
-  uint32_t nearest(const Ray* rays, int count, Hit* hits) const;
+  /// Of up to most_together rays: with the same result as one by one, and faster where sixteen after each other start at about the same
+  /// place in about the same direction, as those of neighbouring pixels. Bit i tells whether hits[i] was set.
+  uint64_t nearest(const Ray* rays, int count, Hit* hits) const;
   /// Whether anything is met at 0 < t <= ray.t_max.
   bool blocked(const Ray& ray) const;
-  /// The same of up to most_in_stream rays of any kind: bit i of the result of rays[i]. Faster than one by one.
+  /// The same of up to most_together rays of any kind: bit i of the result of rays[i]. Faster than one by one.
   uint64_t blocked(const Ray* rays, int count) const;
   /// The place of a hit of this ray.
   SurfacePoint at(const Ray& ray, const Hit& hit) const;

@@ -7,17 +7,17 @@
 namespace sg::trace {
 
 void see_first_met(const World& world, const PictureCamera& camera, MediaWalk* media, const PixelBox& pixels, Frame& frame) {
-  constexpr int packet = Geometry::most_in_packet;
-  for (int p = 0; p < pixels.count(); p += packet) {
-    const int n = std::min(packet, pixels.count() - p);
-    Vec2f middle[packet];
-    Ray rays[packet];
-    Hit hits[packet];
+  constexpr int most = Geometry::most_together;
+  for (int p = 0; p < pixels.count(); p += most) {
+    const int n = std::min(most, pixels.count() - p);
+    Vec2f middle[most];
+    Ray rays[most];
+    Hit hits[most];
     for (int i = 0; i < n; ++i) {
       middle[i] = {float(pixels.column(p + i)) + 0.5f, float(pixels.row(p + i)) + 0.5f};
       rays[i] = camera.ray(middle[i]);
     }
-    const uint32_t met = world.geometry().nearest(rays, n, hits);
+    const uint64_t met = world.geometry().nearest(rays, n, hits);
     for (int i = 0; i < n; ++i) {
       const size_t pixel = size_t(pixels.row(p + i)) * size_t(frame.width) + size_t(pixels.column(p + i));
       Hit& hit = hits[i];

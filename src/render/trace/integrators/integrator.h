@@ -27,7 +27,14 @@ struct CameraPath {
 };
 
 /// The most paths that are followed together: one for each pixel of a square of 8 x 8.
-constexpr int most_paths = Geometry::most_in_stream;
+constexpr int most_paths = Geometry::most_together;
+
+/// What the paths meet first: bit i where hits[i] was found.
+inline uint64_t first_hits(const Geometry& geometry, std::span<const CameraPath> paths, Hit* hits) {
+  Ray rays[most_paths];
+  for (size_t i = 0; i < paths.size(); ++i) rays[i] = paths[i].ray;
+  return geometry.nearest(rays, int(paths.size()), hits);
+}
 
 class Integrator {
  public:

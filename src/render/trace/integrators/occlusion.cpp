@@ -23,19 +23,6 @@ struct RaysToOpen {
   }
 };
 
-/// Bit i where hits[i] was found.
-uint64_t nearest_of(const Geometry& geometry, std::span<const CameraPath> paths, Hit* hits) {
-  constexpr size_t packet = Geometry::most_in_packet;
-  uint64_t met = 0;
-  for (size_t i = 0; i < paths.size(); i += packet) {
-    Ray rays[packet];
-    const size_t n = std::min(packet, paths.size() - i);
-    for (size_t k = 0; k < n; ++k) rays[k] = paths[i + k].ray;
-    met |= uint64_t(geometry.nearest(rays, int(n), hits + i)) << i;
-  }
-  return met;
-}
-
 class OcclusionIntegrator : public Integrator {
  public:
   explicit OcclusionIntegrator(float reach) : reach_(reach) {}
@@ -84,7 +71,7 @@ class OcclusionIntegrator : public Integrator {
   void along_all(const World& world, std::span<const CameraPath> paths, Sampler& sampler, Estimate* estimates) const override {
     if (world.has_media()) return Integrator::along_all(world, paths, sampler, estimates);
     Hit hits[most_paths];
-    const uint64_t met = nearest_of(world.geometry(), paths, hits);
+    const uint64_t met = first_hits(world.geometry(), paths, hits);
     std::fill_n(estimates, paths.size(), Estimate{.passed = 1});
     if (met == 0) return;
     Ray rays[cosine_strata_count][most_paths];

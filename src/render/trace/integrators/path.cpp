@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <vector>
 
 #include "render/trace/integrators/integrator.h"
 #include "render/trace/integrators/roulette.h"
+#include "render/trace/integrators/shadow_rays.h"
 #include "render/trace/integrators/subsurface_walk.h"
 #include "render/trace/light/fade.h"
 #include "render/trace/light/luminance.h"
@@ -47,6 +50,15 @@ struct Path {
   void go_straight(Vec3f from, float length) { since += length, ray = {from, ray.direction, infinite}; }
 };
 
+/// What a path is followed with, and what for.
+struct Following {
+  const World& world;
+  MediaWalk* media;  // or null
+  Sampler& sampler;
+  ShadowRays* shadows;  // where rays to lights may wait, or null
+  Estimate& out;
+};
+
 class PathIntegrator : public Integrator {
  public:
   explicit PathIntegrator(int bounces, bool mirrors_only) : bounces_(bounces), mirrors_only_(mirrors_only) {}
@@ -54,6 +66,7 @@ class PathIntegrator : public Integrator {
   Estimate along(const World& world, const Ray& first, Sampler& sampler, const RayFootprint& footprint) const override {
     const Media::Borrowed media = world.borrow_media();
     Estimate out;
+    const Following f{world, media.get(), sampler, nullptr, out};
     Path path(first, footprint);
     path.insides = world.insides_of_viewer();
     const bool split = media && media->exact();
@@ -68,45 +81,87 @@ class PathIntegrator : public Integrator {
         Path scattered = path;
         scattered.share = 1 - passes, scattered.throughput = scattered.throughput * scattered.share;
         const auto matter = media->collide_surely(u, random);
-        if (matter && scatter(world, media.get(), *matter, scattered, sampler, out))
-          follow(world, media.get(), scattered, false, sampler, out);
+        if (matter && scatter(f, *matter, scattered)) follow(f, scattered, false);
       }
       path.share = passes, path.throughput = path.throughput * passes;
       if (!(passes > 0)) return out;
     }
-    follow(world, media.get(), path, split, sampler, out);
+    follow(f, path, split);
     return out;
   }
 
- private:
-  /// On to the end. `past_media`: what the path meets of media before the first surface is known.
-  void follow(const World& world, MediaWalk* media, Path& path, bool past_media, Sampler& sampler, Estimate& out) const {
-    for (;; past_media = false) {
-      Hit hit;
-      const bool met = world.geometry().nearest(path.ray, hit);
-      path.ray.t_max = met ? hit.t : infinite;
-      std::optional<Collision> matter;
-      if (media && !past_media) {
-        const float u = sampler.next();
-        RandomStream random(sampler.stream());
-        matter = media->collide(path.ray, u, random);
-        if (matter) path.ray.t_max = matter->t;
+  // A turn of all of them, then the next one: their first rays go about the same way, those to the lights wait for each other.
+  void along_all(const World& world, std::span<const CameraPath> first, Sampler& sampler, Estimate* estimates) const override {
+    if (world.has_media()) return Integrator::along_all(world, first, sampler, estimates);
+    std::vector<Path> paths;
+    paths.reserve(first.size());
+    uint32_t dimension[most_paths];
+    uint64_t going = 0;
+    for (size_t i = 0; i < first.size(); ++i) {
+      paths.emplace_back(first[i].ray, first[i].footprint).insides = world.insides_of_viewer();
+      dimension[i] = first[i].dimension, estimates[i] = {}, going |= uint64_t(1) << i;
+    }
+    Hit hits[most_paths];
+    uint64_t met = first_hits(world.geometry(), first, hits);
+    ShadowRays shadows(world.geometry());
+    for (;;) {
+      for (uint64_t bits = going; bits; bits &= bits - 1) {
+        const auto i = size_t(std::countr_zero(bits));
+        const bool hit = met >> i & 1;
+        sampler.start(first[i].x, first[i].y, first[i].sample, dimension[i]);
+        paths[i].ray.t_max = hit ? hits[i].t : infinite;
+        const Following f{world, nullptr, sampler, world.translucent() ? nullptr : &shadows, estimates[i]};
+        if (!turn(f, paths[i], hit ? &hits[i] : nullptr, nullptr)) going &= ~(uint64_t(1) << i);
+        dimension[i] = sampler.dimension();
       }
-      const Vec3f absorption = path.insides.absorption();
-      if (!path.straight) {
-        const Ray seen{path.turned_at, path.ray.direction, path.since + path.ray.t_max};
-        out.radiance += path.throughput * world.lamps().seen(seen, path.since, path.pdf, absorption);
-      } else if (!met && !matter) {
-        out.passed = luminance(path.throughput);
+      shadows.settle();
+      if (going == 0) return;
+      met = 0;
+      for (uint64_t bits = going; bits; bits &= bits - 1) {
+        const auto i = size_t(std::countr_zero(bits));
+        hits[i] = {}, met |= uint64_t(world.geometry().nearest(paths[i].ray, hits[i])) << i;
       }
-      if (!met && !matter) break;
-      path.throughput = path.throughput * fade(absorption, path.ray.t_max);
-      if (!(matter ? scatter(world, media, *matter, path, sampler, out) : meet(world, media, hit, path, sampler, out))) break;
     }
   }
 
+ private:
+  using Integrator::along;
+
+  /// On to the end. `past_media`: what the path meets of media before the first surface is known.
+  void follow(const Following& f, Path& path, bool past_media) const {
+    for (;; past_media = false) {
+      Hit hit;
+      const bool met = f.world.geometry().nearest(path.ray, hit);
+      path.ray.t_max = met ? hit.t : infinite;
+      std::optional<Collision> matter;
+      if (f.media && !past_media) {
+        const float u = f.sampler.next();
+        RandomStream random(f.sampler.stream());
+        matter = f.media->collide(path.ray, u, random);
+        if (matter) path.ray.t_max = matter->t;
+      }
+      if (!turn(f, path, met ? &hit : nullptr, matter ? &*matter : nullptr)) break;
+    }
+  }
+
+  /// On from what is met first, a surface or matter before it, or neither; false where the path ends.
+  bool turn(const Following& f, Path& path, const Hit* hit, const Collision* matter) const {
+    const Vec3f absorption = path.insides.absorption();
+    if (!path.straight) {
+      const Ray seen{path.turned_at, path.ray.direction, path.since + path.ray.t_max};
+      f.out.radiance += path.throughput * f.world.lamps().seen(seen, path.since, path.pdf, absorption);
+    } else if (!hit && !matter) {
+      f.out.passed = luminance(path.throughput);
+    }
+    if (!hit && !matter) return false;
+    path.throughput = path.throughput * fade(absorption, path.ray.t_max);
+    return matter ? scatter(f, *matter, path) : meet(f, *hit, path);
+  }
+
   /// On from a surface; false where the path ends.
-  bool meet(const World& world, MediaWalk* media, const Hit& hit, Path& path, Sampler& sampler, Estimate& out) const {
+  bool meet(const Following& f, const Hit& hit, Path& path) const {
+    const World& world = f.world;
+    Sampler& sampler = f.sampler;
     const Vertex v = world.at(path.ray, hit, path.footprint, !mirrors_only_, path.insides);
     const Vec3f along = path.ray.direction;
     if (v.hidden) {
@@ -118,7 +173,7 @@ class PathIntegrator : public Integrator {
     if (!is_dark(v.emission)) {
       const float p =
           world.lamps().triangle_pdf(hit.object, hit.primitive, path.since + hit.t, dot(path.ray.direction, v.point.face_normal));
-      out.radiance += path.throughput * v.emission * power_weight(path.pdf, p);
+      f.out.radiance += path.throughput * v.emission * power_weight(path.pdf, p);
     }
     const Vec3f wo = v.frame.to_local(-path.ray.direction);
     const Lights& lights = mirrors_only_ ? world.lights() : world.lamps();
@@ -132,7 +187,7 @@ class PathIntegrator : public Integrator {
           return {v.bsdf.evaluate(wo, wi) * std::abs(wi.z), mirrors_only_ ? 0 : v.bsdf.pdf(wo, wi)};
         };
         const auto from = [&](Vec3f direction) { return Start{leave(v.point, direction), v.onward(path.insides, along, direction)}; };
-        out.radiance += path.throughput * direct(world, lights, media, v.point.position, from, scattered, choice, u, sampler);
+        ask_light(f, lights, path.throughput, v.point.position, from, scattered, choice, u);
       }
     }
 
@@ -144,7 +199,7 @@ class PathIntegrator : public Integrator {
         const auto exit = walk_below(world, v, random);
         if (!exit) return false;
         path.throughput = path.throughput * enters * exit->weight / chance;
-        return come_out(world, media, exit->at, path, sampler, out);
+        return come_out(f, exit->at, path);
       }
       path.throughput = path.throughput / (1 - chance);
     }
@@ -173,7 +228,8 @@ class PathIntegrator : public Integrator {
   }
 
   /// On from where light leaves a body in which it wandered; false where the path ends.
-  bool come_out(const World& world, MediaWalk* media, const Vertex& v, Path& path, Sampler& sampler, Estimate& out) const {
+  bool come_out(const Following& f, const Vertex& v, Path& path) const {
+    Sampler& sampler = f.sampler;
     const auto scattered = [&](Vec3f direction) -> Scattered {
       const Vec3f wi = v.frame.to_local(direction);
       if (!(wi.z > 0) || !(dot(direction, v.point.face_normal) > 0)) return {};
@@ -181,10 +237,10 @@ class PathIntegrator : public Integrator {
       return {{share, share, share}, density};
     };
     const auto from = [&](Vec3f direction) { return Start{leave(v.point, direction), path.insides}; };
-    if (world.lamps().asks()) {
+    if (const Lights& lights = f.world.lamps(); lights.asks()) {
       const float choice = sampler.next();
       const Vec2f u = sampler.next2();
-      out.radiance += path.throughput * direct(world, world.lamps(), media, v.point.position, from, scattered, choice, u, sampler);
+      ask_light(f, lights, path.throughput, v.point.position, from, scattered, choice, u);
     }
 
     const Vec3f direction = normalize(v.frame.to_world(cosine_hemisphere(sampler.next2())));
@@ -198,8 +254,9 @@ class PathIntegrator : public Integrator {
   }
 
   /// On from a place in a volume; false where the path ends.
-  bool scatter(const World& world, MediaWalk* media, const Collision& c, Path& path, Sampler& sampler, Estimate& out) const {
-    out.radiance += path.throughput * c.emission;
+  bool scatter(const Following& f, const Collision& c, Path& path) const {
+    Sampler& sampler = f.sampler;
+    f.out.radiance += path.throughput * c.emission;
     path.throughput = path.throughput * c.albedo;
     if (is_dark(path.throughput) || path.turns_in_media >= matter_turns * bounces_) return false;
     const bool last = c.last || mirrors_only_;
@@ -209,10 +266,10 @@ class PathIntegrator : public Integrator {
       return {{density, density, density}, last ? 0 : density};
     };
     const auto start = [&](Vec3f) { return Start{from, path.insides}; };
-    if (const Lights& lights = last ? world.lights() : world.lamps(); lights.asks()) {
+    if (const Lights& lights = last ? f.world.lights() : f.world.lamps(); lights.asks()) {
       const float choice = sampler.next();
       const Vec2f u = sampler.next2();
-      out.radiance += path.throughput * direct(world, lights, media, from, start, scattered, choice, u, sampler);
+      ask_light(f, lights, path.throughput, from, start, scattered, choice, u);
     }
 
     const Vec2f v = sampler.next2();
@@ -243,28 +300,32 @@ class PathIntegrator : public Integrator {
     Vec3f origin;
     Insides insides;
   };
-  /// One of the lights, chosen by its power, if nothing is in the way. `from(direction)`: where rays to it start.
+  /// Of one of the lights, chosen by its power, what is not stopped on its way. `from(direction)`: where rays to it start.
   template <class From, class F>
-  Vec3f direct(const World& world, const Lights& lights, MediaWalk* media, Vec3f position, From&& from, F&& scattered, float choice,
-               Vec2f u, Sampler& sampler) const {
-    const uint64_t stream = media ? sampler.stream() : 0;
+  void ask_light(const Following& f, const Lights& lights, Vec3f throughput, Vec3f position, From&& from, F&& scattered, float choice,
+                 Vec2f u) const {
+    const uint64_t stream = f.media ? f.sampler.stream() : 0;
     const auto light = lights.sample(position, choice, u);
-    if (!light) return {};
+    if (!light) return;
     const Scattered s = scattered(light->direction);
-    if (is_dark(s.share)) return {};
+    if (is_dark(s.share)) return;
     const Vec3f contribution = s.share * light->radiance * (1 / light->pdf);
-    if (is_dark(contribution)) return {};
+    if (is_dark(contribution)) return;
+    const float weight = light->delta ? 1 : power_weight(light->pdf, s.pdf);
     // Up to the light's own surface, which is an item or is not.
     const Start start = from(light->direction);
     const Ray ray{start.origin, light->direction, light->distance * (1 - 1e-4f)};
-    Vec3f passes = world.passes(ray, start.insides);
-    if (is_dark(passes)) return {};
-    if (media) {
-      RandomStream random(stream);
-      passes = passes * media->passes(ray, random);
+    if (f.shadows) {
+      f.shadows->add(ray, throughput * (contribution * fade(start.insides.absorption(), ray.t_max) * weight), f.out.radiance);
+      return;
     }
-    const float weight = light->delta ? 1 : power_weight(light->pdf, s.pdf);
-    return contribution * passes * weight;
+    Vec3f passes = f.world.passes(ray, start.insides);
+    if (is_dark(passes)) return;
+    if (f.media) {
+      RandomStream random(stream);
+      passes = passes * f.media->passes(ray, random);
+    }
+    f.out.radiance += throughput * (contribution * passes * weight);
   }
 
   int bounces_;

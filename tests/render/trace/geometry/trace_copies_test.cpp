@@ -88,7 +88,7 @@ TEST_CASE("trace: among many objects a packet of rays finds what each ray finds 
   Ray rays[16];
   Hit at_once[16];
   for (int k = 0; k < 16; ++k) rays[k] = {{-1.4f, 0.1f * float(k) - 0.8f, 0}, {1, 0, 0}};
-  const uint32_t bits = g.nearest(rays, 16, at_once);
+  const uint64_t bits = g.nearest(rays, 16, at_once);
   for (int k = 0; k < 16; ++k) {
     Hit one;
     const bool met = g.nearest(rays[k], one);

@@ -176,7 +176,7 @@ TEST_CASE("trace: sixteen rays at once find what each finds, in scenes of severa
                  normalize(Vec3f(uniform(1, i, -0.4, 0.4) + 0.003f * float(k % 4), uniform(2, i, -0.2, 0.2) + 0.003f * float(k / 4), -1))};
       if (i % 3 == 0) rays[k].t_max = 2.9f;
     }
-    const uint32_t bits = g.nearest(rays, n, at_once);
+    const uint64_t bits = g.nearest(rays, n, at_once);
     for (int k = 0; k < n; ++k) {
       Hit one;
       const bool met = g.nearest(rays[k], one);

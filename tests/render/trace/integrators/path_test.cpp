@@ -166,35 +166,47 @@ TEST_CASE("occlusion: an open ball is as bright as its colour, the inside of one
   CHECK(mean(world, *occlusion_integrator(10), from_inside, 500).value == 0);
 }
 
-TEST_CASE("occlusion: paths that are followed together see what each sees by itself, through veils and in front of others") {
-  Scene scene;
-  scene.items.emplace_back(test::item(test::torus(60, 40)));
+TEST_CASE("integrators: paths that are followed together see what each sees by itself, through veils and in front of others") {
+  Scene opaque, veiled;
+  opaque.items.emplace_back(test::item(test::torus(60, 40)));
+  opaque.items.emplace_back(test::item(test::sphere(20, 0.4)));
+  veiled = opaque;
   SurfaceItem veil = test::item(test::sphere(20, 0.6));
   veil.opacity = 0.4;
-  scene.items.emplace_back(veil);
-  const World world = world_of(scene, diffuse(), {}, {});
-  const auto integrator = occlusion_integrator(0.5f);
-  Sampler sampler(SamplerKind::blue_noise, 3, 4);
-  int seen = 0, wrong = 0, part = 0;
-  for (int square = 0; square < 40; ++square) {
-    std::vector<CameraPath> paths;
-    for (int i = 0; i < 1 + square * 13 % 64; ++i) {
-      const auto x = uint32_t(8 * square % 40 + i % 8), y = uint32_t(square / 5 * 8 + i / 8);
-      const Vec3f from{float(x) / 20 - 1, float(y) / 32 - 1, 3};
-      paths.push_back({{from, normalize(Vec3f{0.02f, -0.03f, -1})}, {}, x, y, uint32_t(square % 4), 2});
+  veiled.items.emplace_back(veil);
+  const std::vector<AnyLight> lights = {PointLight{{0.5f, 0.3f, 2}, {2, 2, 2}}, DiscLight{{-0.5f, 0, 1.5f}, {0, 0, -1}, 0.4f, {3, 2, 1}}};
+  SurfaceMaterial skin = preset_material(MaterialPreset::skin);
+  skin.coat_weight = 0.5;
+  size_t lit = 0, parts = 0;
+  for (const Scene* scene : {&opaque, &veiled})
+    for (const SurfaceMaterial& material : {diffuse(), preset_material(MaterialPreset::glass), skin}) {
+      const World world = world_of(*scene, material, lights, Environment(Vec3f{0.1f, 0.2f, 0.3f}));
+      for (const auto& integrator : {occlusion_integrator(0.5f), path_integrator(4), whitted_integrator(4)}) {
+        Sampler sampler(SamplerKind::blue_noise, 3, 4);
+        size_t seen = 0, wrong = 0, part = 0;
+        for (int square = 0; square < 40; ++square) {
+          std::vector<CameraPath> paths;
+          for (int i = 0; i < 1 + square * 13 % 64; ++i) {
+            const auto x = uint32_t(8 * square % 40 + i % 8), y = uint32_t(square / 5 * 8 + i / 8);
+            const Vec3f from{float(x) / 20 - 1, float(y) / 32 - 1, 3};
+            paths.push_back({{from, normalize(Vec3f{0.02f, -0.03f, -1})}, {}, x, y, uint32_t(square % 4), 2});
+          }
+          std::vector<Estimate> together(paths.size());
+          integrator->along_all(world, paths, sampler, together.data());
+          for (size_t i = 0; i < paths.size(); ++i) {
+            const Integrator& one = *integrator;
+            const Estimate alone = one.along(world, paths[i], sampler);
+            seen += alone.passed < 1, part += alone.passed > 0 && alone.passed < 1, lit += !(alone.radiance == Vec3f());
+            wrong += !(alone.radiance == together[i].radiance) || alone.passed != together[i].passed;
+          }
+        }
+        CHECK(seen > 300);
+        CHECK(wrong == 0);
+        parts += part;
+      }
     }
-    std::vector<Estimate> together(paths.size());
-    integrator->along_all(world, paths, sampler, together.data());
-    for (size_t i = 0; i < paths.size(); ++i) {
-      const Integrator& one = *integrator;
-      const Estimate alone = one.along(world, paths[i], sampler);
-      seen += alone.passed<1, part += alone.passed> 0 && alone.passed < 1;
-      wrong += !(alone.radiance == together[i].radiance) || alone.passed != together[i].passed;
-    }
-  }
-  CHECK(seen > 300);
-  CHECK(part > 20);
-  CHECK(wrong == 0);
+  CHECK(lit > 3000);
+  CHECK(parts > 100);
 }
 
 TEST_CASE("trace: pictures are the same bytes for any number of threads, and say how exact they are") {
