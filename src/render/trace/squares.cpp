@@ -22,6 +22,7 @@ namespace {
 
 constexpr int side = 8;  // of the squares of pixels that are finished together
 constexpr int most_pixels = side * side;
+constexpr uint32_t most_of_pixel = 4;  // paths of a pixel that are followed together
 static_assert(most_pixels == most_paths);
 
 struct Square {
@@ -61,7 +62,7 @@ class Drawing {
     Square& told = squares_[square];
     while (told.paths < std::min(to, most_) && !told.reached) {
       const uint32_t n = told.paths, end = std::min({to, most_, n + pass_ - n % pass_});
-      for (uint32_t k = n; k < end; ++k) add_path(at, k, sampler, sums);
+      for (uint32_t k = n; k < end; k += most_of_pixel) add_paths(at, k, std::min(end, k + most_of_pixel), sampler, sums);
       told.paths = end, told.variance = 0;
       for (int p = 0; p < at.count() && end > 1; ++p)
         told.variance += displayed_variance(sums[p].mean(end), sums[p].variance(end)) / at.count();
@@ -102,24 +103,30 @@ class Drawing {
   }
 
  private:
-  /// Path k of each pixel of a square.
-  void add_path(const PixelBox& at, uint32_t k, Sampler& sampler, PixelSum* sums) const {
-    CameraPath paths[most_pixels];
-    Estimate found[most_pixels];
-    for (int p = 0; p < at.count(); ++p) {
-      const int x = at.column(p), y = at.row(p);
-      sampler.start(uint32_t(x), uint32_t(y), k);
-      const Vec2f in_pixel = sampler.next2(), on_lens = picture_.camera.has_lens() ? concentric_disc(sampler.next2()) : Vec2f();
-      const Vec2f in_picture{float(x) + in_pixel.x, float(y) + in_pixel.y};
-      CameraPath& path = paths[p] = {picture_.camera.ray(in_picture, on_lens), {}, uint32_t(x), uint32_t(y), k, sampler.dimension()};
-      if (picture_.world.has_pictures()) path.footprint = picture_.camera.footprint(in_picture);
+  /// Paths k to `end` of each pixel of a square, those of a pixel after each other.
+  void add_paths(const PixelBox& at, uint32_t k, uint32_t end, Sampler& sampler, PixelSum* sums) const {
+    const int of_pixel = int(end - k), pixels = most_paths / of_pixel;
+    for (int p = 0; p < at.count(); p += pixels) {
+      CameraPath paths[most_paths];
+      Estimate found[most_paths];
+      const int n = std::min(pixels, at.count() - p) * of_pixel;
+      for (int i = 0; i < n; ++i) paths[i] = first_ray(at, p + i / of_pixel, k + uint32_t(i % of_pixel), sampler);
+      integrator_.along_all(picture_.world, {paths, size_t(n)}, sampler, found);
+      for (int i = 0; i < n; ++i) {
+        Vec3f around = picture_.backdrop.seen ? picture_.backdrop.radiance(paths[i].ray.direction) : picture_.around[paths[i].y];
+        if (picture_.marks) around = seen_behind(*picture_.marks, pixel(at, p + i / of_pixel), around);
+        sums[p + i / of_pixel].add(found[i], around);
+      }
     }
-    integrator_.along_all(picture_.world, {paths, size_t(at.count())}, sampler, found);
-    for (int p = 0; p < at.count(); ++p) {
-      Vec3f around = picture_.backdrop.seen ? picture_.backdrop.radiance(paths[p].ray.direction) : picture_.around[paths[p].y];
-      if (picture_.marks) around = seen_behind(*picture_.marks, pixel(at, p), around);
-      sums[p].add(found[p], around);
-    }
+  }
+  CameraPath first_ray(const PixelBox& at, int p, uint32_t k, Sampler& sampler) const {
+    const auto x = uint32_t(at.column(p)), y = uint32_t(at.row(p));
+    sampler.start(x, y, k);
+    const Vec2f in_pixel = sampler.next2(), on_lens = picture_.camera.has_lens() ? concentric_disc(sampler.next2()) : Vec2f();
+    const Vec2f in_picture{float(x) + in_pixel.x, float(y) + in_pixel.y};
+    CameraPath path{picture_.camera.ray(in_picture, on_lens), {}, x, y, k, sampler.dimension()};
+    if (picture_.world.has_pictures()) path.footprint = picture_.camera.footprint(in_picture);
+    return path;
   }
   PixelBox place(size_t square) const {
     const int x = int(square % across_) * side, y = int(square / across_) * side;
