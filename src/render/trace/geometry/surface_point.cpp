@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/trace/geometry/surface_point.h"
 
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -11,11 +12,15 @@ namespace {
 /// Arithmetic in double is off by 2^-53 of coordinates up to 1 a few dozen times at most; near zero f32 numbers tell less than that apart.
 constexpr double in_double = 0x1p-42;
 
+/// The next number further from zero, or nearer to it: finite ones that are not zero.
+float by_one(float f, bool further) { return std::bit_cast<float>(std::bit_cast<uint32_t>(f) + (further ? 1u : ~0u)); }
+
 float away(double x, double step) {
   const auto f = float(x);
-  if (step > 0 && double(f) < x) return std::nextafter(f, std::numeric_limits<float>::infinity());
-  if (step < 0 && double(f) > x) return std::nextafter(f, -std::numeric_limits<float>::infinity());
-  return f;
+  const bool up = step > 0 && double(f) < x, down = step < 0 && double(f) > x;
+  if (!up && !down) return f;
+  if (f == 0) return std::copysign(std::numeric_limits<float>::denorm_min(), float(step));
+  return by_one(f, up == (f > 0));
 }
 
 }  // namespace

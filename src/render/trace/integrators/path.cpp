@@ -176,6 +176,7 @@ class PathIntegrator : public Integrator {
       f.out.radiance += path.throughput * v.emission * power_weight(path.pdf, p);
     }
     const Vec3f wo = v.frame.to_local(-path.ray.direction);
+    const Bsdf::Outgoing outgoing = v.bsdf.outgoing(wo);
     const Lights& lights = mirrors_only_ ? world.lights() : world.lamps();
     if (path.bounces() < bounces_ && lights.asks()) {
       const float choice = sampler.next();
@@ -184,7 +185,7 @@ class PathIntegrator : public Integrator {
         const auto scattered = [&](Vec3f direction) -> Scattered {
           const Vec3f wi = v.frame.to_local(direction);
           if ((dot(direction, v.point.face_normal) > 0) != (wi.z > 0)) return {};
-          return {v.bsdf.evaluate(wo, wi) * std::abs(wi.z), mirrors_only_ ? 0 : v.bsdf.pdf(wo, wi)};
+          return {v.bsdf.evaluate(wo, wi) * std::abs(wi.z), mirrors_only_ ? 0 : v.bsdf.pdf(outgoing, wi)};
         };
         const auto from = [&](Vec3f direction) { return Start{leave(v.point, direction), v.onward(path.insides, along, direction)}; };
         ask_light(f, lights, path.throughput, v.point.position, from, scattered, choice, u);
@@ -193,7 +194,7 @@ class PathIntegrator : public Integrator {
 
     // Into the body.
     if (const Vec3f enters = v.bsdf.entering(wo); !is_dark(enters) && path.bounces() < bounces_) {
-      const float below = luminance(enters * v.bsdf.base_color()), chance = below / (below + luminance(v.bsdf.albedo(wo)));
+      const float below = luminance(enters * v.bsdf.base_color()), chance = below / (below + luminance(v.bsdf.albedo(outgoing)));
       if (sampler.next() < chance) {
         RandomStream random(sampler.stream());
         const auto exit = walk_below(world, v, random);
@@ -206,7 +207,7 @@ class PathIntegrator : public Integrator {
 
     // On to the next surface.
     const float choice = sampler.next();
-    const auto s = v.bsdf.sample(wo, choice, sampler.next2());
+    const auto s = v.bsdf.sample(outgoing, choice, sampler.next2());
     const uint64_t roulette = sampler.stream();
     if (!s || is_dark(s->weight) || (mirrors_only_ && !s->delta)) return false;
     const bool passes = s->delta && s->transmitted && s->eta == 1 && dot(s->direction, wo) < -0.9999f;

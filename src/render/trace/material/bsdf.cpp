@@ -132,9 +132,16 @@ Vec3f Bsdf::evaluate(Vec3f wo, Vec3f wi, Transport transport) const {
   return evaluate_facing({wo.x, wo.y, wo.z * turn}, {wi.x, wi.y, wi.z * turn}, inside_of(wo), transport);
 }
 
-Vec3f Bsdf::albedo(Vec3f wo) const {
+Bsdf::Outgoing Bsdf::outgoing(Vec3f wo) const {
+  Outgoing out;
+  out.turn = wo.z < 0 ? -1.f : 1.f, out.inside = inside_of(wo), out.o = {wo.x, wo.y, wo.z * out.turn};
+  out.shares = shares(out.o.z, out.inside);
+  return out;
+}
+
+Vec3f Bsdf::albedo(const Outgoing& wo) const {
   Vec3f sum;
-  for (const Vec3f a : shares(std::abs(wo.z), inside_of(wo)).albedo) sum += a;
+  for (const Vec3f a : wo.shares.albedo) sum += a;
   return sum;
 }
 

@@ -29,18 +29,40 @@ struct BsdfSample {
 };
 
 class Bsdf {
+  // Ways that light takes; each has a share of the samples.
+  enum Way { straight, of_coat, of_metal, of_metal_again, of_boundary, of_boundary_again, of_body, of_retro, of_retro_again, ways };
+  struct Shares {
+    std::array<Vec3f, ways> albedo;
+    std::array<float, ways> chance;  // all 0 where nothing is reflected
+  };
+
  public:
+  /// A direction wo, and what all that asks about it has in common.
+  class Outgoing {
+    friend class Bsdf;
+    Vec3f o;  // on the side where z > 0: wo, or its mirror image by `turn`
+    float turn = 1;
+    bool inside = false;
+    Shares shares;
+  };
+  Outgoing outgoing(Vec3f wo) const;
+
   /// f per solid angle, without the cosine and without deltas; 0 for directions in the surface.
   Vec3f evaluate(Vec3f wo, Vec3f wi, Transport transport = Transport::radiance) const;
   /// Density with which sample() draws wi for wo, without deltas. Its integral is less than 1 by the chances of deltas and by that of no
   /// sample, which is at most what single reflections at the rough boundary lose.
-  float pdf(Vec3f wo, Vec3f wi) const;
+  float pdf(const Outgoing& wo, Vec3f wi) const;
+  float pdf(Vec3f wo, Vec3f wi) const { return pdf(outgoing(wo), wi); }
   /// Nothing where the drawn microscopic mirror sends the light into the surface, or nothing is reflected at all. `choice`, u: uniform in
   /// [0, 1).
-  std::optional<BsdfSample> sample(Vec3f wo, float choice, Vec2f u, Transport transport = Transport::radiance) const;
+  std::optional<BsdfSample> sample(const Outgoing& wo, float choice, Vec2f u, Transport transport = Transport::radiance) const;
+  std::optional<BsdfSample> sample(Vec3f wo, float choice, Vec2f u, Transport transport = Transport::radiance) const {
+    return sample(outgoing(wo), choice, u, transport);
+  }
   /// About the share of uniform light that goes out along wo, straight passage included; exact where surfaces are not translucent and
   /// have no coat.
-  Vec3f albedo(Vec3f wo) const;
+  Vec3f albedo(const Outgoing& wo) const;
+  Vec3f albedo(Vec3f wo) const { return albedo(outgoing(wo)); }
   bool delta_only() const;
   /// What passes straight on, as through nothing: by opacity, a smooth sheet of glass, clear matter that does not refract. These are those
   /// deltas of sample() that go on along -wo with eta 1.
@@ -55,12 +77,6 @@ class Bsdf {
 
  private:
   friend Bsdf make_bsdf(const Material&, const MaterialShares&, Vec3f, float, bool);
-  // Ways that light takes; each has a share of the samples.
-  enum Way { straight, of_coat, of_metal, of_metal_again, of_boundary, of_boundary_again, of_body, of_retro, of_retro_again, ways };
-  struct Shares {
-    std::array<Vec3f, ways> albedo;
-    std::array<float, ways> chance;  // all 0 where nothing is reflected
-  };
   // Of directions in a frame in which o.z > 0.
   Shares shares(float z, bool inside) const;
   Vec3f evaluate_facing(Vec3f o, Vec3f i, bool inside, Transport transport) const;

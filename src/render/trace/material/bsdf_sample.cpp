@@ -104,11 +104,7 @@ float Bsdf::pdf_facing(Vec3f o, Vec3f i, bool inside, const Shares& s) const {
   return pdf;
 }
 
-float Bsdf::pdf(Vec3f wo, Vec3f wi) const {
-  const float turn = wo.z < 0 ? -1.f : 1.f;
-  const bool inside = inside_of(wo);
-  return pdf_facing({wo.x, wo.y, wo.z * turn}, {wi.x, wi.y, wi.z * turn}, inside, shares(std::abs(wo.z), inside));
-}
+float Bsdf::pdf(const Outgoing& wo, Vec3f wi) const { return pdf_facing(wo.o, {wi.x, wi.y, wi.z * wo.turn}, wo.inside, wo.shares); }
 
 std::optional<BsdfSample> Bsdf::sample_delta(Way way, Vec3f o, bool inside, float chance, float choice, Transport transport) const {
   const Material& m = *material_;
@@ -170,12 +166,11 @@ std::optional<Vec3f> Bsdf::sample_direction(Way way, Vec3f o, bool inside, float
   return std::nullopt;
 }
 
-std::optional<BsdfSample> Bsdf::sample(Vec3f wo, float choice, Vec2f u, Transport transport) const {
-  const float turn = wo.z < 0 ? -1.f : 1.f;
-  const bool inside = inside_of(wo);
-  const Vec3f o(wo.x, wo.y, wo.z * turn);
+std::optional<BsdfSample> Bsdf::sample(const Outgoing& wo, float choice, Vec2f u, Transport transport) const {
+  const Vec3f o = wo.o;
+  const bool inside = wo.inside;
+  const Shares& s = wo.shares;
   if (!(o.z > 0)) return std::nullopt;
-  const Shares s = shares(o.z, inside);
   // The way, and where in its share `choice` lies.
   size_t way = ways;
   for (size_t k = 0; k < ways; ++k) {
@@ -196,7 +191,7 @@ std::optional<BsdfSample> Bsdf::sample(Vec3f wo, float choice, Vec2f u, Transpor
     drawn->transmitted = i->z < 0, drawn->crossed = drawn->transmitted && !material_->thin();
     if (drawn->crossed) drawn->eta = material_->side[inside].eta;
   }
-  if (drawn) drawn->direction.z *= turn;
+  if (drawn) drawn->direction.z *= wo.turn;
   return drawn;
 }
 
