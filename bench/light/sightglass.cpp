@@ -106,6 +106,9 @@ int main(int argc, char** argv) {
   Context context;
   LightOptions options;
   options.paths = std::atoi(argv[3]), options.noise = 1e-9;
+  if (const char* b = std::getenv("BOUNCES")) options.bounces = std::atoi(b);
+  if (const char* b = std::getenv("SEED")) options.seed = uint64_t(std::atoi(b));
+  if (const char* b = std::getenv("SAMPLER")) options.sampler = trace::SamplerKind(std::atoi(b));
   if (std::string(argv[2]) == "occlusion") {  // of so many rays to the open, 16 for each from the camera
     options.integrator = trace::IntegratorKind::ambient_occlusion;
     options.paths = std::max(1, options.paths / 16);
@@ -116,6 +119,12 @@ int main(int argc, char** argv) {
   LightOptions first = options;
   first.paths = 1;
   trace_scene(scene, prepared, make_projection(camera, 16, 9), first, report, context);  // the tree, off the clock
+  if (const char* r = std::getenv("REPEAT"))
+    for (int i = 0; i < std::atoi(r); ++i) {
+      const std::clock_t w = std::clock();
+      trace_scene(scene, prepared, projection, options, report, context);
+      fmt::print("R {:.4f}\n", double(std::clock() - w) / CLOCKS_PER_SEC);
+    }
   const auto begin = std::chrono::steady_clock::now();
   const std::clock_t work = std::clock();
   const Frame frame = trace_scene(scene, prepared, projection, options, report, context);

@@ -60,7 +60,6 @@ Sampler::Sampler(SamplerKind kind, uint64_t seed, int samples_per_pixel) : kind_
   while (count_ > 1u << curve_bits_) ++curve_bits_;
   if (kind == SamplerKind::blue_noise) {
     block_bits_ = curve_bits_ <= 4 ? curve_bits_ : curve_bits_ % 2 ? 3 : 4;  // the rest by twos
-    of_block_.resize(size_t(kept_dimensions) * pixels_of_square);
   } else {
     while (block_bits_ < 4 && count_ % (2u << block_bits_) == 0) ++block_bits_;
   }
@@ -128,7 +127,9 @@ Sampler::Point Sampler::point(uint32_t dimension) {
     const uint64_t key = random_bits(key_, dimension);
     of_square = {.pattern = key_, .dimension = dimension, .key = key, .digits = random_bits(~key, 0)};
   }
-  OfBlock& of_block = of_block_[slot * pixels_of_square + (along_curve_ >> curve_bits_) % pixels_of_square];
+  const size_t in_slot = slot * pixels_of_square + (along_curve_ >> curve_bits_) % pixels_of_square;
+  if (in_slot >= of_block_.size()) of_block_.resize(size_t(slot + 1) * pixels_of_square);
+  OfBlock& of_block = of_block_[in_slot];
   return {curve_index(of_square.key, of_square, of_block), of_square.digits};
 }
 
