@@ -41,6 +41,7 @@ class Drawing {
         behind_(behind),
         variance_(variance),
         error_(error),
+        filled_(picture.camera.pixels_of(picture.world.bounds())),
         across_(size_t(frame.width + side - 1) / side),
         most_(uint32_t(picture.options.stop > 0 ? std::min(picture.options.stop, picture.options.paths) : picture.options.paths)),
         squares_(across_ * (size_t(frame.height + side - 1) / side)) {
@@ -88,7 +89,10 @@ class Drawing {
   }
 
   /// What the middle of each pixel sees.
-  void look(size_t square, MediaWalk* media) { see_first_met(picture_.world, picture_.camera, media, place(square), frame_); }
+  void look(size_t square, MediaWalk* media) {
+    const PixelBox at = place(square);
+    if (at.overlaps(filled_)) see_first_met(picture_.world, picture_.camera, media, at, frame_);
+  }
 
   void report(TraceReport& r) const {
     r.paths = 0, r.reached = true;
@@ -110,12 +114,16 @@ class Drawing {
       CameraPath paths[most_paths];
       Estimate found[most_paths];
       const int n = std::min(pixels, at.count() - p) * of_pixel;
-      for (int i = 0; i < n; ++i) paths[i] = first_ray(at, p + i / of_pixel, k + uint32_t(i % of_pixel), sampler);
-      integrator_.along_all(picture_.world, {paths, size_t(n)}, sampler, found);
+      const bool filled = at.overlaps(filled_);
+      for (int i = 0; i < n && (filled || picture_.backdrop.seen); ++i)
+        paths[i] = first_ray(at, p + i / of_pixel, k + uint32_t(i % of_pixel), sampler);
+      if (filled) integrator_.along_all(picture_.world, {paths, size_t(n)}, sampler, found);
+      else std::fill_n(found, n, Estimate{.passed = 1});
       for (int i = 0; i < n; ++i) {
-        Vec3f around = picture_.backdrop.seen ? picture_.backdrop.radiance(paths[i].ray.direction) : picture_.around[paths[i].y];
-        if (picture_.marks) around = seen_behind(*picture_.marks, pixel(at, p + i / of_pixel), around);
-        sums[p + i / of_pixel].add(found[i], around);
+        const int of = p + i / of_pixel;
+        Vec3f around = picture_.backdrop.seen ? picture_.backdrop.radiance(paths[i].ray.direction) : picture_.around[size_t(at.row(of))];
+        if (picture_.marks) around = seen_behind(*picture_.marks, pixel(at, of), around);
+        sums[of].add(found[i], around);
       }
     }
   }
@@ -139,6 +147,7 @@ class Drawing {
   const uint32_t pass_ = integrator_.pass();
   Frame& frame_;
   Plane<float>&behind_, &variance_, &error_;
+  const PixelBox filled_;  // outside of which there is nothing but what lies around the scene
   size_t across_;
   uint32_t most_;
   std::vector<Square> squares_;

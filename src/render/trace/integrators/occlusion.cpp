@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <vector>
 
 #include "render/trace/integrators/integrator.h"
 #include "render/trace/sampling/cosine_strata.h"
@@ -74,9 +75,10 @@ class OcclusionIntegrator : public Integrator {
     const uint64_t met = first_hits(world.geometry(), paths, hits);
     std::fill_n(estimates, paths.size(), Estimate{.passed = 1});
     if (met == 0) return;
-    Ray rays[cosine_strata_count][most_paths];
-    uint8_t path_of[cosine_strata_count][most_paths];
-    int count[cosine_strata_count] = {}, open[most_paths] = {};
+    std::vector<RaysToOpen> to_open;
+    to_open.reserve(paths.size());
+    uint8_t path_of[most_paths];
+    int open[most_paths] = {};
     for (uint64_t seen = met; seen; seen &= seen - 1) {
       const int i = std::countr_zero(seen);
       const CameraPath& path = paths[size_t(i)];
@@ -87,15 +89,18 @@ class OcclusionIntegrator : public Integrator {
       }
       estimates[i] = {{color.x, color.y, color.z}, 0};
       sampler.start(path.x, path.y, path.sample, path.dimension);
-      const RaysToOpen to_open(world.geometry().at(path.ray, hits[i]), path.ray.direction, sampler.next2());
-      open[i] = std::popcount(to_open.above);
-      for (uint32_t bits = to_open.above; bits; bits &= bits - 1) {
-        const int k = std::countr_zero(bits), n = count[k]++;
-        rays[k][n] = {to_open.from, to_open.directions[k], reach_}, path_of[k][n] = uint8_t(i);
-      }
+      path_of[to_open.size()] = uint8_t(i);
+      to_open.emplace_back(world.geometry().at(path.ray, hits[i]), path.ray.direction, sampler.next2());
+      open[i] = std::popcount(to_open.back().above);
     }
-    for (int k = 0; k < cosine_strata_count; ++k)
-      for (uint64_t bits = world.geometry().blocked(rays[k], count[k]); bits; bits &= bits - 1) --open[path_of[k][std::countr_zero(bits)]];
+    for (int k = 0; k < cosine_strata_count; ++k) {
+      Ray rays[most_paths];
+      uint8_t path[most_paths];
+      int n = 0;
+      for (size_t j = 0; j < to_open.size(); ++j)
+        if (to_open[j].above >> k & 1) rays[n] = {to_open[j].from, to_open[j].directions[k], reach_}, path[n++] = path_of[j];
+      for (uint64_t bits = world.geometry().blocked(rays, n); bits; bits &= bits - 1) --open[path[std::countr_zero(bits)]];
+    }
     for (size_t i = 0; i < paths.size(); ++i) estimates[i].radiance *= float(open[i]) / cosine_strata_count;
   }
 

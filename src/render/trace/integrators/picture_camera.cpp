@@ -46,6 +46,23 @@ double PictureCamera::depth(Vec2f pixel, float t) const {
   return (start(r) + double(t) / placement_.scale) / r.per_depth;
 }
 
+PixelBox PictureCamera::pixels_of(const Box3f& box) const {
+  const PixelBox all{0, 0, projection_.width, projection_.height};
+  if (box.empty()) return {};
+  if (has_lens()) return all;
+  double lo[2] = {HUGE_VAL, HUGE_VAL}, hi[2] = {-HUGE_VAL, -HUGE_VAL};
+  for (int i = 0; i < 8; ++i) {
+    const Vec3f corner{(i & 1 ? box.hi : box.lo).x, (i & 2 ? box.hi : box.lo).y, (i & 4 ? box.hi : box.lo).z};
+    const Vec3 at = projection_.to_pixel(placement_.world(corner));
+    if (!projection_.parallel && !(at.z > projection_.near_plane && at.z > 0)) return all;
+    for (int a = 0; a < 2; ++a) lo[a] = std::min(lo[a], at[a]), hi[a] = std::max(hi[a], at[a]);
+  }
+  const auto within = [](double v, int size) { return int(std::clamp(v, 0.0, double(size))); };
+  // One more all around, for what rounding does to a ray.
+  const int x = within(lo[0] - 1, all.w), y = within(lo[1] - 1, all.h);
+  return {x, y, within(hi[0] + 2, all.w) - x, within(hi[1] + 2, all.h) - y};
+}
+
 std::optional<Sight> PictureCamera::sees(Vec3f point, Vec2f on_lens) const {
   const Vec3 world = placement_.world(point);
   const double depth = projection_.to_eye(world).z;

@@ -3,6 +3,7 @@
 #pragma once
 #include <optional>
 
+#include "render/trace/integrators/pixel_box.h"
 #include "render/trace/integrators/ray_footprint.h"
 #include "render/trace/tree/ray.h"
 #include "scene/camera.h"
@@ -34,6 +35,8 @@ class PictureCamera {
   RayFootprint footprint(Vec2f pixel) const;
   /// Of a place along such a ray, t in traced coordinates: the distance along the viewing axis in the world.
   double depth(Vec2f pixel, float t) const;
+  /// All pixels in which something of a box in traced coordinates may be seen.
+  PixelBox pixels_of(const Box3f& box) const;
   /// By light through a place on the lens. Nothing for points beside the picture, behind the eye or nearer than the near plane. O(1).
   std::optional<Sight> sees(Vec3f point, Vec2f on_lens = {}) const;
   /// As of Sight, of a point that is seen.
