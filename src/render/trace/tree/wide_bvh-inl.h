@@ -151,6 +151,32 @@ HWY_INLINE void walk_any(const WideNode* nodes, const Bounds& ray, float t_max, 
   }
 }
 
+/// Which boxes of a node each of 64 rays meets, and which rays meet each box.
+class RayBoxes {
+ public:
+  HWY_INLINE void clear() {
+    for (int i = 0; i < 64; i += lanes) hn::Store(hn::Zero(D()), D(), boxes_ + i);
+  }
+  HWY_INLINE void set(int ray, uint32_t boxes) { boxes_[ray] = uint8_t(boxes); }
+  HWY_INLINE uint64_t rays(int box) const {
+    const auto bit = hn::Set(D(), uint8_t(1 << box));
+    uint64_t rays = 0;
+    for (int i = 0; i < 64; i += lanes) {
+      uint8_t bits[8] = {};
+      hn::StoreMaskBits(D(), hn::TestBit(hn::Load(D(), boxes_ + i), bit), bits);
+      uint64_t word;
+      std::memcpy(&word, bits, 8);
+      rays |= word << i;
+    }
+    return rays;
+  }
+
+ private:
+  using D = hn::CappedTag<uint8_t, 64>;
+  static constexpr int lanes = int(hn::MaxLanes(D()));
+  HWY_ALIGN uint8_t boxes_[64];
+};
+
 /// Up to 64 rays, bit i of `going` for each: meet(node, i) tells which boxes ray i meets, leaf(number, rays) which rays have been stopped
 /// so far, of all. Leaves wait until there are some, so that they have come from memory when they are looked at.
 template <class Meet, class Leaf, class Fetch>
@@ -163,7 +189,7 @@ HWY_INLINE void walk_together(const WideNode* nodes, uint64_t going, Meet&& meet
   Visit stack[WideBvh::stack_size], waiting[enough + wide];
   size_t top = 0;
   int leaves = 0;
-  uint64_t met[8] = {};  // by ray 8 k + i, in byte i of met[k]: a bit for each box
+  RayBoxes met;
   for (Visit v{going, 0};;) {
     const WideNode& n = nodes[v.at];
     const auto put = [&](int box, uint64_t rays) {
@@ -179,21 +205,14 @@ HWY_INLINE void walk_together(const WideNode* nodes, uint64_t going, Meet&& meet
     if (std::has_single_bit(v.rays)) {
       for (uint32_t bits = meet(n, std::countr_zero(v.rays)); bits; bits &= bits - 1) put(std::countr_zero(bits), v.rays);
     } else {
-      const int first = std::countr_zero(v.rays) / 8, end = 8 - std::countl_zero(v.rays) / 8;
-      for (int k = first; k < end; ++k) met[k] = 0;
+      met.clear();
       uint32_t by_any = 0;
       for (uint64_t rays = v.rays; rays; rays &= rays - 1) {
         const int i = std::countr_zero(rays);
         const uint32_t boxes = meet(n, i);
-        by_any |= boxes, met[i / 8] |= uint64_t(boxes) << (i % 8 * 8);
+        by_any |= boxes, met.set(i, boxes);
       }
-      for (; by_any; by_any &= by_any - 1) {
-        const int box = std::countr_zero(by_any);
-        uint64_t rays = 0;
-        // One bit of each of eight bytes, gathered by a product.
-        for (int k = first; k < end; ++k) rays |= ((met[k] >> box & 0x0101010101010101u) * 0x0102040810204080u >> 56) << (8 * k);
-        put(box, rays);
-      }
+      for (; by_any; by_any &= by_any - 1) put(std::countr_zero(by_any), met.rays(std::countr_zero(by_any)));
     }
     for (;;) {
       if (leaves >= enough || top == 0) {
