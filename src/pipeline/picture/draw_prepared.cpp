@@ -112,7 +112,7 @@ Picture draw_prepared(const PreparedPicture& prepared, const StatedPicture& stat
         {views.empty() ? prepared.panel_titles[i] : views[i], panel_of(shown[views.empty() ? i : 0], prepared.camera, inside, camera)});
     if (straight) panels.back().panel.annotation.triad = false;
   }
-  DrawnPicture drawn = draw_layout(panels, stated, inside, around, context);
+  DrawnPicture drawn = draw_layout(panels, stated, inside, around, {.on_light = options.on_light}, context);
   picture.image = std::move(drawn.image), picture.seen = std::move(drawn.seen);
   return picture;
 }

@@ -72,6 +72,7 @@ struct PictureOptions {
   std::function<void(const Picture&, const PictureDraft&)> on_draft;
   std::optional<std::chrono::steady_clock::time_point> until;  ///< with on_draft: then the finest picture so far is returned
   bool layers = false;                                         ///< fill in all of Seen
+  std::function<void(Frame&)> on_light;                        ///< gets what is drawn of each panel before it is shown, and may change it
   /// What is about to be drawn; false: it is not, and the picture has no pixels. Throws Error(usage) for a picture of several panels.
   std::function<bool(const Panel&, const StatedPicture&)> on_panel;
   std::function<void(std::string_view name, double seconds)> on_ran;  ///< see GraphOptions

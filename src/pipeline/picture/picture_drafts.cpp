@@ -80,7 +80,7 @@ void compare(const Image& a, const Image& b, PictureDraft& draft) {
 void draw_by_paths(const Scene& scene, const Camera& camera, const StatedPicture& stated, const Annotation& annotation,
                    const PictureOptions& options, Picture& picture, Context& context) {
   DrawHow how;
-  how.until = options.until, how.layers = options.layers;
+  how.until = options.until, how.layers = options.layers, how.on_light = options.on_light;
   const auto take = [&](DrawnPicture drawn) {
     picture.image = std::move(drawn.image), picture.seen = std::move(drawn.seen), picture.stopped = drawn.light.stopped;
     PictureDraft draft;
@@ -106,7 +106,7 @@ void draw_drafts(const Scene& scene, const Camera& camera, const StatedPicture& 
   const Projection p = make_projection(camera, int(area.width), int(area.height));
   const double coarsest = options.on_draft ? pixels_in_memory(scene, p, draft.made_of) : 0;
   const auto draw = [&](double coarser, Context& c) {
-    return draw_picture(scene, camera, stated, annotation, {.coarser = coarser, .layers = options.layers}, c);
+    return draw_picture(scene, camera, stated, annotation, {.coarser = coarser, .layers = options.layers, .on_light = options.on_light}, c);
   };
   const auto take = [&](DrawnPicture drawn) { picture.image = std::move(drawn.image), picture.seen = std::move(drawn.seen); };
   if (!(coarsest > 1)) {  // all is in memory, or fine enough there

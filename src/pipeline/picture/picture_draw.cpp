@@ -179,6 +179,7 @@ DrawnPicture draw_picture(const Scene& stated, const Camera& camera, const State
   } else {
     frame = render(scene, camera, options, context, &light);
   }
+  if (how.on_light) how.on_light(frame);
   context.log(LogLevel::debug,
               fmt::format("drawing {}x{}: {}: {}", options.width, options.height, drawing.text(), drawn_text(scene, options)));
   const StopWatch annotating;

@@ -106,7 +106,7 @@ StatedPicture inside_layout(const StatedPicture& stated, const Annotation& aroun
 }
 
 DrawnPicture draw_layout(const std::vector<NamedPanel>& panels, const StatedPicture& stated, const StatedPicture& inside,
-                         const Annotation& around, Context& context) {
+                         const Annotation& around, const DrawHow& how, Context& context) {
   check_picture_memory(stated.width, stated.height, 2);
   const Rect area = area_beside(around, stated.width, stated.height);
   const int columns = std::max(1, int(area.width) / inside.width);
@@ -118,7 +118,6 @@ DrawnPicture draw_layout(const std::vector<NamedPanel>& panels, const StatedPict
   Frame frame = render(empty, panels[0].panel.camera, options, context);
   Image whole = to_image(frame, stated.transparent);
   LightPlanes light;
-  const DrawHow how;
   for (size_t i = 0; i < panels.size(); ++i) {
     Annotation annotation = panels[i].panel.annotation;
     annotation.title = panels[i].title;

@@ -79,6 +79,7 @@ struct DrawHow {
   std::function<bool(DrawnPicture)> on_finer;                  ///< by paths: gets pictures on the way; false: no more of them
   double every = 1;                                            ///< as in LightWatch
   bool layers = false;                                         ///< as in PictureOptions
+  std::function<void(Frame&)> on_light;                        ///< as there
 };
 
 /// A scene, seen and annotated.
@@ -107,7 +108,7 @@ NamedView view_named(const std::string& word);
 StatedPicture inside_layout(const StatedPicture& stated, const Annotation& around, size_t count);
 /// The panels in rows, each with its title; title and legends of `around` beside them.
 DrawnPicture draw_layout(const std::vector<NamedPanel>& panels, const StatedPicture& stated, const StatedPicture& inside,
-                         const Annotation& around, Context& context);
+                         const Annotation& around, const DrawHow& how, Context& context);
 
 /// One entry under `show`, with its parameters.
 struct StatedShow {

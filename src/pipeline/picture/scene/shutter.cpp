@@ -47,8 +47,6 @@ void keep_colors(const Scene& from, Scene& to) {
   }
 }
 
-bool has_alpha(const Image& image) { return image.channels == 2 || image.channels == 4; }
-
 }  // namespace
 
 std::vector<PipelineFile> moments_of(const PipelineFile& file, const CameraParams& camera) {
@@ -70,9 +68,14 @@ std::vector<PipelineFile> moments_of(const PipelineFile& file, const CameraParam
 Picture draw_moments(const std::vector<PipelineFile>& moments, const PreparedPicture& prepared, const PictureOptions& options,
                      Context& context) {
   Picture picture;
-  MeanImage mean;
   PictureOptions each = options;
   each.on_draft = nullptr;
+  std::vector<MeanFrame> means;  // of the panels
+  size_t panel = 0;
+  each.on_light = [&](Frame& frame) {
+    if (panel == means.size()) means.emplace_back();
+    means[panel++].add(frame);
+  };
   PreparedPicture moment = prepared;
   // Each moment has its own noise, and what time makes of the first one all others get.
   PictureParams& drawn = moment.stated.picture;
@@ -88,12 +91,13 @@ Picture draw_moments(const std::vector<PipelineFile>& moments, const PreparedPic
   for (size_t k = 0; k < moments.size(); ++k) {
     Context part(context, double(k) / double(moments.size()), double(k + 1) / double(moments.size()));
     if (k > 0) part.on_log = nullptr;  // all say the same
-    PipelineFile file = moments[k];
+    PipelineFile file = moments[(k + moments.size() / 2 + 1) % moments.size()];  // the middle one is the last
     const PreparedPicture there = prepare_picture(file, each, part);
     for (size_t i = 0; i < moment.shown.size() && i < there.shown.size(); ++i) {
       moment.shown[i].scene = there.shown[i].scene;
       keep_colors(prepared.shown[i].scene, moment.shown[i].scene);
     }
+    panel = 0;
     picture = draw_prepared(moment, moment.stated, each, part);
     if (picture.image.pixels.empty()) return picture;
     if (k == 0) {
@@ -101,40 +105,18 @@ Picture draw_moments(const std::vector<PipelineFile>& moments, const PreparedPic
       if (stopped > 0) drawn.light.stop = stopped;
     }
     ++drawn.seed;
-    mean.add(picture.image);
   }
-  picture.image = mean.mean(), picture.stopped = stopped;
+  picture.stopped = stopped;
   return picture;
 }
 
-void MeanImage::add(const Image& image) {
-  if (count_ == 0) like_ = image, sums_.assign(size_t(image.width) * size_t(image.height) * 4, 0);
-  if (image.width != like_.width || image.height != like_.height || image.channels != like_.channels)
-    fail_internal("moments of different sizes");
-  ++count_;
-  const int colors = has_alpha(image) ? image.channels - 1 : image.channels;
-  const size_t pixels = size_t(image.width) * size_t(image.height);
-  double linear[256];
-  for (int v = 0; v < 256; ++v) linear[v] = double(srgb_decode(float(v) / 255));
-  for (size_t i = 0; i < pixels; ++i) {
-    const uint8_t* p = &image.pixels[i * size_t(image.channels)];
-    const double alpha = has_alpha(image) ? p[colors] / 255.0 : 1;
-    for (int c = 0; c < colors; ++c) sums_[4 * i + size_t(c)] += linear[p[c]] * alpha;
-    sums_[4 * i + 3] += alpha;
+void MeanFrame::add(Frame& frame) {
+  if (count_++ == 0) sums_.assign(frame.rgba.size(), 0);
+  if (frame.rgba.size() != sums_.size()) fail_internal("moments of different sizes");
+  for (size_t i = 0; i < sums_.size(); ++i) {
+    sums_[i] += double(frame.rgba[i]);
+    frame.rgba[i] = float(sums_[i] / double(count_));
   }
-}
-
-Image MeanImage::mean() const {
-  Image r = like_;
-  const int colors = has_alpha(r) ? r.channels - 1 : r.channels;
-  const auto byte = [](double v) { return uint8_t(std::clamp(v * 255 + 0.5, 0.0, 255.0)); };
-  for (size_t i = 0; i < size_t(r.width) * size_t(r.height); ++i) {
-    uint8_t* p = &r.pixels[i * size_t(r.channels)];
-    const double alpha = sums_[4 * i + 3];
-    for (int c = 0; c < colors; ++c) p[c] = alpha > 0 ? byte(double(srgb_encode(float(sums_[4 * i + size_t(c)] / alpha)))) : 0;
-    if (has_alpha(r)) p[colors] = byte(alpha / double(count_));
-  }
-  return r;
 }
 
 }  // namespace sg

@@ -10,20 +10,18 @@ namespace sg {
 std::vector<PipelineFile> moments_of(const PipelineFile& file, const CameraParams& camera);
 
 /// The picture with the mean light of the moments; camera, axes and legends are those of `prepared`, which is of `file`, and so are
-/// colours. What is seen where (Picture::seen) is that of the last moment.
+/// colours. Labels, and what is seen where (Picture::seen), are those of the middle moment.
 Picture draw_moments(const std::vector<PipelineFile>& moments, const PreparedPicture& prepared, const PictureOptions& options,
                      Context& context);
 
-/// The mean of pictures of one size in linear light; alpha by itself, colours by their alpha.
-class MeanImage {
+/// The mean of frames of one size: of their light, however bright.
+class MeanFrame {
  public:
-  void add(const Image& image);
-  /// Of as many channels as those added.
-  Image mean() const;
+  /// The frame's colours become the mean of all so far. Throws Error(internal) for another size.
+  void add(Frame& frame);
 
  private:
-  Image like_;
-  std::vector<double> sums_;  // premultiplied linear colour, then alpha
+  std::vector<double> sums_;
   size_t count_ = 0;
 };
 

@@ -2,6 +2,7 @@
 #include "pipeline/picture/scene/shutter.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "pipeline/picture/scene/picture_scene.h"
@@ -90,15 +91,20 @@ TEST_CASE("shutter: steps that state a time move, too, in the colours of the pic
   CHECK(test::contains(said, "nothing moves"));
 }
 
-TEST_CASE("shutter: the mean is that of light, not of its codes, and transparent pixels count by their alpha") {
-  Image black(1, 1, 4), white(1, 1, 4);
-  white.pixels = {255, 255, 255, 255}, black.pixels = {0, 0, 0, 255};
-  MeanImage mean;
-  mean.add(black), mean.add(white);
-  CHECK(mean.mean().pixels == std::vector<uint8_t>{188, 188, 188, 255});
-  Image nothing(1, 1, 4);
-  nothing.pixels = {0, 0, 0, 0};
-  MeanImage half;
-  half.add(white), half.add(nothing);
-  CHECK(half.mean().pixels == std::vector<uint8_t>{255, 255, 255, 128});
+TEST_CASE("shutter: the mean is that of light, of what is brighter than white, too") {
+  Frame bright(1, 1), nothing(1, 1);
+  bright.rgba = {4, 1, 0, 1}, nothing.rgba = {0, 0, 0, 0};
+  MeanFrame mean;
+  mean.add(bright);
+  CHECK(std::ranges::equal(bright.rgba, std::array{4.f, 1.f, 0.f, 1.f}));
+  mean.add(nothing);
+  CHECK(std::ranges::equal(nothing.rgba, std::array{2.f, 0.5f, 0.f, 0.5f}));
+  // A ball that shines four times as bright as white and is seen half of the time is white all along its way.
+  PipelineFile file = moving(", shutter: 0.5, moments: 2");
+  file.show[0].words = {"color=white", "material=matte", "emission=4,4,4"};
+  file.picture.push_back("background=black"), file.picture.push_back("integrator=path"), file.picture.push_back("paths=4");
+  Context context;
+  const Image image = make_picture(file, {}, context).image;
+  CHECK(image.at(40, 48)[0] == 255);
+  CHECK(image.at(56, 48)[0] == 255);
 }
