@@ -12,6 +12,7 @@
 #include "render/composite/background.h"
 #include "render/composite/marks.h"
 #include "render/raster/raster.h"
+#include "render/trace/integrators/bidirectional/whole_picture.h"
 #include "render/trace/trace.h"
 #include "render/volume/volume.h"
 
@@ -77,16 +78,17 @@ std::vector<uint8_t> uneven_squares(const Frame& frame, int side, double thresho
 /// little. The bands depend on the size of the picture alone.
 constexpr size_t band_pixels = size_t(1) << 21;
 
-// What became of the noise that was asked for.
+// What became of the noise that was asked for: of each part of the picture, or of all that shows something.
 std::string unreached(const TraceReport& report, const LightOptions& light) {
   if (report.reached) return "";
+  const char* where = trace::lights_whole_picture(light.integrator) ? "where there is something" : "everywhere";
   if (report.stopped > 0 && light.seconds > 0)
-    return fmt::format("; noise={} was not reached everywhere in {:.3g} s, enough for {} paths a pixel there", light.noise, light.seconds,
+    return fmt::format("; noise={} was not reached {} in {:.3g} s, enough for {} paths a pixel there", light.noise, where, light.seconds,
                        report.stopped);
-  if (report.stopped > 0) return fmt::format("; stopped before noise={} was reached everywhere", light.noise);
+  if (report.stopped > 0) return fmt::format("; stopped before noise={} was reached {}", light.noise, where);
   if (light.stop > 0 && light.stop < light.paths)
-    return fmt::format("; noise={} was not reached everywhere with stop={}", light.noise, light.stop);
-  return fmt::format("; noise={} was not reached everywhere with paths={}", light.noise, light.paths);
+    return fmt::format("; noise={} was not reached {} with stop={}", light.noise, where, light.stop);
+  return fmt::format("; noise={} was not reached {} with paths={}", light.noise, where, light.paths);
 }
 
 Frame render_light(const Scene& whole, const Camera& camera, const RenderOptions& options, TraceReport& report, Context& context) {

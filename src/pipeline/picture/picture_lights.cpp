@@ -44,6 +44,15 @@ LinearPicture picture_of(const Data& data, const std::string& path) {
   return p;
 }
 
+/// Whether a volume of the scene has such light; `unstated`: what one has that says nothing.
+template <class Is>
+bool any_volume(const Scene& scene, VolumeLighting unstated, Is&& is) {
+  return std::any_of(scene.items.begin(), scene.items.end(), [&](const Item& item) {
+    const auto* v = std::get_if<VolumeItem>(&item);
+    return v && is(v->scattering.light.value_or(unstated));
+  });
+}
+
 }  // namespace
 
 std::shared_ptr<const LinearPicture> read_environment(const std::string& path, Context& context) {
@@ -64,8 +73,8 @@ std::shared_ptr<const LinearPicture> read_environment(const std::string& path, C
   return std::make_shared<const LinearPicture>(std::move(p));
 }
 
-std::string note_of_lost_light(const StatedPicture& s) {
-  if (s.picture.integrator) return {};
+std::string note_of_lost_light(const StatedPicture& s, const Scene& scene) {
+  if (follows_light(scene, s)) return {};
   std::string lost;
   const auto add = [&](const char* what) { lost += (lost.empty() ? "" : ", ") + std::string(what); };
   bool shaped = false;
@@ -73,10 +82,21 @@ std::string note_of_lost_light(const StatedPicture& s) {
     const auto* far = std::get_if<DirectionalLightParams>(&l);
     shaped = shaped || !far || far->angle > 1;
   }
-  if (shaped) add("lights are directions alone, without size, distance, colour and shadows");
+  if (shaped)
+    add(any_volume(scene, VolumeLighting::emission, [](VolumeLighting l) { return l == VolumeLighting::map; })
+            ? "lights are directions alone, without size, distance and colour, whose shadows are those of volumes with light=map"
+            : "lights are directions alone, without size, distance, colour and shadows");
   if (s.lighting.environment) add("the environment is left out");
   if (s.camera.aperture > 0) add("the aperture is left out");
+  if (const LightOptions paths; s.picture.light.noise != paths.noise || s.picture.light.paths != paths.paths)
+    add("noise and paths are those of pictures by paths of light");
   return lost.empty() ? "" : fmt::format("{}: --integrator path shows what is stated", lost);
+}
+
+std::string note_of_lit_matter(const StatedPicture& s, const Scene& scene, const std::vector<Legend>& legends) {
+  const VolumeLighting unstated = s.picture.integrator ? VolumeLighting::path : VolumeLighting::emission;
+  if (legends.empty() || !any_volume(scene, unstated, [](VolumeLighting l) { return l != VolumeLighting::emission; })) return {};
+  return "volumes in light: the legend's colours are those of the matter, the picture's are those of the light that it scatters";
 }
 
 }  // namespace sg

@@ -14,7 +14,10 @@ namespace sg {
 /// Error(data) for a file that is missing, damaged or not a picture of one layer, and for negative and non-finite pixels.
 std::shared_ptr<const LinearPicture> read_environment(const std::string& path, Context& context);
 
-/// What is stated of light and lens that the rasterizer does not show; "" for nothing.
-std::string note_of_lost_light(const StatedPicture& stated);
+/// What is stated of light, lens and paths that the rasterizer does not show; "" for nothing.
+std::string note_of_lost_light(const StatedPicture& stated, const Scene& scene);
+
+/// Where volumes are seen in light, and a legend tells of their colours: what these are. "" else.
+std::string note_of_lit_matter(const StatedPicture& stated, const Scene& scene, const std::vector<Legend>& legends);
 
 }  // namespace sg

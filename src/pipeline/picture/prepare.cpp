@@ -161,8 +161,9 @@ PreparedPicture prepare_picture(PipelineFile& file, const PictureOptions& option
   for (const Shown& s : shown)
     if (const std::string note = note_of_long_drawing(s.scene, double(stated.width) * double(stated.height), context); !note.empty())
       once.info(note);
-  const bool traced = std::all_of(shown.begin(), shown.end(), [](const Shown& s) { return scatters_light(s.scene); });
-  if (const std::string note = note_of_lost_light(stated); !note.empty() && !traced) once.info(note);
+  for (const Shown& s : shown)
+    for (const std::string& note : {note_of_lost_light(stated, s.scene), note_of_lit_matter(stated, s.scene, shown[0].legends)})
+      if (!note.empty()) once.info(note);
   if (std::none_of(shown.begin(), shown.end(), [](const Shown& s) { return s.any_points; }))
     context.warn("the picture is empty: there are no points to show");
   if (!file.show.empty()) {

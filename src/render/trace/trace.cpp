@@ -10,6 +10,7 @@
 #include "render/composite/background.h"
 #include "render/composite/marks.h"
 #include "render/prepare/picture_set.h"
+#include "render/raster/raster.h"
 #include "render/trace/denoise/denoise.h"
 #include "render/trace/denoise/features.h"
 #include "render/trace/integrators/bidirectional/whole_picture.h"
@@ -61,8 +62,9 @@ World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Proje
   for (const Isosurfaces::Look& look : isosurfaces.looks) add(look.made_of, false);
   Studio studio = studio_of(scene, projection, geometry.placement());
   backdrop = studio.backdrop;
+  PictureLook look(*prepared, projection, size.pixel, texture_scene(*prepared, projection, context));
   return {prepared, std::move(geometry),          std::move(materials), std::move(studio.lights), std::move(studio.environment),
-          media,    std::move(isosurfaces.looks), scene.shows};
+          media,    std::move(isosurfaces.looks), scene.shows,          std::move(look)};
 }
 
 /// What paths from the lights alone do not find.
@@ -114,6 +116,8 @@ Frame trace_scene(const Scene& scene, const PreparedScenePtr& prepared, const Pr
   World world = world_of(scene, prepared, projection, backdrop, context);
   if (!world.lights().any() && options.integrator != IntegratorKind::ambient_occlusion)
     context.warn("nothing shines: no light, no environment, no material with emission; the picture is dark");
+  if (options.integrator != IntegratorKind::path && options.integrator != IntegratorKind::ambient_occlusion && world.walks_below())
+    context.info("light that wanders below surfaces comes out where it went in: integrator=path follows it");
   const auto integrator = make_integrator(options);
   const PictureCamera camera(projection, world.geometry().placement());
   eye = &camera;

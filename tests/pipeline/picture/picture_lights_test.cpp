@@ -55,13 +55,26 @@ TEST_CASE("picture lights: lists and maps of kinds in a pipeline file, or text, 
 }
 
 TEST_CASE("picture lights: what the rasterizer leaves out is said, and nothing where all is shown") {
-  const auto note = [](const std::string& picture) { return note_of_lost_light(stated_in(file_with(picture))); };
+  const auto note = [](const std::string& picture) { return note_of_lost_light(stated_in(file_with(picture)), Scene()); };
   CHECK(note("{size: 32x32}") == "");
   CHECK(note("{lights: directional from=left}") == "");
   CHECK(test::contains(note("{lights: sphere}"), "directions alone"));
   CHECK(test::contains(note("{environment: sky}"), "environment is left out"));
   CHECK(test::contains(note("{camera: {aperture: 0.1}}"), "aperture"));
-  CHECK(note("{lights: sphere, environment: sky, integrator: path}") == "");
+  CHECK(test::contains(note("{noise: 0.05}"), "noise and paths"));
+  CHECK(note("{lights: sphere, environment: sky, integrator: path, noise: 0.05}") == "");
+  // Volumes in light cast shadows, and paths are followed where they ask for it.
+  Scene matter;
+  VolumeItem v;
+  v.scattering.light = VolumeLighting::map;
+  matter.items.emplace_back(v);
+  const StatedPicture lit = stated_in(file_with("{lights: sphere}"));
+  CHECK(test::contains(note_of_lost_light(lit, matter), "shadows are those of volumes"));
+  CHECK(test::contains(note_of_lit_matter(lit, matter, {Legend()}), "those of the matter"));
+  CHECK(note_of_lit_matter(lit, matter, {}) == "");
+  CHECK(note_of_lit_matter(lit, Scene(), {Legend()}) == "");
+  std::get<VolumeItem>(matter.items[0]).scattering.light = VolumeLighting::path;
+  CHECK(note_of_lost_light(lit, matter) == "");
 }
 
 TEST_CASE("picture lights: pictures of all directions are read, and refused where they are missing, cut off or no light") {

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "render/scene_support.h"
 #include "render/volume/rays/functions.h"
 #include "render/volume/sources/lattice/lattice_ray.h"
 #include "render/volume/volume.h"
@@ -94,11 +95,6 @@ inline Frame draw(const Scene& scene, const Projection& p, const volume::Knobs& 
   Context context;
   volume::composite_volumes(scene, p, fragments, frame, context, knobs);
   return frame;
-}
-inline Scene scene_of(std::vector<Item> items) {
-  Scene s;
-  s.items = std::move(items);
-  return s;
 }
 /// A clear fragment before the volume in every pixel: such pictures go by single rays.
 inline FragmentLists by_single_rays(const Projection& view) {

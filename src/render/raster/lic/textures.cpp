@@ -19,37 +19,45 @@ float light_factor(float brightness, float strength) {
 
 }  // namespace
 
+std::optional<float> texture_factor(const RenderTextures& textures, const PreparedItem& item, uint32_t number, const Projection& projection,
+                                    int x, int y, float z) {
+  const LicPlanes& p = textures.layers[size_t(textures.layer_of[number])];
+  // Eight of the texture's pixels.
+  const auto reach = float(8 / (projection.scale * textures.width / projection.width));
+  const float allowed = projection.parallel ? reach : reach * z;
+  const auto off = [&](size_t i) {
+    const float there = projection.parallel ? p.w[i] : 1 / p.w[i];
+    return std::abs(there - z);
+  };
+  x = std::clamp(x, 0, p.width - 1), y = std::clamp(y, 0, p.height - 1);
+  size_t best = p.at(x, y);
+  if (p.item[best] != number + 1 || !(off(best) <= allowed)) {
+    // The pixel's own sample shows something else: the neighbour at about this depth, or nothing.
+    float least = allowed;
+    best = 0;
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) {
+        const size_t i = p.at(x + dx, y + dy);
+        if (p.item[i] == number + 1 && off(i) < least) least = off(i), best = i;
+      }
+    if (best == 0) return {};
+  }
+  if ((p.word[best] & ~0xFFu) == 0) return {};  // no direction: the plain colour
+  return light_factor(normal_brightness(float(item.lic->contrast) * p.value[best]), float(item.lic->strength));
+}
+
 void apply_texture(const RenderTextures& textures, const PreparedItem& item, uint32_t number, const Projection& projection,
                    ShadeBatch& batch) {
-  const LicPlanes& p = textures.layers[size_t(textures.layer_of[number])];
   const int rows = projection.rows > 0 ? projection.rows : projection.height;
   const double across = double(textures.width) / projection.width, down = double(textures.height) / rows;
   // A band's first row in the whole picture.
   const double first = projection.rows > 0 ? 0.5 * rows - projection.middle_y() : 0.0;
-  const float contrast = float(item.lic->contrast), strength = float(item.lic->strength);
-  const float reach = float(8 / (projection.scale * across));  // times depth in perspective: eight of the texture's pixels
-  const auto off = [&](size_t i, float z) {
-    const float there = projection.parallel ? p.w[i] : 1 / p.w[i];
-    return std::abs(there - z);
-  };
   for (size_t k = 0; k < batch.n; ++k) {
-    const int x = std::min(int((batch.tile_x + int(batch.pixel[k] % tile_size) + 0.5) * across), p.width - 1);
-    const int y = std::clamp(int((batch.tile_y + int(batch.pixel[k] / tile_size) + 0.5 + first) * down), 0, p.height - 1);
-    const float z = batch.depth[k], allowed = projection.parallel ? reach : reach * z;
-    size_t best = p.at(x, y);
-    if (p.item[best] != number + 1 || !(off(best, z) <= allowed)) {
-      // The pixel's own sample shows something else: the neighbour at about this depth, or nothing.
-      float least = allowed;
-      best = 0;
-      for (int dy = -1; dy <= 1; ++dy)
-        for (int dx = -1; dx <= 1; ++dx) {
-          const size_t i = p.at(x + dx, y + dy);
-          if (p.item[i] == number + 1 && off(i, z) < least) least = off(i, z), best = i;
-        }
-      if (best == 0) continue;
-    }
-    if ((p.word[best] & ~0xFFu) == 0) continue;  // no direction: the plain colour
-    float factor = light_factor(normal_brightness(contrast * p.value[best]), strength);
+    const int x = int((batch.tile_x + int(batch.pixel[k] % tile_size) + 0.5) * across);
+    const int y = int((batch.tile_y + int(batch.pixel[k] / tile_size) + 0.5 + first) * down);
+    const auto found = texture_factor(textures, item, number, projection, x, y, batch.depth[k]);
+    if (!found) continue;
+    float factor = *found;
     const float brightest = std::max({batch.rgba[0][k], batch.rgba[1][k], batch.rgba[2][k]}) * batch.light[k];
     if (factor > 1 && brightest * factor > 1) factor = std::max(1.0f, 1 / brightest);  // keeps the hue
     batch.light[k] *= factor;

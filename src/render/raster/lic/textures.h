@@ -2,6 +2,7 @@
 // The textures of a picture: made once at one sample a pixel, looked up by pictures of the same view with more samples and by its bands.
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "render/raster/lic/surface_lic.h"
@@ -21,6 +22,11 @@ namespace sg::raster {
 
 struct ShadeBatch;
 struct PreparedItem;
+
+/// The factor that the texture of item `number` has for its light where it is seen at (x, y), pixels of the texture, at `depth`; nothing
+/// where it has no direction or something else is seen there. `projection`: of the texture or of any other size of the same picture.
+std::optional<float> texture_factor(const RenderTextures& textures, const PreparedItem& item, uint32_t number, const Projection& projection,
+                                    int x, int y, float depth);
 
 /// Multiplies the light of a shaded batch by the texture of item `number`. `projection`: of the picture that is shaded, of
 /// 1 or more samples per pixel and side, whole or a band.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/raster/marks/marks.h"
+#include "render/prepare/edge_fade.h"
 
 #include <cmath>
 #include <numeric>
@@ -45,16 +46,8 @@ bool clip_depth(const Projection& p, Vec3& a, Vec3& b, float& from, float& to) {
   return true;
 }
 
-// Edges of cells that are wider than the first number of pixels are whole, below the second there are none.
-constexpr double roomy = 8, crowded = 3;
-
-double edge_fade(double room_pixels) { return std::clamp((room_pixels - crowded) / (roomy - crowded), 0.0, 1.0); }
-
-// Edges of the larger cells alone would look like a change of the data: where many of small ones (short edges) are `gone`, all go.
-void fade_together(std::vector<MarkRecord>& edges, size_t gone) {
-  constexpr double few = 0.25, many = 0.5;
-  const double share = double(gone) / double(std::max<size_t>(edges.size() + gone, 1));
-  const auto all = float(std::clamp((many - share) / (many - few), 0.0, 1.0));
+void fade_crowded(std::vector<MarkRecord>& edges, size_t gone) {
+  const auto all = float(fade_together(gone, edges.size() + gone));
   if (all > 0)
     for (MarkRecord& m : edges) m.fade *= all;
   else edges.clear();
@@ -102,12 +95,12 @@ std::vector<MarkRecord> mark_records(const PreparedItem& item, uint32_t number, 
     for (size_t i = begin; i < end; ++i)
       if (make_record(item, projection, pixel_scale, i, m)) {
         if (m.fade > 0) parts[begin / marks_per_chunk].push_back(m);
-        else gone[begin / marks_per_chunk] += std::hypot(m.bx - m.ax, m.by - m.ay) < roomy * pixel_scale;
+        else gone[begin / marks_per_chunk] += std::hypot(m.bx - m.ax, m.by - m.ay) < roomy_edge * pixel_scale;
       }
   });
   std::vector<MarkRecord> all;
   for (const auto& p : parts) all.insert(all.end(), p.begin(), p.end());
-  if (item.segments && !item.segments->room.empty()) fade_together(all, std::accumulate(gone.begin(), gone.end(), size_t(0)));
+  if (item.segments && !item.segments->room.empty()) fade_crowded(all, std::accumulate(gone.begin(), gone.end(), size_t(0)));
   return all;
 }
 

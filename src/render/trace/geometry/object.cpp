@@ -7,6 +7,7 @@
 #include <cstring>
 #include <utility>
 
+#include "render/prepare/edge_fade.h"
 #include "render/trace/geometry/instances.h"
 #include "render/trace/geometry/surface_point.h"
 #include "render/trace/geometry/triangles.h"
@@ -223,7 +224,9 @@ ObjectPtr make_object(const PreparedItem& p, const GeometryOptions& options, dou
     case PreparedItem::Kind::surface:
       if (p.glyphs) return std::make_unique<GlyphObject>(p, pixel, context);
       return surface_object(p, context);
-    case PreparedItem::Kind::lines: return p.glyphs ? glyph_tube_object(p, line, pixel, context) : tube_object(p, line, context);
+    case PreparedItem::Kind::lines:
+      if (!p.glyphs && !p.segments->room.empty() && raster::fade_together(p, pixel) == 0) return nullptr;
+      return p.glyphs ? glyph_tube_object(p, line, pixel, context) : tube_object(p, line, context);
     case PreparedItem::Kind::points: return p.discs ? disc_object(p, context) : ball_object(p, point, context);
   }
   return nullptr;

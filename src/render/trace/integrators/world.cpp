@@ -83,7 +83,7 @@ float reach_of(const Geometry& geometry, const Media* media) {
 
 World::World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_ptr<const Material>> materials,
              std::vector<AnyLight> lights, Environment environment, std::shared_ptr<const Media> media,
-             std::vector<Isosurfaces::Look> isosurfaces, std::vector<uint32_t> shows)
+             std::vector<Isosurfaces::Look> isosurfaces, std::vector<uint32_t> shows, PictureLook look)
     : scene_(std::move(scene)),
       geometry_(std::move(geometry)),
       materials_(std::move(materials)),
@@ -91,14 +91,17 @@ World::World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_
               reach_of(geometry_, media.get())),
       media_(std::move(media)),
       isosurfaces_(std::move(isosurfaces)),
-      shows_(std::move(shows)) {
+      shows_(std::move(shows)),
+      look_(std::move(look)) {
   if (const Environment& around = lights_.environment(); around.even() && !around.dark()) {
     std::vector<AnyLight> all;
     for (uint32_t i = 0; i < lights_.count(); ++i) all.push_back(lights_.light(i));
     lamps_.emplace(std::move(all), around, reach_of(geometry_, media_.get()), false);
   }
-  for (const raster::PreparedItem& item : scene_->items)
-    translucent_ = translucent_ || item.translucent || item.opacity < 1 || item.color.translucent;
+  for (size_t i = 0; i < scene_->items.size(); ++i) {
+    const raster::PreparedItem& item = scene_->items[i];
+    translucent_ = translucent_ || item.translucent || item.opacity < 1 || item.color.translucent || look_.fades(i);
+  }
   for (const Isosurfaces::Look& look : isosurfaces_)
     for (const Vec4f& c : look.colors) translucent_ = translucent_ || c.w < 1;
   for (const raster::PreparedItem& item : scene_->items) {
@@ -109,6 +112,10 @@ World::World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_
   }
   for (const auto& m : materials_) translucent_ = translucent_ || m->passes_straight();
   find_boundaries();
+}
+
+bool World::walks_below() const {
+  return std::any_of(materials_.begin(), materials_.end(), [](const auto& m) { return !m->thin() && m->shares.subsurface > 0; });
 }
 
 Box3f World::bounds() const { return bounds_of(geometry_, media_.get()); }
@@ -169,8 +176,12 @@ Insides Vertex::onward(const Insides& around, Vec3f from, Vec3f to) const {
 
 Vec4f World::color(const Ray& ray, const Hit& hit, const RayFootprint& footprint) const {
   const size_t items = scene_->items.size();
-  return hit.object < items ? surface_color(scene_->items[hit.object], ray, hit, footprint, geometry_.placement().scale)
-                            : isosurfaces_[hit.object - items].colors[hit.primitive];
+  if (hit.object >= items) return isosurfaces_[hit.object - items].colors[hit.primitive];
+  const raster::PreparedItem& item = scene_->items[hit.object];
+  Vec4f color = surface_color(item, ray, hit, footprint, geometry_.placement().scale);
+  if (look_.changes(hit.object))
+    look_.apply(item, hit.object, hit.primitive, geometry_.placement().world(ray.origin + ray.direction * hit.t), color);
+  return color;
 }
 
 uint32_t World::id(const Hit& hit) const {

@@ -8,6 +8,7 @@
 #include "base/context.h"
 #include "render/prepare/prepared.h"
 #include "render/trace/geometry/geometry.h"
+#include "render/trace/integrators/picture_look.h"
 #include "render/trace/integrators/ray_footprint.h"
 #include "render/trace/isosurface/isosurface.h"
 #include "render/trace/light/lights.h"
@@ -39,7 +40,7 @@ class World {
   /// items, then isosurfaces. `shows`: as of Scene.
   World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_ptr<const Material>> materials, std::vector<AnyLight> lights,
         Environment environment, std::shared_ptr<const Media> media = nullptr, std::vector<Isosurfaces::Look> isosurfaces = {},
-        std::vector<uint32_t> shows = {});
+        std::vector<uint32_t> shows = {}, PictureLook look = {});
 
   const Geometry& geometry() const { return geometry_; }
   const Lights& lights() const { return lights_; }
@@ -68,6 +69,8 @@ class World {
   const Insides& insides_of_viewer() const { return insides_of_viewer_; }
   /// Whether an item lets some light pass straight on, so that shadows have shades.
   bool translucent() const { return translucent_; }
+  /// Whether light wanders below some surface.
+  bool walks_below() const;
   /// Whether colours depend on what a ray stands for.
   bool has_pictures() const { return pictures_; }
   /// Share of light that surfaces let pass along the ray up to t_max, and clear bodies from those on that it begins in: 0 behind anything
@@ -92,6 +95,7 @@ class World {
   std::shared_ptr<const Media> media_;
   std::vector<Isosurfaces::Look> isosurfaces_;
   std::vector<uint32_t> shows_;
+  PictureLook look_;
   struct Boundary {
     const Material* of;
     float ior;  ///< of what it is in

@@ -6,6 +6,7 @@
 #include "render/prepare/prepared.h"
 #include "render/raster/lic/textures.h"
 #include "render/raster/raster_support.h"
+#include "render/scene_support.h"
 
 namespace sg::test {
 
@@ -30,12 +31,6 @@ inline SurfaceItem textured(DatasetPtr data, int steps = 20, double step = 0.5, 
   SurfaceItem s = item(std::move(data), {0.7f, 0.7f, 0.7f}, false);
   s.lic.emplace();
   s.lic->field = "v", s.lic->steps = steps, s.lic->step = step, s.lic->kernel = kernel;
-  return s;
-}
-
-inline Scene scene_of(std::vector<Item> items) {
-  Scene s;
-  s.items = std::move(items);
   return s;
 }
 
