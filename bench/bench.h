@@ -38,6 +38,7 @@ void add_cut_tasks(std::vector<Task>& tasks);
 void add_index_tasks(std::vector<Task>& tasks);
 void add_unsteady_tasks(std::vector<Task>& tasks);
 void add_volume_tasks(std::vector<Task>& tasks);
+void add_light_map_tasks(std::vector<Task>& tasks);
 /// Errors, not times: VTK's pictures lie in the data folder (bench/vtk_volume_picture.py).
 void add_volume_error_tasks(std::vector<Task>& tasks, const std::string& data_folder);
 void add_volume_methods_tasks(std::vector<Task>& tasks);

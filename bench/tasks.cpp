@@ -195,6 +195,7 @@ std::vector<Task> tasks(const std::string& folder, bool large) {
     for (bool discs : {false, true}) t.push_back(isosurface_picture(n, discs));
   add_unsteady_tasks(t);
   add_volume_tasks(t);
+  add_light_map_tasks(t);
   add_flow_tasks(t);
   add_walk_tasks(t);
   add_particle_tasks(t);

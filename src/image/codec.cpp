@@ -68,18 +68,17 @@ std::string webp_bytes(const Image& image, const std::string& path) {
   return bytes;
 }
 
-void write_png(const std::string& path, const Image& image) {
+std::string png_bytes(const Image& image, const std::string&) {
   const std::vector<uint8_t> bytes = encode_png(image);
-  write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
-void write_jpeg(const std::string& path, const Image& image) { write_file(path, encode_jpeg(image, 92)); }
-void write_webp(const std::string& path, const Image& image) { write_file(path, webp_bytes(image, path)); }
+std::string jpeg_bytes(const Image& image, const std::string&) { return encode_jpeg(image, 92); }
 
 struct ImageFormat {
   std::string_view extension;
-  void (*write)(const std::string& path, const Image& image);
+  std::string (*encode)(const Image& image, const std::string& path);
 };
-constexpr ImageFormat image_formats[] = {{"png", write_png}, {"jpg", write_jpeg}, {"jpeg", write_jpeg}, {"webp", write_webp}};
+constexpr ImageFormat image_formats[] = {{"png", png_bytes}, {"jpg", jpeg_bytes}, {"jpeg", jpeg_bytes}, {"webp", webp_bytes}};
 
 }  // namespace
 
@@ -106,7 +105,7 @@ const std::vector<std::string>& image_extensions() {
   return extensions;
 }
 
-void write_image(const std::string& path, const Image& image) {
+std::string encode_image(const std::string& path, const Image& image) {
   const std::string extension = extension_of(path);
   const ImageFormat* format = nullptr;
   for (const ImageFormat& f : image_formats)
@@ -115,8 +114,10 @@ void write_image(const std::string& path, const Image& image) {
     fail_usage(extension.empty() ? "the picture's name has no extension" : fmt::format("cannot write pictures as '.{}'", extension), path,
                "use .png, .jpg or .webp");
   if (image.width < 1 || image.height < 1) fail_usage("the picture has no pixels", path);
-  format->write(path, image);
+  return format->encode(image, path);
 }
+
+void write_image(const std::string& path, const Image& image) { write_file(path, encode_image(path, image)); }
 
 ImageDifference compare(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height)

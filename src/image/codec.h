@@ -12,6 +12,8 @@ namespace sg {
 /// The encoder is chosen by the extension: png, jpg/jpeg, webp. Written to a temporary file and renamed. Throws Error(usage) for any other
 /// extension, Error(data) when the file cannot be written.
 void write_image(const std::string& path, const Image& image);
+/// The bytes that write_image would write; throws the same Error(usage), Error(data) for an image that the format cannot hold.
+std::string encode_image(const std::string& path, const Image& image);
 /// Extensions that write_image knows.
 const std::vector<std::string>& image_extensions();
 

@@ -59,11 +59,12 @@ struct LinesItem {
   std::optional<FieldColor> color_by;
   Vec3f color{0.15f, 0.15f, 0.17f};
   double opacity = 1;
-  double width = 1.5;                     ///< pixels
-  bool lit = false;                       ///< light by the direction of the line
-  double halo = 0;                        ///< pixels of border around lines that hide what is behind
-  Vec3f halo_color{0.05f, 0.05f, 0.06f};  ///< sRGB
-  bool mark = false;                      ///< of the picture and not of the data, as axes are: it has no part in light
+  double width = 1.5;                      ///< pixels
+  std::optional<SurfaceMaterial> made_of;  ///< as of surfaces, here and below
+  bool lit = false;                        ///< light by the direction of the line
+  double halo = 0;                         ///< pixels of border around lines that hide what is behind
+  Vec3f halo_color{0.05f, 0.05f, 0.06f};   ///< sRGB
+  bool mark = false;                       ///< of the picture and not of the data, as axes are: it has no part in light
 };
 
 /// Every point of the dataset (or the vertices of a SurfaceMesh) as a round dot.
@@ -72,6 +73,7 @@ struct PointsItem {
   std::optional<FieldColor> color_by;
   Vec3f color{0.15f, 0.15f, 0.17f};
   double opacity = 1;
+  std::optional<SurfaceMaterial> made_of;
   double size = 4;     ///< pixels across
   bool shaded = true;  ///< as little spheres
   /// Point fields of normals (3 components) and radii (world lengths): with both, and opaque, the points are oriented discs.
@@ -89,6 +91,7 @@ struct GlyphsItem {
   Vec3f color{0.80f, 0.80f, 0.82f};    ///< sRGB, without color_by
   double opacity = 1;
   Material material;
+  std::optional<SurfaceMaterial> made_of;
   bool flat = false;          ///< face normals
   double feature_angle = 40;  ///< degrees; edges sharper than this are not smoothed
   double line_width = 1.5;    ///< pixels; of the shapes' lines

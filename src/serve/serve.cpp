@@ -123,7 +123,7 @@ void serve(const std::string& folder, const ServeParams& p, Context& context) {
         PipelineFile file;
         file.steps.push_back({"input", "read", {"path=" + path}, {}, 0});
         file.show.push_back({std::string(auto_show), {}, "input", 0});
-        return Session::open(new_renderer(p, {}, {folder}), std::move(file), file_name_of(path));
+        return Session::open(new_renderer(p, {}, {folder}), std::move(file), file_name_of(path), folder);
       },
       p.workers > 0 ? size_t(p.workers) : 16);
   fence_in({folder}, "a window");

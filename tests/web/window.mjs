@@ -359,6 +359,32 @@ await test("a saved picture carries its recipe", async () => {
   assert.match(png.toString("latin1"), /sightglass/);
 });
 
+await test("a picture is saved as what was chosen, and not larger than the server draws", async () => {
+  await picture.focus();
+  await page.keyboard.press("s");
+  const size = page.locator("dialog input.number");
+  const typed = [await size.nth(0).inputValue(), await size.nth(1).inputValue()];
+  const type = async (texts) => {
+    for (const [i, text] of texts.entries()) {
+      await size.nth(i).fill(text);
+      await size.nth(i).press("Tab");
+    }
+  };
+  await type(["8192", "8192"]);
+  await page.waitForSelector("dialog .problem:has-text('16.8 million')");
+  assert.ok(await page.locator("dialog button.primary").isDisabled());
+  await type(typed);
+  for (const [kind, begins] of [["jpg", "\xff\xd8"], ["webp", "RIFF"], ["png", "\x89PNG"]]) {
+    if (!(await page.locator("dialog").isVisible())) await page.keyboard.press("s");
+    await page.selectOption("dialog select", { label: kind });
+    const [download] = await Promise.all([page.waitForEvent("download", { timeout: 60000 }), page.click("dialog button.primary")]);
+    assert.ok(download.suggestedFilename().endsWith(`.${kind}`), download.suggestedFilename());
+    assert.ok(readFileSync(await download.path()).toString("latin1").startsWith(begins));
+    await page.waitForSelector("dialog", { state: "detached" });
+    await picture.focus();
+  }
+});
+
 await test("four views side by side, with linked cameras and a crosshair", async () => {
   await andSettle(page, () => page.click("button[aria-label='Three planes']"));
   await page.waitForFunction(() => document.querySelectorAll(".view").length === 4);

@@ -83,6 +83,7 @@ export interface State {
   can_undo: boolean;
   can_redo: boolean;
   title: string;
+  saves: { types: string[]; most_pixels: number }; // of pictures that are saved
   may_edit: boolean;
   pipeline: string;
   command: string;
@@ -212,7 +213,7 @@ export interface Cursor {
   camera?: Camera;
 }
 
-/** Counts over the plane of value and gradient magnitude, row by row from the smallest gradient. */
+/** Counts over the plane of value and second axis (else the gradient's magnitude), row by row from the smallest second value. */
 export interface PlaneAnswer {
   is: "plane";
   n: number;

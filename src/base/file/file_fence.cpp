@@ -71,26 +71,28 @@ void trust_folder_of(const std::string& path) {
 
 namespace {
 
-std::string checked_file(std::string_view beside, std::string_view name, bool trusting) {
+enum class By { file, recipe };
+
+std::string checked_file(std::string_view beside, std::string_view name, By by) {
   std::string path = path_beside(beside, name);
   const bool plain = !name.empty() && name[0] != '/' && name.find("..") == name.npos && name.find('\0') == name.npos;
   if (plain || anywhere()) return path;  // the quick way: a header may name a million files
   if (name.find('\0') != name.npos) fail_data("names a file with a zero byte in its name", std::string(beside));
-  if (!name.empty() && name[0] == '/')
+  if (!name.empty() && name[0] == '/' && by == By::file)
     fail_data(fmt::format("names the file '{}' by an absolute path, which is not allowed", name), std::string(beside), way_out);
   const std::string at = folder_text(fs::path(absolute_folder(folder_of(beside))) / name);
   if (below(at, absolute_folder(folder_of(beside))) || below(at, absolute_folder(""))) return path;
   const std::lock_guard lock(trusted_mutex);
   for (const std::string& folder : trusted)
-    if (trusting && below(at, folder)) return path;
+    if (by == By::file && below(at, folder)) return path;
   fail_data(fmt::format("names the file '{}', which lies neither below its own folder nor below the working folder", name),
             std::string(beside), way_out);
 }
 
 }  // namespace
 
-std::string named_file(std::string_view beside, std::string_view name) { return checked_file(beside, name, true); }
-std::string file_of_recipe(std::string_view picture, std::string_view name) { return checked_file(picture, name, false); }
+std::string named_file(std::string_view beside, std::string_view name) { return checked_file(beside, name, By::file); }
+std::string file_of_recipe(std::string_view picture, std::string_view name) { return checked_file(picture, name, By::recipe); }
 
 void set_file_fence(FileFence f) {
   for (std::string& folder : f.read_below) folder = real_folder(folder);

@@ -15,8 +15,8 @@ namespace sg {
 /// folder of `beside`, nor below a folder of `trust_folder_of`, nor below the working folder. Symbolic links are followed: whoever can
 /// create one could as well copy a file there.
 std::string named_file(std::string_view beside, std::string_view name);
-/// The same for a name in a recipe out of a picture: folders of trust_folder_of() do not count. Others, in a program that has read much,
-/// are no less the user's own.
+/// The same for a name in a recipe out of a picture, which may be absolute (so windows write it) where it leads below those folders. Those
+/// of trust_folder_of() do not count: others, in a program that has read much, are no less the user's own.
 std::string file_of_recipe(std::string_view picture, std::string_view name);
 
 /// The user has named this file: what it leads to may name the files below its folder.

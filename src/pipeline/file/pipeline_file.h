@@ -32,7 +32,7 @@ inline StepKind step_kind(std::string_view operation) { return value_of_word<Ste
 inline constexpr std::string_view memory_step = word_of(StepKind::memory);
 
 /// The file as plain data. Words are "key=value" as on the command line; lists become "1,2,3", a key without a value the bare
-/// word. Equality leaves out `origin` and the lines.
+/// word. Equality leaves out `origin`, `absolute` and the lines.
 struct PipelineFile {
   struct Step {
     std::string name;
@@ -73,7 +73,8 @@ struct PipelineFile {
   std::vector<Node> scene;           ///< each after its parent
   std::vector<std::string> picture;  ///< words; those of a map inside have its name in front: "camera.direction=1,0.5,0.3"
   int picture_line = 0;
-  std::string origin;  ///< file name, for messages and relative paths; "" = none
+  std::string origin;     ///< file name, for messages and relative paths; "" = none
+  bool absolute = false;  ///< a recipe of it names files absolutely: made where nobody knew where its picture would lie
 
   friend bool operator==(const PipelineFile& a, const PipelineFile& b) {
     return a.steps == b.steps && a.show == b.show && a.scene == b.scene && a.picture == b.picture;

@@ -58,10 +58,13 @@ std::string content_hash(const std::string& path) {
   return fmt::format("{:016x}", XXH3_64bits(parts.data(), parts.size() * sizeof(uint64_t)));
 }
 
-std::string relative_to_folder(const std::string& path, const std::string& folder) {
+// As a recipe names a file whose picture lies in the folder.
+std::string named_in_recipe(const std::string& path, const std::string& folder, bool absolute) {
   namespace fs = std::filesystem;
   std::error_code error;
-  const fs::path target = fs::weakly_canonical(path, error), base = fs::weakly_canonical(folder.empty() ? "." : folder, error);
+  const fs::path target = fs::weakly_canonical(path, error);
+  if (absolute) return target.string();
+  const fs::path base = fs::weakly_canonical(folder.empty() ? "." : folder, error);
   const fs::path r = target.lexically_relative(base);
   return r.empty() ? target.string() : r.string();
 }
@@ -98,7 +101,9 @@ PipelineFile without_lent(PipelineFile file) {
 
 void attach_recipe(Image& image, const PipelineFile& file, const std::string& picture_path) {
   PipelineFile recipe = without_lent(file);
-  const std::string folder = folder_of(picture_path);
+  const auto as_named = [&, folder = folder_of(picture_path)](const std::string& path) {
+    return named_in_recipe(path, folder, file.absolute);
+  };
   std::string inputs;
   for (auto& step : recipe.steps) {
     if (!step.reads()) {  // the picture is the same without what is written beside it
@@ -108,23 +113,23 @@ void attach_recipe(Image& image, const PipelineFile& file, const std::string& pi
     const auto stated = word_value(step.words, "path");
     if (!stated) continue;
     const std::string path = series_beside(file.origin, *stated);
-    const std::string relative = map_series(path, [&](const std::string& part) { return relative_to_folder(part, folder); });
-    replace_path(step.words, relative);
-    inputs += line_text(content_hash(path), relative);
+    const std::string named = map_series(path, as_named);
+    replace_path(step.words, named);
+    inputs += line_text(content_hash(path), named);
   }
   if (const auto words = word_value(recipe.picture, "environment"); words && !environment_file(*words).empty()) {
-    const std::string path = path_beside(file.origin, environment_file(*words)), relative = relative_to_folder(path, folder);
-    recipe.picture.push_back("environment=" + with_environment_file(*words, relative));  // the last one counts
-    inputs += line_text(content_hash(path), relative);
+    const std::string path = path_beside(file.origin, environment_file(*words)), named = as_named(path);
+    recipe.picture.push_back("environment=" + with_environment_file(*words, named));  // the last one counts
+    inputs += line_text(content_hash(path), named);
   }
   std::erase_if(recipe.picture, [](const std::string& w) { return w.starts_with("output="); });
   for (auto& show : recipe.show) {
     std::erase_if(show.words, [](const std::string& w) { return w.starts_with("save="); });
     if (show.kind == auto_show) continue;
     show.words = map_file_words(show.words, find_show(show.kind).make_params().schema, [&](const std::string& name) {
-      const std::string path = path_beside(file.origin, name), relative = relative_to_folder(path, folder);
-      inputs += line_text(content_hash(path), relative);
-      return relative;
+      const std::string path = path_beside(file.origin, name), named = as_named(path);
+      inputs += line_text(content_hash(path), named);
+      return named;
     });
   }
   image.text.emplace_back("Software", "Sightglass " SG_VERSION);
@@ -164,6 +169,7 @@ PipelineFile recipe_in(const Image& image, const std::string& picture_path, std:
     if (show.kind != auto_show)
       map_file_words(show.words, find_show(show.kind).make_params().schema,
                      [&](const std::string& name) { return *read.insert(name).first; });
+  file.absolute = std::any_of(read.begin(), read.end(), [](const std::string& name) { return name.starts_with('/'); });
   if (const std::string* inputs = text_in(image, "sightglass-inputs"))
     for (std::string_view line : split(*inputs, '\n')) {
       const size_t a = line.find(' '), b = a == line.npos ? line.npos : line.find(' ', a + 1);

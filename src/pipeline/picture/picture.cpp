@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/picture/picture.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <ranges>
 
 #include "base/error.h"
 #include "base/schema/color_params.h"
@@ -14,6 +16,7 @@
 #include "pipeline/picture/prepare.h"
 #include "pipeline/picture/report/picture_notes.h"
 #include "pipeline/picture/scene/shutter.h"
+#include "scene/light/light_params.h"
 #include "scene/show/show.h"
 
 namespace sg {
@@ -85,9 +88,10 @@ void describe(Schema& s, PictureParams& p) {
   s("sampler", p.light.sampler, "With an integrator: how the random numbers of a pixel lie to each other (see: sightglass samples).");
   s("seed", p.seed, "With an integrator: another number draws other paths, with other noise.").range(0, 1e9);
   s("lights", p.lights,
-    "Lights apart by semicolons, each a kind and words: 'rectangle from=left-above size=0.5; sphere from=right brightness=0.3', 'sun "
-    "elevation=20'. Kinds: point, directional, sphere, disc, rectangle, sun (sightglass ops KIND). Without an integrator each becomes a "
-    "direction. Default: two from the viewer's sides.");
+    fmt::format("Lights apart by semicolons, each a kind and words: 'rectangle from=left-above size=0.5; sphere from=right "
+                "brightness=0.3', 'sun elevation=20'. Kinds: {} (sightglass ops KIND). Without an integrator each becomes a direction. "
+                "Default: two from the viewer's sides.",
+                fmt::join(light_kinds() | std::views::transform(&LightKind::name), ", ")));
   s("environment", p.environment,
     "With an integrator: what shines from all around. 'sky elevation=20', 'even brightness=0.5', the name of a picture of all directions "
     "with 'rotate=90', or none. Default: an even sky, dim where lights are stated; none beside the lights where it is stated.");

@@ -103,15 +103,16 @@ struct Picture {
 Picture make_picture(PipelineFile& file, const PictureOptions& options, Context& context);
 
 /// Puts the recipe, the version and the hashes of the inputs into the image's text. Paths of inputs are written relative to
-/// the folder of `picture_path`, where the picture is going to be.
+/// the folder of `picture_path`, where the picture is going to be, or absolutely where `file` says so.
 void attach_recipe(Image& image, const PipelineFile& file, const std::string& picture_path);
 /// What a recipe may tell of it: series that a program lends (io/lent_series.h) are memory steps there.
 PipelineFile without_lent(PipelineFile file);
 
 /// The recipe inside a picture as stored, for inspection. Throws Error(data) when there is none.
 PipelineFile recipe_in(const Image& image, const std::string& picture_path);
-/// The recipe inside a picture, to be followed; its relative paths begin at the picture. Throws Error(data) when there is none,
-/// Error(usage) when it breaks check_recipe(). `changed` receives the inputs whose content has changed.
+/// The recipe inside a picture, to be followed; its relative paths begin at the picture, and where it has absolute ones, so has a recipe of
+/// what is returned (PipelineFile::absolute). Throws Error(data) when there is none, Error(usage) when it breaks check_recipe(). `changed`
+/// receives the inputs whose content has changed.
 PipelineFile recipe_in(const Image& image, const std::string& picture_path, std::vector<std::string>& changed);
 
 /// A recipe is untrusted data, whoever made the picture: it may write no file (parameters in the unit "new file"), and read only below

@@ -250,7 +250,7 @@ class Preparation {
     p.color = color_source(s.data, s.color_by, s.color, "lines");
     const Positions positions = packed_positions(s.data, mesh.points);
     p.positions = positions.xyz, p.origin = positions.origin;
-    p.width = s.width, p.shaded = s.lit, p.material = line_material;
+    p.width = s.width, p.shaded = s.lit, p.material = line_material, p.made_of = s.made_of;
     p.halo = s.halo, p.halo_color = linear_light(s.halo_color);
     push(std::move(p), p.segments->count());
   }
@@ -262,7 +262,7 @@ class Preparation {
     if (s.color_by && s.color_by->association == Association::cell)
       fail_usage(fmt::format("points cannot take the colour of cell field '{}'", s.color_by->field), "points", "use a point field");
     p.color = color_source(s.data, s.color_by, s.color, "points");
-    p.width = s.size, p.shaded = s.shaded;
+    p.width = s.size, p.shaded = s.shaded, p.made_of = s.made_of;
     const Positions positions = positions_of(s.data);
     p.positions = positions.xyz, p.origin = positions.origin;
     if (!s.disc_normals.empty() && !s.disc_radius.empty() && s.opacity >= 1 && !p.color.translucent) {
@@ -305,7 +305,7 @@ class Preparation {
       if (most == 0 || set.instances->standing == 0) continue;
       PreparedItem p = start(kind, s.data, s.opacity);
       p.color = color_source(s.data, s.color_by, s.color, "glyphs");
-      p.material = s.material, p.width = s.line_width, p.origin = set.instances->origin;
+      p.material = s.material, p.made_of = s.made_of, p.width = s.line_width, p.origin = set.instances->origin;
       p.translucent = s.opacity < 1 || p.color.translucent;
       set.shift = glyph_shift(n, most);
       p.glyphs = std::make_shared<const GlyphSet>(set);

@@ -54,10 +54,11 @@ void describe(Schema& s, GlyphsShow& p) {
   s("width", p.width, "Line width of barbs and of shape=line.").unit("pixels").positive();
   s("lit", p.lit, "Light the shapes; false shows unlit colours.");
   s("pixels", p.pixels, "Sizes are in pixels, the same at any distance; always so for barbs.");
+  describe(s, p.material);
 }
 
 const Field* automatic_field(const GlyphsShow& p, const Dataset& d) {
-  if (known_shape(p.glyphs.shape) == GlyphShape::barbs) return nullptr;
+  if (p.material.has_color() || known_shape(p.glyphs.shape) == GlyphShape::barbs) return nullptr;
   return p.glyphs.vectors.empty() ? automatic_vectors(d) : d.fields().find(p.glyphs.vectors.name);
 }
 
@@ -70,14 +71,16 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const GlyphsSho
   item.opacity = p.opacity, item.line_width = p.width;
   item.material.lit = p.lit && !c.flat;
   item.color = c.flat ? Vec3f{0.13f, 0.14f, 0.18f} : item.color;
+  take(p.material, *input, item);
   if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
   std::optional<Legend> legend;
   // Flat ones on a coloured surface are read by their shape: a second scale on the first would hide them.
   const ColorScale* beneath = nullptr;
   for (const Item& i : scene.items)
     if (const auto* s = std::get_if<SurfaceItem>(&i); s && s->color_by && !s->color_by->direct) beneath = &s->color_by->scale;
-  const bool one_color = beneath && c.flat && p.coloring.field.empty();
-  if (one_color && p.coloring.color.empty() && is_dark(beneath->map)) item.color = {1, 1, 1};
+  const bool one_color = ((beneath && c.flat) || p.material.has_color()) && p.coloring.field.empty();
+  if (beneath && c.flat && one_color && p.coloring.color.empty() && !p.material.has_color() && is_dark(beneath->map))
+    item.color = {1, 1, 1};
   if (const Field* f = one_color ? nullptr : color_field(*input, p, c)) {
     FieldColor color;
     color.field = f->name, color.component = p.coloring.component;

@@ -5,11 +5,13 @@
 #include "filter/glyph/choose.h"
 #include "scene/choose/coloring.h"
 #include "scene/scene.h"
+#include "scene/show/material_words.h"
 
 namespace sg {
 
 struct GlyphsShow {
   ColoringParams coloring;
+  MaterialShow material;
   GlyphParams glyphs;
   double opacity = 1, width = 1.6;
   bool lit = true, pixels = false;
@@ -20,7 +22,7 @@ void describe(Schema& s, GlyphsShow& p);
 /// was chosen goes to context.info(). Throws Error(usage) for data without vectors and unknown names.
 std::optional<Legend> add(Scene& scene, const DatasetPtr& data, const GlyphsShow& p, Context& context);
 
-/// The vectors that colour them when nothing else is named; null for barbs.
+/// The vectors that colour them when nothing else is named; null for barbs, and where the material has a colour of its own.
 const Field* automatic_field(const GlyphsShow& p, const Dataset& data);
 
 /// What makes the parts of a collection one picture: the same length for the same value (the factor that suits the part with the most

@@ -17,7 +17,10 @@ void describe(Schema& s, LinesShow& p) {
       .unit("pixels")
       .range(0, 100);
   s("halo_color", p.halo_color, "Colour of the halos.").unit(color_unit);
+  describe(s, p.material);
 }
+
+const Field* automatic_field(const LinesShow& p, const Dataset& d) { return p.material.has_color() ? nullptr : automatic_field(d); }
 
 std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const LinesShow& p, Context& context) {
   LinesItem item;
@@ -26,7 +29,8 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const LinesShow
     context.warn(
         "lines: the data has cells but no lines, so nothing is drawn; -f streamlines, isolines, feature_edges or contour of a flat mesh "
         "make lines; --show 'surface edges=true' draws the edges of cells");
-  item.color_by = field_color(*input, p.coloring, context);
+  if (take(p.material, *input, item); !p.material.has_color() || !p.coloring.field.empty())
+    item.color_by = field_color(*input, p.coloring, context);
   if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
   item.opacity = p.opacity;
   item.width = p.width;

@@ -11,12 +11,16 @@ void describe(Schema& s, PointsShow& p) {
   s("opacity", p.opacity, "Opacity: 1 is opaque, 0 invisible.").range(0, 1);
   s("size", p.size, "Diameter of the dots.").unit("pixels").positive();
   s("discs", p.discs, "Draw points that have normals and a field 'radius' as discs in space (see surfels) that hide what is behind.");
+  describe(s, p.material);
 }
+
+const Field* automatic_field(const PointsShow& p, const Dataset& d) { return p.material.has_color() ? nullptr : automatic_field(d); }
 
 std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const PointsShow& p, Context& context) {
   PointsItem item;
   item.data = input, item.color = lone_color;
-  item.color_by = field_color(*input, p.coloring, context);
+  if (take(p.material, *input, item); !p.material.has_color() || !p.coloring.field.empty())
+    item.color_by = field_color(*input, p.coloring, context);
   if (item.color_by && item.color_by->association == Association::cell) {
     context.info("points are coloured by point fields; cell field '" + item.color_by->field + "' is not shown on them");
     item.color_by.reset();
@@ -25,7 +29,7 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const PointsSho
       p.discs && p.opacity >= 1 && normals && normals->association == Association::point && normals->components() == 3 && radius &&
       radius->components() == 1) {
     item.disc_normals = normals->name, item.disc_radius = radius->name;
-    item.color = SurfaceItem().color;
+    if (!p.material.has_color()) item.color = SurfaceItem().color;
   }
   if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
   item.opacity = p.opacity;

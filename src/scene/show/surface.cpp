@@ -52,7 +52,7 @@ void check(const SurfaceShow& p) {
 }
 
 const Field* automatic_field(const SurfaceShow& p, const Dataset& d) {
-  if (p.picture.any() || p.material.material) return nullptr;
+  if (p.picture.any() || p.material.has_color()) return nullptr;
   return p.own_materials ? automatic_field(d) : automatic_field_without_materials(d);
 }
 
@@ -154,7 +154,7 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceSh
   SurfaceItem item;
   // Ranges come from the whole input, so that a surface and its volume share colours.
   if (own_look) item.color_by = own_colors(*input);
-  else if ((!p.material.material && !p.picture.any()) || !p.coloring.field.empty())
+  else if ((!p.material.has_color() && !p.picture.any()) || !p.coloring.field.empty())
     item.color_by = field_color(*input, coloring_of(p, *input), context);
   if (p.edges) {
     // Of a clipped mesh the pieces of a cell keep its own number, by which the edges between them are left out.
@@ -169,11 +169,8 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceSh
   }
   const bool varies = p.material_fields.any() || !p.picture.material_picture.empty();
   if (p.material.any() || varies) item.made_of = p.material.made(p.body > 0 ? p.body : input->bounds().diagonal());
-  if (p.material.material) {
-    const Vec3f own(item.made_of->base_color);
-    item.color = {srgb_encode(own.x), srgb_encode(own.y), srgb_encode(own.z)};
-  }
-  if (p.picture.any() && !p.material.material) item.color = {1, 1, 1};
+  if (p.material.has_color()) item.color = own_color(*item.made_of);
+  if (p.picture.any() && !p.material.has_color()) item.color = {1, 1, 1};
   if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
   item.pictures = pictures_of(*item.data, p.picture);
   if (varies) {

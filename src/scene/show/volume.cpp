@@ -276,12 +276,10 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const VolumeSho
   else item.opacity = parse_opacity(*p.opacity, item.color);
   bool own_colors = !p.colors.empty() || !p.coloring.color.empty();
   if (p.material.any()) item.made_of = p.material.made(stated.body > 0 ? stated.body : input->bounds().diagonal());
-  if (p.material.material) {
+  if (p.material.has_color()) {
     if (!p.opacity) item.opacity.points = {{item.color.lo, 1}};
-    if (!own_colors && !p.coloring.map && p.coloring.range.empty() && p.color_by.empty()) {
-      const Vec3f own(item.made_of->base_color);
-      take_one_colour(colors, {srgb_encode(own.x), srgb_encode(own.y), srgb_encode(own.z)}), own_colors = true;
-    }
+    if (!own_colors && !p.coloring.map && p.coloring.range.empty() && p.color_by.empty())
+      take_one_colour(colors, own_color(*item.made_of)), own_colors = true;
   }
   if (fields.color == fields.opacity && own_colors) item.color = colors;
   take_collected_range(item, p.coloring.range.empty() && p.colors.empty(), !p.coloring.map && !own_colors);

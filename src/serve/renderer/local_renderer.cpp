@@ -225,9 +225,9 @@ std::string LocalRenderer::save(const DrawRequest& request, const std::string& n
   PictureOptions options;
   options.cache = cache_;
   Picture picture = make_picture(file, options, context);
+  file.absolute = folder_of(name).empty();
   attach_recipe(picture.image, file, name);
-  const std::vector<uint8_t> bytes = encode_png(picture.image);
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  return encode_image(file_name_of(name), picture.image);
 }
 
 std::shared_ptr<const LocalRenderer::Planes> LocalRenderer::planes_of(int view) const {

@@ -62,7 +62,8 @@ class Renderer {
   virtual void forget(int view) = 0;
   /// Questions of docs/protocol.md: the members of the answer.
   virtual Json::Members answer(const Json& question, Context& context) = 0;
-  /// The picture as a file with its recipe. `name`: of the file, for relative paths in it and for its kind.
+  /// The picture as a file, a PNG with its recipe. `name`: of the file, for its kind and for relative paths in the recipe; without a
+  /// folder they are absolute. Throws Error(usage) for a kind that cannot be written or does not hold so large a picture.
   virtual std::string save(const DrawRequest& request, const std::string& name, Context& context) = 0;
 };
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "pipeline/file/pipeline_file.h"
-#include "serve/session/edit_words.h"
+#include "serve/session/edits/edit_words.h"
 
 namespace sg::serve {
 

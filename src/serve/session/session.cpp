@@ -7,15 +7,19 @@
 
 namespace sg::serve {
 
-std::shared_ptr<Session> Session::open(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title) {
-  std::shared_ptr<Session> s(new Session(std::move(renderer), std::move(file), std::move(title)));
+std::shared_ptr<Session> Session::open(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title, std::string pictures_in) {
+  std::shared_ptr<Session> s(new Session(std::move(renderer), std::move(file), std::move(title), std::move(pictures_in)));
   s->draws_ = std::thread([p = s.get()] { p->draw_thread(); });
   s->asks_ = std::thread([p = s.get()] { p->ask_thread(); });
   return s;
 }
 
-Session::Session(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title)
-    : renderer_(std::move(renderer)), title_(std::move(title)), history_(file), good_(std::move(file)) {}
+Session::Session(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title, std::string pictures_in)
+    : renderer_(std::move(renderer)),
+      title_(std::move(title)),
+      pictures_in_(std::move(pictures_in)),
+      history_(file),
+      good_(std::move(file)) {}
 
 Session::~Session() {
   {

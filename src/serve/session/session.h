@@ -19,7 +19,7 @@
 #include "serve/renderer/renderer.h"
 #include "serve/renderer/view_camera.h"
 #include "serve/session/client.h"
-#include "serve/session/edits.h"
+#include "serve/session/edits/edits.h"
 #include "serve/session/history.h"
 #include "serve/session/time_curve.h"
 
@@ -28,8 +28,10 @@ namespace sg::serve {
 /// One thread draws, another answers questions; messages are taken in by whichever thread has them. Ends with its last owner.
 class Session : public std::enable_shared_from_this<Session> {
  public:
-  /// `title`: of the window, and of pictures that are saved.
-  static std::shared_ptr<Session> open(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title);
+  /// `title`: of the window, and of pictures that are saved. `pictures_in`: the folder from which recipes in those name files; "": they
+  /// name them absolutely.
+  static std::shared_ptr<Session> open(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title,
+                                       std::string pictures_in = "");
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -50,7 +52,14 @@ class Session : public std::enable_shared_from_this<Session> {
     std::shared_ptr<TimeCurve> curve = {};  ///< of a question over time, once it has begun
   };
 
-  Session(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title);
+  // What the renderer has, as the last state told it.
+  struct Loaded {
+    PipelineFile file;
+    std::optional<FilmTimes> film;
+    std::optional<size_t> time;
+  };
+
+  Session(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title, std::string pictures_in);
   void take_message(int client, std::string_view text);
   void leave(int client);
   void draw_thread();
@@ -68,6 +77,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void send_finer(int client, const DrawnView& drawn, const WantedView& view, uint64_t revision);  // takes the mutex itself
   void answer(std::unique_lock<std::mutex>& lock, const Question& question);
   void answer_next_time(std::unique_lock<std::mutex>& lock, Question question);
+  Saved save(const Json& question, const Loaded& loaded, Context& context);  // without the mutex
   Context& begin_answer(int client);
   void restart_views();
   void interrupt(int view);
@@ -79,7 +89,7 @@ class Session : public std::enable_shared_from_this<Session> {
   Context& begin_work(int view);
 
   std::unique_ptr<Renderer> renderer_;
-  const std::string title_;
+  const std::string title_, pictures_in_;
 
   mutable std::mutex mutex_;
   std::condition_variable work_, questions_wait_;

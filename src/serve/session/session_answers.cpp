@@ -12,6 +12,7 @@
 #include "serve/renderer/tell.h"
 #include "serve/renderer/wish.h"
 #include "serve/session/limits.h"
+#include "serve/session/saved_picture.h"
 
 namespace sg::serve {
 
@@ -111,30 +112,36 @@ void Session::answer_next_time(std::unique_lock<std::mutex>& lock, Question ques
                          {"gaps", Json(curve.gaps)}});
 }
 
+// Without the mutex: what is loaded comes with it.
+Saved Session::save(const Json& question, const Loaded& loaded, Context& context) {
+  const PictureType type = picture_type(question["type"].text());
+  DrawRequest picture;
+  const double width = question["size"][0].number(), height = question["size"][1].number();
+  if (!(width >= 1 && height >= 1 && width * height <= most_pixels))
+    fail_usage("the size of the picture is out of bounds", "size",
+               fmt::format("two numbers from 1 on, {:.0f} pixels in all at most", most_pixels));
+  picture.width = int(width), picture.height = int(height);
+  picture.camera = stated_camera(question);
+  const std::string name = picture_stem(title_, loaded.file, loaded.film, loaded.time) + "." + std::string(type.word);
+  const std::string place = pictures_in_.empty() ? name : pictures_in_ + "/" + name;
+  return {name, std::string(type.media), std::make_shared<const std::string>(renderer_->save(picture, place, context))};
+}
+
 void Session::answer(std::unique_lock<std::mutex>& lock, const Question& question) {
   const Json& m = question.message;
   const Wish wish = wish_of(m).value_or(Wish::probe);
   const auto it = clients_.find(question.client);
   if (it == clients_.end()) return;
   if (wish == Wish::over_time) return answer_next_time(lock, question);
-  DrawRequest picture;
+  const std::optional<Loaded> loaded = wish == Wish::save ? std::optional(Loaded{good_, film_, shown_time_}) : std::nullopt;
   Context& context = begin_answer(question.client);
   lock.unlock();
   Json::Members reply;
   std::string problem;
   std::optional<Saved> saved;
   try {
-    if (wish == Wish::save) {
-      picture.width = int(m["size"][0].number()), picture.height = int(m["size"][1].number());
-      if (!(picture.width >= 1 && picture.height >= 1 && double(picture.width) * picture.height <= most_pixels))
-        fail_usage("the size of the picture is out of bounds", "size");
-      picture.camera = stated_camera(m);
-      std::string stem = title_.substr(0, title_.find('.'));
-      const std::string name = (stem.empty() ? "picture" : stem) + ".png";
-      saved = Saved{name, "image/png", std::make_shared<const std::string>(renderer_->save(picture, name, context))};
-    } else {
-      reply = renderer_->answer(for_renderer(wish, question.client, m), context);
-    }
+    if (loaded) saved = save(m, *loaded, context);
+    else reply = renderer_->answer(for_renderer(wish, question.client, m), context);
   } catch (const std::exception& e) {
     problem = e.what();
   }

@@ -11,6 +11,8 @@
 #include "serve/renderer/same_picture.h"
 #include "serve/renderer/tell.h"
 #include "serve/session/command_text.h"
+#include "serve/session/limits.h"
+#include "serve/session/saved_picture.h"
 
 namespace sg::serve {
 
@@ -136,6 +138,7 @@ void Session::tell(std::unique_lock<std::mutex>& lock) {
                       {"can_undo", Json(history_.can_undo())},
                       {"can_redo", Json(history_.can_redo())},
                       {"title", text(title_)},
+                      {"saves", Json(Json::Members{{"types", list(picture_types())}, {"most_pixels", number(most_pixels)}})},
                       {"pipeline", text(emit_pipeline(without_lent(file)))},
                       {"command", text(command_text(file))}};
   state.insert(state.end(), told.begin(), told.end());

@@ -110,6 +110,7 @@ export class Pipeline {
       can_undo: this.past.length > 0,
       can_redo: this.future.length > 0,
       title: this.title,
+      saves: { types: ["png"], most_pixels: 4096 * 4096 },
       may_edit: true,
       pipeline: this.text(),
       command: ["sightglass", ...this.command().map((a) => (/^[\w./=:-]+$/.test(a) ? a : quoted(a)))].join(" "),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Histograms of fields and of the plane of value and gradient, asked once per revision and kept. A server that does not answer such
+// Histograms of fields and of the plane of value and second axis, asked once per revision and kept. A server that does not answer such
 // questions is not asked again.
 import type { App } from "../app";
 import type { Histogram, HistogramAnswer, PlaneAnswer } from "../protocol";

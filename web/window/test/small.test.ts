@@ -4,6 +4,7 @@ import { join, trail } from "../chooser";
 import { actionOf, keys, nameOf } from "../input/keys";
 import { sideAt } from "../panels/legend";
 import { place } from "../panels/layout";
+import { fitted, sizeProblem } from "../panels/save_size";
 import { splitFrame } from "../protocol";
 import { figure } from "../questions/figure";
 import { csv, diff } from "../questions/files";
@@ -101,6 +102,16 @@ it("a served folder knows the folders above it", () => {
   expect(trail("")).toEqual([]);
   expect(join("", "x.vti")).toBe("x.vti");
   expect(join("a", "x.vti")).toBe("a/x.vti");
+});
+
+it("a picture to save has the size that was typed, or a problem and one of its shape that may be", () => {
+  const most = 4096 * 4096;
+  expect(fitted(1920, 1080, most)).toEqual([1920, 1080]);
+  expect(sizeProblem(4096, 4096, most)).toBe("");
+  const [w, h] = fitted(16384, 8192, most);
+  expect(w * h).toBeLessThanOrEqual(most);
+  expect(w / h).toBeCloseTo(2, 2);
+  expect(sizeProblem(16384, 8192, most)).toContain(`16.8 million pixels that a picture may have; ${w} × ${h}`);
 });
 
 describe("keys", () => {

@@ -84,7 +84,7 @@ class Sampler {
   uint64_t along_curve_ = 0;  // blue noise: pixel and sample as one number
   std::array<OfSquare, kept_dimensions> of_square_;
   std::vector<OfBlock> of_block_;  // blue noise: of the pixels of a square, dimension by dimension
-  uint32_t index_ = 0;  // of the sample in its pattern
+  uint32_t index_ = 0;             // of the sample in its pattern
   uint32_t dimension_ = 0;
 };
 

@@ -15,9 +15,9 @@ namespace sg::trace {
 /// less than that.
 constexpr uint32_t sobol_first(uint64_t index) { return reverse_bits(uint32_t(index)); }
 
-/// The digits of the second coordinate, the first one in the lowest bit. Its generator matrix is Pascal's triangle mod 2, binomial(j, i) for
-/// digit i and bit j of the index, which is odd where the bits of i are among those of j: each digit is the sum of the bits of the index
-/// whose numbers include its own. Six halvings add them up.
+/// The digits of the second coordinate, the first one in the lowest bit. Its generator matrix is Pascal's triangle mod 2, binomial(j, i)
+/// for digit i and bit j of the index, which is odd where the bits of i are among those of j: each digit is the sum of the bits of the
+/// index whose numbers include its own. Six halvings add them up.
 constexpr uint32_t sobol_second_digits(uint64_t index) {
   index ^= (index & 0xAAAAAAAAAAAAAAAAull) >> 1;
   index ^= (index & 0xCCCCCCCCCCCCCCCCull) >> 2;

@@ -155,11 +155,11 @@ HWY_INLINE void walk_any(const WideNode* nodes, const Bounds& ray, float t_max, 
 class RayBoxes {
  public:
   HWY_INLINE void clear() {
-    for (int i = 0; i < 64; i += lanes) hn::Store(hn::Zero(D()), D(), boxes_ + i);
+    for (int i = 0; i < 64; i += lanes) hn::Store(set(D(), 0), D(), boxes_ + i);
   }
-  HWY_INLINE void set(int ray, uint32_t boxes) { boxes_[ray] = uint8_t(boxes); }
+  HWY_INLINE void put(int ray, uint32_t boxes) { boxes_[ray] = uint8_t(boxes); }
   HWY_INLINE uint64_t rays(int box) const {
-    const auto bit = hn::Set(D(), uint8_t(1 << box));
+    const auto bit = set(D(), uint8_t(1 << box));
     uint64_t rays = 0;
     for (int i = 0; i < 64; i += lanes) {
       uint8_t bits[8] = {};
@@ -210,7 +210,7 @@ HWY_INLINE void walk_together(const WideNode* nodes, uint64_t going, Meet&& meet
       for (uint64_t rays = v.rays; rays; rays &= rays - 1) {
         const int i = std::countr_zero(rays);
         const uint32_t boxes = meet(n, i);
-        by_any |= boxes, met.set(i, boxes);
+        by_any |= boxes, met.put(i, boxes);
       }
       for (; by_any; by_any &= by_any - 1) put(std::countr_zero(by_any), met.rays(std::countr_zero(by_any)));
     }

@@ -21,13 +21,6 @@ namespace {
 
 constexpr double hair = 1e-3, near = 0.01;  // shares of the data's size
 
-double size_at(const Array& a, size_t i) {
-  if (a.components() == 1) return a.get(i);
-  double squares = 0;
-  for (int c = 0; c < a.components(); ++c) squares += a.get(i, c) * a.get(i, c);
-  return std::sqrt(squares);
-}
-
 std::optional<double> value_in(const DatasetPtr& d, const Field& f, Vec3 at, Context& context) {
   // A place that was clicked on the outside of a solid is off by the rounding of the picture's depths.
   const Box3& b = d->bounds();

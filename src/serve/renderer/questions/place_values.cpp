@@ -31,6 +31,13 @@ std::string value_text(const Array& a, size_t i) {
   return s + ")";
 }
 
+double size_at(const Array& a, size_t i) {
+  if (a.components() == 1) return a.get(i);
+  double squares = 0;
+  for (int c = 0; c < a.components(); ++c) squares += a.get(i, c) * a.get(i, c);
+  return std::sqrt(squares);
+}
+
 PointNear nearest_point(const Dataset& d, Vec3 at) {
   const Array points = point_positions(d.mesh());
   PointNear best{0, HUGE_VAL};

@@ -27,5 +27,7 @@ PointNear nearest_point(const Dataset& d, Vec3 at);
 std::vector<Json> values_at(const DatasetPtr& d, Vec3 at, std::optional<size_t> cell, Context& context);
 /// "1150", "(0.1, 0, 2)".
 std::string value_text(const Array& a, size_t i);
+/// The number, or the length of several.
+double size_at(const Array& a, size_t i);
 
 }  // namespace sg::serve

@@ -9,13 +9,13 @@
 #include "base/error.h"
 #include "base/text/text.h"
 #include "base/text/utf8.h"
-#include "data/cells/point_positions.h"
-#include "filter/probe/probe.h"
 #include "pipeline/picture/scene/picture_scene.h"
 #include "scene/choose/histogram.h"
+#include "serve/renderer/questions/line.h"
 #include "serve/renderer/questions/measures.h"
 #include "serve/renderer/questions/place_values.h"
 #include "serve/renderer/questions/probed_cell.h"
+#include "serve/renderer/questions/rows.h"
 #include "serve/renderer/questions/transfer_questions.h"
 #include "serve/renderer/wish.h"
 
@@ -23,78 +23,7 @@ namespace sg::serve {
 
 namespace {
 
-constexpr int64_t most_rows = 500, most_line_points = 4096;
-
 Json vector_json(Vec3 v) { return numbers({v.x, v.y, v.z}); }
-
-Json::Members answer_rows(const Json& q, const Data& data) {
-  const bool cells = q["on"].text() == association_name(Association::cell);
-  const size_t from = q["from"].whole(), wanted = std::min<size_t>(q["count"].whole(), most_rows);
-  std::vector<const Field*> fields;
-  std::vector<std::string> columns;
-  size_t total = 0;
-  DatasetPtr d;
-  const Table* table = nullptr;
-  if (const auto* t = std::get_if<TablePtr>(&data)) {
-    table = t->get();
-    for (const Field& f : table->columns) fields.push_back(&f), total = f.array.count();
-  } else {
-    for_each_dataset(data, [&](const std::string&, const DatasetPtr& part) {
-      if (!d) d = part;
-    });
-    if (!d) return {{"total", Json(uint64_t(0))}, {"columns", list({})}, {"rows", Json(std::vector<Json>{})}};
-    total = cells ? d->cell_count() : d->point_count();
-    for (const Field& f : d->fields())
-      if (f.association == (cells ? Association::cell : Association::point)) fields.push_back(&f);
-    if (!cells) columns = {"x", "y", "z"};
-  }
-  for (const Field* f : fields) columns.push_back(f->name);
-  std::vector<Json> rows;
-  const bool places = d && !cells;
-  const Array points = places ? point_positions(d->mesh()) : Array();
-  for (size_t i = from; i < std::min(total, from + wanted); ++i) {
-    std::vector<std::string> row;
-    for (int a = 0; places && a < 3; ++a) row.push_back(short_number(points.get(i, a)));
-    for (size_t c = 0; c < fields.size(); ++c) {
-      const auto* words = table ? table->words(c) : nullptr;
-      const double index = words ? fields[c]->array.get(i) : -1;
-      if (words) row.push_back(index >= 0 ? (*words)[size_t(index)] : "");
-      else row.push_back(value_text(fields[c]->array, i));
-    }
-    rows.push_back(list(row));
-  }
-  return {{"total", Json(uint64_t(total))}, {"columns", list(columns)}, {"rows", Json(std::move(rows))}};
-}
-
-Json::Members answer_line(const Json& q, const Data& data, Context& context) {
-  DatasetPtr d;
-  for_each_dataset(data, [&](const std::string&, const DatasetPtr& part) {
-    if (!d) d = part;
-  });
-  if (!d) fail_usage("there are no values along a line of a table", "line");
-  const Vec3 from = place_of(q["from"], "from"), to = place_of(q["to"], "to");
-  const int64_t count = std::clamp<int64_t>(int64_t(q["count"].number()), 2, most_line_points);
-  ProbeAtParams p;
-  std::vector<Json> distances, values;
-  for (int64_t i = 0; i < count; ++i) {
-    const Vec3 at = from + (to - from) * (double(i) / double(count - 1));
-    p.points.insert(p.points.end(), {at.x, at.y, at.z});
-    distances.push_back(number(length(at - from)));
-  }
-  const DatasetPtr line = probe_at(d, p, context);
-  const std::string name = bytes_of_text(q["field"].text());
-  const Field* field = line->fields().find(name, Association::point);
-  const Field* valid = line->fields().find("valid", Association::point);
-  if (!field || !valid) fail_usage(fmt::format("there is no field '{}'", printable(name)), "line");
-  const auto value_at = [&](size_t i) {
-    if (field->components() == 1) return field->array.get(i);
-    double squares = 0;
-    for (int c = 0; c < field->components(); ++c) squares += field->array.get(i, c) * field->array.get(i, c);
-    return std::sqrt(squares);
-  };
-  for (size_t i = 0; i < field->array.count(); ++i) values.push_back(valid->array.get(i) != 0 ? number(value_at(i)) : Json());
-  return {{"unit", text(field->unit)}, {"distance", Json(std::move(distances))}, {"values", Json(std::move(values))}};
-}
 
 Json::Members answer_histogram(const Json& q, const Data& data, Context& context) {
   constexpr size_t bins = 64;

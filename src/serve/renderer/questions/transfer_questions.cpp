@@ -2,10 +2,13 @@
 #include "serve/renderer/questions/transfer_questions.h"
 
 #include <algorithm>
+#include <numeric>
+#include <vector>
 
 #include "base/error.h"
 #include "scene/choose/volume/derivatives.h"
 #include "scene/show/volume_presets.h"
+#include "serve/renderer/questions/place_values.h"
 #include "serve/renderer/tell.h"
 
 namespace sg::serve {
@@ -21,12 +24,38 @@ const VolumeItem* volume_of(const Json& question, const PreparedPicture& prepare
   return nullptr;
 }
 
+constexpr size_t most_samples = 400'000;
+
 double second_of(const DerivativeSample& s, SecondAxis axis) {
   switch (axis) {
     case SecondAxis::second_derivative: return s.second_derivative;
     case SecondAxis::curvature: return s.curvature;
     default: return s.gradient;
   }
+}
+
+struct PlaneSample {
+  double value, second;
+};
+
+// What two fields have in the same places, spread over all of them.
+std::vector<PlaneSample> samples_of_fields(const Field& field, int component, const Field& second) {
+  const size_t n = field.array.count();
+  size_t step = std::max<size_t>(1, (n + most_samples - 1) / most_samples);
+  while (step > 1 && std::gcd(step, n) > 1) ++step;  // else samples line up along the rows of a lattice
+  std::vector<PlaneSample> samples;
+  for (size_t i = 0; i < n; i += step)
+    samples.push_back({component < 0 ? size_at(field.array, i) : field.array.get(i, component), size_at(second.array, i)});
+  return samples;
+}
+
+std::vector<PlaneSample> samples_of(const VolumeItem& volume, const Field& field, SecondAxis axis, const Field* second, Context& context) {
+  if (second) return samples_of_fields(field, volume.component, *second);
+  std::vector<PlaneSample> samples;
+  for (const DerivativeSample& s :
+       sample_derivatives(volume.data, field, volume.component, axis != SecondAxis::gradient, most_samples, context))
+    samples.push_back({double(s.value), second_of(s, axis)});
+  return samples;
 }
 
 }  // namespace
@@ -66,22 +95,22 @@ Json::Members answer_proposals(const Json& q, const PreparedPicture& prepared, C
 }
 
 Json::Members answer_plane(const Json& q, const PreparedPicture& prepared, Context& context) {
-  constexpr size_t columns = 64, rows = 48, most_samples = 400'000;
+  constexpr size_t columns = 64, rows = 48;
   const VolumeItem* volume = volume_of(q, prepared);
   const Field* field = volume ? volume->data->fields().find(volume->field, volume->association) : nullptr;
   if (!field) fail_usage("there is no volume to ask about", "plane");
   SecondAxis axis = volume->detail.second;
-  if (axis == SecondAxis::none || axis == SecondAxis::field) axis = SecondAxis::gradient;
+  const Field* other = axis == SecondAxis::field ? volume->data->fields().find(volume->detail.second_field, volume->association) : nullptr;
+  if (axis == SecondAxis::none || (axis == SecondAxis::field && !other)) axis = SecondAxis::gradient;
   const Range value = volume->data->range(*field, volume->component);
-  const Range second = second_axis_range(volume->data, *field, volume->component, axis, nullptr, context);
+  const Range second = second_axis_range(volume->data, *field, volume->component, axis, other, context);
   std::vector<uint64_t> counts(columns * rows);
   const auto bin = [](double v, Range r, size_t n) {
     const double t = r.hi > r.lo ? (v - r.lo) / (r.hi - r.lo) : 0;
     return t >= 0 && t <= 1 ? std::min(size_t(t * double(n)), n - 1) : n;
   };
-  for (const DerivativeSample& s :
-       sample_derivatives(volume->data, *field, volume->component, axis != SecondAxis::gradient, most_samples, context)) {
-    const size_t i = bin(double(s.value), value, columns), j = bin(second_of(s, axis), second, rows);
+  for (const PlaneSample& s : samples_of(*volume, *field, axis, other, context)) {
+    const size_t i = bin(s.value, value, columns), j = bin(s.second, second, rows);
     if (i < columns && j < rows) ++counts[i + columns * j];
   }
   std::vector<Json> list;

@@ -8,8 +8,8 @@ namespace sg::serve {
 
 /// "proposals": looks that suit the data, as words, each with its reason: what histogram and boundaries tell, and the presets.
 Json::Members answer_proposals(const Json& question, const PreparedPicture& prepared, Context& context);
-/// "plane": counts over value and second axis, or the gradient's magnitude where the volume has none. Throws Error(usage) where no volume
-/// is shown.
+/// "plane": counts over value and second axis, be it a second field, or the gradient's magnitude where the volume has none. Throws
+/// Error(usage) where no volume is shown.
 Json::Members answer_plane(const Json& question, const PreparedPicture& prepared, Context& context);
 
 }  // namespace sg::serve

@@ -6,8 +6,10 @@
 
 #include "render/raster/raster_support.h"
 #include "render/trace/integrators/integrator.h"
+#include "render/trace/sampling/mis.h"
 #include "render/trace/sampling/warp.h"
 #include "render/trace/trace.h"
+#include "support/statistics.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -133,6 +135,64 @@ TEST_CASE("path: lights that are met by chance and asked for add up to the same"
   CHECK(std::abs(got.value - exact) <= 4 * got.error + 2e-3 * exact);
 }
 
+TEST_CASE("path: light asked for alone, light met alone, both of them weighed, and paths find the same on a glossy surface") {
+  constexpr int n = 40'000;
+  const Ray ray{{0, -2, 1.2f}, normalize(Vec3f{0, 2, -0.9f})};
+  const Vec3f radiance{3, 3, 3};
+  for (const AnyLight& lamp :
+       {AnyLight(DiscLight{{0, 0, 1.5f}, {0, 0, -1}, 0.8f, radiance}), AnyLight(SphereLight{{0.3f, -0.5f, 1.7f}, 0.5f, radiance})})
+    for (const double roughness : {0.2, 0.5}) {
+      CAPTURE(lamp.index());
+      CAPTURE(roughness);
+      SurfaceMaterial m = diffuse();
+      m.specular_weight = 1, m.specular_roughness = roughness;
+      const World world = world_of(ball(0.6), m, {lamp}, {});
+      const Lights& lights = world.lights();
+      Hit hit;
+      REQUIRE(world.geometry().nearest(ray, hit));
+      const Vertex v = world.at(ray, hit);
+      const Vec3f wo = v.frame.to_local(-ray.direction), at = v.point.position;
+      test::Moments asked, met, weighed;
+      Sampler s(SamplerKind::independent, 7, n);
+      for (int i = 0; i < n; ++i) {
+        s.start(0, 0, uint32_t(i));
+        float share = 0;
+        const float which = s.next();
+        if (const auto light = lights.sample(at, which, s.next2())) {
+          const Vec3f wi = v.frame.to_local(light->direction);
+          const float sent = wi.z > 0 ? v.bsdf.evaluate(wo, wi).x * wi.z * light->radiance.x / light->pdf : 0;
+          asked.add(double(sent)), share += sent * power_weight(light->pdf, v.bsdf.pdf(wo, wi));
+        } else {
+          asked.add(0);
+        }
+        const float choice = s.next();
+        if (const auto turn = v.bsdf.sample(wo, choice, s.next2()); turn && turn->direction.z > 0) {
+          const Ray on{at, normalize(v.frame.to_world(turn->direction))};
+          met.add(double(turn->weight.x * lights.seen(on, 0, std::numeric_limits<float>::infinity()).x));
+          share += turn->weight.x * lights.seen(on, 0, turn->pdf).x;
+        } else {
+          met.add(0);
+        }
+        weighed.add(double(share));
+      }
+      const Mean paths = mean(world, *path_integrator(1), ray, n, 8);
+      CAPTURE(asked.mean);
+      CAPTURE(met.mean);
+      CAPTURE(weighed.mean);
+      CAPTURE(paths.value);
+      const auto same = [](const test::Moments& a, const test::Moments& b) {
+        return std::abs(a.mean - b.mean) <= 4 * std::hypot(a.standard_error(), b.standard_error());
+      };
+      CHECK(same(asked, met));
+      CHECK(same(asked, weighed));
+      CHECK(same(met, weighed));
+      for (const auto& way : {asked, met, weighed})
+        CHECK(std::abs(way.mean - paths.value) <= 4 * std::hypot(way.standard_error(), paths.error));
+      CHECK(weighed.standard_error() < 0.01 * weighed.mean);
+      CHECK(weighed.standard_error() < std::max(asked.standard_error(), met.standard_error()));
+    }
+}
+
 TEST_CASE("path: what passes translucent sheets is not light, and shadows have shades") {
   const World world = world_of(ball(0.5, 0.5), diffuse(), {}, {});
   const Mean through = mean(world, *path_integrator(8), {{0, 0, 2}, {0, 0, -1}}, 4000);
@@ -196,7 +256,7 @@ TEST_CASE("integrators: paths that are followed together see what each sees by i
           for (size_t i = 0; i < paths.size(); ++i) {
             const Integrator& one = *integrator;
             const Estimate alone = one.along(world, paths[i], sampler);
-            seen += alone.passed < 1, part += alone.passed > 0 && alone.passed < 1, lit += !(alone.radiance == Vec3f());
+            seen += alone.passed<1, part += alone.passed> 0 && alone.passed < 1, lit += !(alone.radiance == Vec3f());
             wrong += !(alone.radiance == together[i].radiance) || alone.passed != together[i].passed;
           }
         }

@@ -72,6 +72,22 @@ inline VolumeItem even(DatasetPtr data, double tau, Vec3f color = {1, 1, 1}) {
 inline DatasetPtr tets_of(const std::function<double(Vec3)>& f) {
   return with_field(test::cube(CellType::tetra, 6, [](Vec3 p) { return p * 2.0 - Vec3{1, 1, 1}; }), f);
 }
+/// A curvilinear grid over it, bent inside.
+inline DatasetPtr curvilinear_of(const std::function<double(Vec3)>& f) {
+  CurvilinearGrid g;
+  g.dims = {7, 6, 5};
+  std::vector<double> xyz;
+  for (int k = 0; k < 5; ++k)
+    for (int j = 0; j < 6; ++j)
+      for (int i = 0; i < 7; ++i) {
+        const Vec3 p = bent({i / 6.0, j / 5.0, k / 4.0}) * 2.0 - Vec3{1, 1, 1};
+        xyz.insert(xyz.end(), {p.x, p.y, p.z});
+      }
+  g.points.xyz = Array::from_vector(std::move(xyz), 3);
+  DatasetParts parts;
+  parts.mesh = std::move(g);
+  return with_field(std::move(parts), f);
+}
 inline double one(Vec3) { return 1; }
 
 }  // namespace sg::trace::test

@@ -6,7 +6,7 @@
 
 #include "base/text/json.h"
 #include "pipeline/file/pipeline_file.h"
-#include "serve/session/edit_words.h"
+#include "serve/session/edits/edit_words.h"
 
 namespace sg::serve {
 

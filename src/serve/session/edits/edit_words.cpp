@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "serve/session/edit_words.h"
+#include "serve/session/edits/edit_words.h"
 
 #include "base/error.h"
 #include "base/text/utf8.h"

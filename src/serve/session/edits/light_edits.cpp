@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "serve/session/light_edits.h"
+#include "serve/session/edits/light_edits.h"
 
 #include <fmt/core.h>
 

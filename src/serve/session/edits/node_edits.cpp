@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "serve/session/node_edits.h"
+#include "serve/session/edits/node_edits.h"
 
 #include <fmt/core.h>
 

@@ -2,7 +2,7 @@
 // Edits of a picture's lights and environment, which its words hold as texts.
 #pragma once
 #include "pipeline/file/pipeline_file.h"
-#include "serve/session/edit_words.h"
+#include "serve/session/edits/edit_words.h"
 
 namespace sg::serve {
 

@@ -2,7 +2,7 @@
 // Edits of the nodes of a scene, and of what is shown in them.
 #pragma once
 #include "pipeline/file/pipeline_file.h"
-#include "serve/session/edit_words.h"
+#include "serve/session/edits/edit_words.h"
 
 namespace sg::serve {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "serve/session/edits.h"
+#include "serve/session/edits/edits.h"
 
 #include <fmt/core.h>
 
@@ -11,8 +11,8 @@
 #include "base/text/utf8.h"
 #include "pipeline/catalog/catalog.h"
 #include "pipeline/picture/picture.h"
-#include "serve/session/light_edits.h"
-#include "serve/session/node_edits.h"
+#include "serve/session/edits/light_edits.h"
+#include "serve/session/edits/node_edits.h"
 #include "serve/session/params_of.h"
 
 namespace sg::serve {
