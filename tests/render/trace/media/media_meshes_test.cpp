@@ -7,6 +7,7 @@
 #include "render/render.h"
 #include "render/trace/trace.h"
 #include "render/volume/sources/cells/volume_amr_support.h"
+#include "support/statistics.h"
 
 using namespace sg;
 using namespace sg::trace;
@@ -86,9 +87,9 @@ std::vector<Body> bodies(const Function& f) {
 }
 
 /// The share that passes the ray, tracked n times.
-Moments passing(const Media& media, const Ray& ray, int n) {
+sg::test::Moments passing(const Media& media, const Ray& ray, int n) {
   const auto walk = media.borrow();
-  Moments m;
+  sg::test::Moments m;
   for (int i = 0; i < n; ++i) {
     RandomStream random{uint64_t(i)};
     m.add(double(walk->passes(ray, random)));
@@ -125,7 +126,7 @@ TEST_CASE("media: even matter is the same on every kind of mesh, unscattered exp
       for (const TestRay& r : {TestRay{{0.21, 0.13, -3}, {0, 0, 1}}, TestRay{{-0.9, -2, -0.7}, normalize(Vec3{0.4, 2, 0.5})}}) {
         const Ray ray = ray_of(Placement::of(media->bounds()), r.o, r.d);
         const auto [near, far] = chord((r.o + Vec3{1, 1, 1}) * 0.5, r.d * 0.5);
-        const Moments got = passing(*media, ray, t == Tracking::exact ? 2 : 500);
+        const sg::test::Moments got = passing(*media, ray, t == Tracking::exact ? 2 : 500);
         CHECK(std::abs(got.mean - std::exp(-tau * (far - near))) <= 4 * got.standard_error() + 2e-5);
       }
     }
