@@ -78,9 +78,9 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const GlyphsSho
   const ColorScale* beneath = nullptr;
   for (const Item& i : scene.items)
     if (const auto* s = std::get_if<SurfaceItem>(&i); s && s->color_by && !s->color_by->direct) beneath = &s->color_by->scale;
-  const bool one_color = ((beneath && c.flat) || p.material.has_color()) && p.coloring.field.empty();
-  if (beneath && c.flat && one_color && p.coloring.color.empty() && !p.material.has_color() && is_dark(beneath->map))
-    item.color = {1, 1, 1};
+  const bool no_field = p.coloring.field.empty(), of_matter = p.material.has_color();
+  const bool on_colors = beneath && c.flat && no_field && !of_matter, one_color = on_colors || (of_matter && no_field);
+  if (on_colors && p.coloring.color.empty() && is_dark(beneath->map)) item.color = {1, 1, 1};
   if (const Field* f = one_color ? nullptr : color_field(*input, p, c)) {
     FieldColor color;
     color.field = f->name, color.component = p.coloring.component;

@@ -90,8 +90,9 @@ Picture draw_moments(const std::vector<PipelineFile>& moments, const PreparedPic
   int stopped = 0;
   for (size_t k = 0; k < moments.size(); ++k) {
     Context part(context, double(k) / double(moments.size()), double(k + 1) / double(moments.size()));
-    if (k > 0) part.on_log = nullptr;                                            // all say the same
-    PipelineFile file = moments[(k + moments.size() / 2 + 1) % moments.size()];  // the middle one is the last
+    if (k > 0) part.on_log = nullptr;  // all say the same
+    // The middle one is the last.
+    PipelineFile file = moments[(k + moments.size() / 2 + 1) % moments.size()];
     const PreparedPicture there = prepare_picture(file, each, part);
     for (size_t i = 0; i < moment.shown.size() && i < there.shown.size(); ++i) {
       moment.shown[i].scene = there.shown[i].scene;
