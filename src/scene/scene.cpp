@@ -2,6 +2,7 @@
 #include "scene/scene.h"
 
 #include <algorithm>
+#include <numbers>
 
 namespace sg {
 
@@ -56,7 +57,9 @@ std::vector<Light> lights_of(const Scene& scene) {
     const double share = 0.2126 * double(p.color.x) + 0.7152 * double(p.color.y) + 0.0722 * double(p.color.z);
     // What stands in the middle itself shines from the front.
     const bool nowhere = !(length(p.way) > 0);
-    lamps.push_back({nowhere ? Vec3{0, 0, 1} : p.way, nowhere || p.follows_camera, float(white * p.brightness * share)});
+    const double brightness = p.brightness * share;
+    lamps.push_back(
+        {nowhere ? Vec3{0, 0, 1} : p.way, nowhere || p.follows_camera, float(white * brightness), float(std::numbers::pi * brightness)});
   }
   if (!lamps.empty()) return lamps;
   return {{{-0.4, 0.75, 1.0}, true, 0.9f}, {{0.9, 0.1, 0.5}, true, 0.22f}};

@@ -114,6 +114,9 @@ struct Light {
   Vec3 direction{0.3, 0.5, 1};  ///< towards the light; in eye space (x right, y up, z towards the viewer) when `follows_camera`
   bool follows_camera = true;
   float intensity = 1;
+  /// Of a surface that faces it, in units in which pi makes a white one as bright as white. By default a white one is as bright as 0.75
+  /// times the intensity: the rest of its light comes from all around.
+  std::optional<float> irradiance = {};
 };
 
 struct Scene {

@@ -35,8 +35,25 @@ struct MaterialPicture {
   bool nearest = false;  ///< texels are seen as squares from near by
 };
 
-/// Numbers of a material that a picture multiplies, each with a channel of it: 0 red, 1 green, 2 blue.
-enum class MaterialFactor { roughness, metalness, transmission, coat, coat_roughness, subsurface };
+/// Numbers of a material that a picture multiplies, each with a channel of it: 0 red, 1 green, 2 blue. Of indices of refraction, what they
+/// are above 1. The last three have three numbers each, multiplied with red, green and blue, whatever the channel.
+enum class MaterialFactor {
+  roughness,
+  coat_roughness,
+  specular,
+  ior,
+  coat_ior,
+  metalness,
+  transmission,
+  coat,
+  subsurface,
+  subsurface_anisotropy,
+  retro,
+  transmission_color,
+  coat_color,
+  subsurface_radius
+};
+constexpr size_t material_factors = size_t(MaterialFactor::subsurface_radius) + 1;
 struct FactorChannel {
   MaterialFactor factor;
   int channel;

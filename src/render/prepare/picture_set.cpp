@@ -54,6 +54,12 @@ std::optional<IsolineSet> placed(const std::optional<SurfaceIsolines>& lines, co
   return set;
 }
 
+Array directions(const DatasetPtr& data, const std::string& name) {
+  const Field& f = with_context("specular_direction", [&]() -> const Field& { return data->fields().require(name, Association::point); });
+  if (f.components() != 3) fail_usage(fmt::format("field '{}' has {} components, directions have 3", f.name, f.components()), "picture");
+  return f.array.converted(ElementType::f32);
+}
+
 }  // namespace
 
 std::shared_ptr<const PictureSet> place_pictures(const SurfacePictures& pictures, const DatasetPtr& data) {
@@ -64,6 +70,7 @@ std::shared_ptr<const PictureSet> place_pictures(const SurfacePictures& pictures
   set->occlusion = placed(pictures.occlusion, data), set->occlusion_strength = pictures.occlusion_strength;
   for (const SurfaceFactors& f : pictures.factors) set->factors.push_back({*placed(f.picture, data), f.channels});
   set->isolines = placed(pictures.isolines, data);
+  if (!pictures.stretched_along.empty()) set->stretched_along = directions(data, pictures.stretched_along);
   set->alpha = pictures.alpha, set->cutoff = pictures.cutoff;
   return set;
 }

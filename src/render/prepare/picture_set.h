@@ -34,6 +34,7 @@ struct PictureSet {
   float normal_scale = 1, occlusion_strength = 1;
   std::vector<PlacedFactors> factors;
   std::optional<IsolineSet> isolines;
+  Array stretched_along;  ///< f32 x 3, packed: per point the direction in which highlights are stretched; none: empty
   SurfacePictures::Alpha alpha = SurfacePictures::Alpha::none;
   float cutoff = 0.5f;
 

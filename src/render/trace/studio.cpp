@@ -128,7 +128,7 @@ Studio studio_of(const Scene& scene, const Projection& projection, const Placeme
   if (stated.stated() && scene.lights.empty()) return studio;
   for (const Lamp& lamp : lamps_of(lights_of(scene), projection)) {
     if (!(lamp.intensity > 0)) continue;
-    const float e = lamp_irradiance * lamp.intensity;
+    const float e = lamp.irradiance;
     studio.lights.emplace_back(DistantLight{Vec3f(lamp.direction), {e, e, e}, rise_of(12)});
   }
   return studio;

@@ -21,7 +21,7 @@ struct SurfacePicture {
   TextureLookup lookup;
 };
 
-/// Numbers of the material that a picture multiplies.
+/// Numbers of the material that a picture multiplies; those of colours and lengths are all red, green and blue.
 struct SurfaceFactors {
   SurfacePicture picture;
   std::vector<FactorChannel> channels;
@@ -49,6 +49,7 @@ struct SurfacePictures {
   std::optional<SurfacePicture> occlusion;  ///< red: the share of even light that arrives, where light is not followed
   float occlusion_strength = 1;             ///< of what that takes away
   std::optional<SurfaceIsolines> isolines;  ///< over all of it
+  std::string stretched_along;              ///< point field of vectors, along which highlights are stretched (specular_anisotropy)
 };
 
 }  // namespace sg

@@ -18,6 +18,7 @@ void describe(Schema& s, LinesShow& p) {
       .range(0, 100);
   s("halo_color", p.halo_color, "Colour of the halos.").unit(color_unit);
   describe(s, p.material);
+  s("specular_anisotropy", p.specular_anisotropy, "How much highlights are stretched along the line.").range(0, 1);
 }
 
 const Field* automatic_field(const LinesShow& p, const Dataset& d) { return p.material.has_color() ? nullptr : automatic_field(d); }
@@ -31,6 +32,10 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const LinesShow
         "make lines; --show 'surface edges=true' draws the edges of cells");
   if (take(p.material, *input, item); !p.material.has_color() || !p.coloring.field.empty())
     item.color_by = field_color(*input, p.coloring, context);
+  if (p.specular_anisotropy) {
+    if (!item.made_of) item.made_of = p.material.made(input->bounds().diagonal());
+    item.made_of->specular_anisotropy = *p.specular_anisotropy;
+  }
   if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
   item.opacity = p.opacity;
   item.width = p.width;

@@ -11,6 +11,7 @@ namespace sg {
 struct LinesShow {
   ColoringParams coloring;
   MaterialShow material;
+  std::optional<double> specular_anisotropy;
   double opacity = 1, width = 1.5;
   bool lit = false;
   double halo = 0;

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The words for what a surface is made of: a preset, and parameters that replace those of it, as numbers or by a field.
+// The words for what a surface is made of: a preset, and numbers that replace those of it.
 #pragma once
-#include "base/context.h"
 #include "base/schema/schema.h"
 #include "data/dataset.h"
 #include "scene/items/surface_material.h"
-#include "scene/items/surface_pictures.h"
 
 namespace sg {
 
-/// Names and meanings are SurfaceMaterial's. Without specular_anisotropy: triangles have no direction in common along which highlights
-/// could be stretched.
+/// Names and meanings are SurfaceMaterial's. Without specular_anisotropy: that wants a direction (varying_material.h).
 struct MaterialShow {
   std::optional<MaterialPreset> material;
   std::optional<Metal> metal;
@@ -37,19 +34,5 @@ void take(const MaterialShow& p, const Dataset& data, Item& item) {
   if (p.any()) item.made_of = p.made(data.bounds().diagonal());
   if (p.has_color()) item.color = own_color(*item.made_of);
 }
-
-/// Parameters of a surface that a point field multiplies.
-struct MaterialFields {
-  FieldName specular_roughness_by, base_metalness_by, transmission_weight_by, subsurface_weight_by, coat_weight_by, coat_roughness_by,
-      emission_by;
-
-  bool any() const;
-};
-void describe(Schema& s, MaterialFields& p);
-
-/// Adds to the pictures of a surface those that stand for the fields. What `stated` leaves open of what they or pictures multiply is full:
-/// these alone decide it. Tells of values that are cut off. Throws Error(usage) for fields that are not there.
-void apply(const MaterialFields& fields, const MaterialShow& stated, const Dataset& data, SurfaceMaterial& material,
-           SurfacePictures& pictures, Context& context);
 
 }  // namespace sg

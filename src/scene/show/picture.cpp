@@ -86,11 +86,7 @@ std::shared_ptr<const Texture> texture_in_file(const Dataset& d, const std::stri
   return d.memo().keep<Texture>(key, std::move(t), bytes);
 }
 
-}  // namespace
-
-std::shared_ptr<const SurfacePictures> pictures_of(const Dataset& d, const PictureShow& p) {
-  if (!p.any() && !p.any_other()) return nullptr;
-  check(p);
+SurfacePicture placed(const Dataset& d, const PictureShow& p) {
   SurfacePicture on;
   on.coordinates = picture_coordinates(d, p.picture_coordinates).name;
   if (!p.picture_repeats.empty()) on.place = {p.picture_repeats.front(), 0, 0, 0, p.picture_repeats.back(), 0};
@@ -99,26 +95,37 @@ std::shared_ptr<const SurfacePictures> pictures_of(const Dataset& d, const Pictu
     q[2] += q[1], q[1] = -q[1], q[5] += q[4], q[4] = -q[4];
   }
   on.lookup.wrap_u = on.lookup.wrap_v = p.picture_wrap, on.lookup.filter = p.picture_filter;
+  return on;
+}
+
+}  // namespace
+
+SurfacePicture picture_in_file(const Dataset& d, const PictureShow& p, const std::string& path, TexelEncoding encoding) {
+  SurfacePicture on = placed(d, p);
+  on.texture = texture_in_file(d, path, encoding);
+  return on;
+}
+
+std::shared_ptr<const SurfacePictures> pictures_of(const Dataset& d, const PictureShow& p) {
+  if (!p.any() && !p.any_other()) return nullptr;
+  check(p);
   auto pictures = std::make_shared<SurfacePictures>();
-  const auto of_numbers = [&](const std::string& path) {
-    SurfacePicture numbers = on;
-    numbers.texture = texture_in_file(d, path, TexelEncoding::linear);
-    return numbers;
-  };
-  if (!p.normal_picture.empty()) pictures->normal = of_numbers(p.normal_picture), pictures->normal_scale = float(p.normal_scale);
+  if (!p.normal_picture.empty())
+    pictures->normal = picture_in_file(d, p, p.normal_picture, TexelEncoding::linear), pictures->normal_scale = float(p.normal_scale);
   if (!p.material_picture.empty())
-    pictures->factors.push_back({of_numbers(p.material_picture), {{MaterialFactor::roughness, 1}, {MaterialFactor::metalness, 2}}});
-  if (!p.any()) return pictures;
+    pictures->factors.push_back({picture_in_file(d, p, p.material_picture, TexelEncoding::linear),
+                                 {{MaterialFactor::roughness, 1}, {MaterialFactor::metalness, 2}}});
   if (p.pattern) {
     // Of the surface's own colour, and dark.
     constexpr Vec3f light{1, 1, 1}, dark{0.12f, 0.12f, 0.12f};
+    SurfacePicture on = placed(d, p);
     on.texture = std::make_shared<const Texture>(pattern_texture(*p.pattern, light, dark));
     on.lookup.sharp = *p.pattern == TexturePattern::checker;
-  } else {
-    on.texture = texture_in_file(d, p.picture, p.picture_encoding);
+    pictures->color = std::move(on);
+  } else if (!p.picture.empty()) {
+    pictures->color = picture_in_file(d, p, p.picture, p.picture_encoding);
     pictures->alpha = SurfacePictures::Alpha::coverage;
   }
-  pictures->color = std::move(on);
   return pictures;
 }
 

@@ -32,6 +32,9 @@ void check(const PictureShow& p);
 /// holds none.
 const Field& picture_coordinates(const Dataset& data, const FieldName& wanted);
 
+/// A file's picture, placed as the words say. Throws Error for files that cannot be read, and data without coordinates.
+SurfacePicture picture_in_file(const Dataset& data, const PictureShow& p, const std::string& path, TexelEncoding encoding);
+
 /// The pictures that the words request, on `data`; null for none. A file is decoded once for a dataset and time of its change. Throws
 /// Error for files that cannot be read.
 std::shared_ptr<const SurfacePictures> pictures_of(const Dataset& data, const PictureShow& p);

@@ -29,7 +29,7 @@ void describe(Schema& s, SurfaceShow& p) {
   s("feature_angle", p.feature_angle, "Edges with a larger angle stay sharp when normals are computed.").unit("deg").range(0, 180);
   describe(s, p.lic);
   describe(s, p.material);
-  describe(s, p.material_fields);
+  describe(s, p.varying);
   s("texture", p.texture, "Point field in [0, 1] that darkens and brightens the colours; default: 'lic' or 'spot noise'; 'none' for none.")
       .takes(fields::point_scalars);
   describe(s, p.isolines);
@@ -40,7 +40,7 @@ void describe(Schema& s, SurfaceShow& p) {
 
 void check(const SurfaceShow& p) {
   check(p.picture);
-  if (p.style != SurfaceStyle::solid && (p.picture.any() || p.picture.any_other()))
+  if (p.style != SurfaceStyle::solid && (p.picture.any() || p.picture.any_other() || p.varying.any_picture()))
     fail_usage("edges and points show no picture", "style", "style=solid does");
   if (p.style != SurfaceStyle::solid && p.isolines.any())
     fail_usage("lines of equal value are drawn on faces, and edges and points have none", "style",
@@ -149,7 +149,7 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceSh
   check(p);
   if (p.style != SurfaceStyle::solid) return add_sparse(scene, input, p, context);
   const bool unstated = p.coloring.field.empty() && p.coloring.color.empty() && !p.coloring.states_map() && !p.material.any() &&
-                        !p.material_fields.any() && !p.picture.any() && !p.picture.any_other();
+                        !p.varying.any() && !p.picture.any() && !p.picture.any_other();
   const bool own_look = unstated && p.own_materials && !automatic_field(*input) && has_own_materials(*input);
   SurfaceItem item;
   // Ranges come from the whole input, so that a surface and its volume share colours.
@@ -167,7 +167,7 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceSh
     const DatasetPtr whole = std::exchange(item.data, bilinear_parts(item.data, item.color_by->field));
     if (item.data != whole && !item.edge_lines) item.edge_lines = whole;
   }
-  const bool varies = p.material_fields.any() || !p.picture.material_picture.empty();
+  const bool varies = p.varying.any() || !p.picture.material_picture.empty();
   if (p.material.any() || varies) item.made_of = p.material.made(p.body > 0 ? p.body : input->bounds().diagonal());
   if (p.material.has_color()) item.color = own_color(*item.made_of);
   if (p.picture.any() && !p.material.has_color()) item.color = {1, 1, 1};
@@ -175,7 +175,7 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceSh
   item.pictures = pictures_of(*item.data, p.picture);
   if (varies) {
     auto pictures = item.pictures ? std::make_shared<SurfacePictures>(*item.pictures) : std::make_shared<SurfacePictures>();
-    apply(p.material_fields, p.material, *item.data, *item.made_of, *pictures, context);
+    apply(p.varying, p.material, p.picture, *item.data, *item.made_of, *pictures, context);
     item.pictures = std::move(pictures);
   }
   item.opacity = p.opacity;

@@ -8,6 +8,7 @@
 #include "scene/show/lic.h"
 #include "scene/show/material_words.h"
 #include "scene/show/picture.h"
+#include "scene/show/varying_material.h"
 
 namespace sg {
 
@@ -29,7 +30,7 @@ struct SurfaceShow {
   PictureShow picture;
   IsolineShow isolines;
   MaterialShow material;
-  MaterialFields material_fields;
+  VaryingMaterial varying;
   double body = 0;  ///< diagonal of all parts of a collection; 0: that of the data
   bool own_materials = true;
 };

@@ -46,7 +46,7 @@ SurfaceMaterial matter_with(const std::vector<std::string>& words) { return draw
 }  // namespace
 
 TEST_CASE("material words: each number of a material has its word, which takes the place of what the preset says") {
-  // All but the base colour, which is the surface's, and the anisotropy of highlights, for which triangles have no direction.
+  // All but the base colour, which is the surface's, and the anisotropy of highlights, which wants a direction.
   const std::vector<std::pair<std::string, std::string>> words = {
       {"metal", "copper"},
       {"base_metalness", "0.25"},

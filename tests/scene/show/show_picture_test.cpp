@@ -252,3 +252,42 @@ TEST_CASE("own materials: pictures without coordinates, and damaged ones, are le
   REQUIRE(damaged.warnings.size() == 1);
   CHECK(damaged.warnings[0].find("inside") != std::string::npos);
 }
+
+TEST_CASE("show picture: every number of a material may be a picture's, and what it shines with") {
+  const std::string path = file_of(128, "sg_show_numbers.png");
+  const DatasetPtr d = make_dataset(squares());
+  using enum MaterialFactor;
+  struct Word {
+    std::string name;
+    MaterialFactor factor;
+    bool color;
+  };
+  for (const Word& w :
+       {Word{"specular_roughness", roughness, false}, Word{"specular_weight", specular, false}, Word{"specular_ior", ior, false},
+        Word{"base_metalness", metalness, false}, Word{"transmission_weight", transmission, false},
+        Word{"transmission_color", transmission_color, true}, Word{"subsurface_weight", subsurface, false},
+        Word{"subsurface_radius", subsurface_radius, false}, Word{"subsurface_anisotropy", subsurface_anisotropy, false},
+        Word{"coat_weight", coat, false}, Word{"coat_roughness", coat_roughness, false}, Word{"coat_ior", coat_ior, false},
+        Word{"coat_color", coat_color, true}, Word{"retro_weight", retro, false}}) {
+    CAPTURE(w.name);
+    const Shown s = shown(d, {w.name + "_picture=" + path, "picture_repeats=3", "picture_wrap=mirror"});
+    REQUIRE(s.item(0).pictures->factors.size() == 1);
+    const SurfaceFactors& f = s.item(0).pictures->factors[0];
+    CHECK(f.channels[0].factor == w.factor);
+    CHECK(f.picture.place == std::array<double, 6>{3, 0, 0, 0, 3, 0});
+    CHECK(f.picture.lookup.wrap_u == TextureWrap::mirror);
+    // Numbers, but of colours a screen's.
+    const double grey = w.color ? double(srgb_decode(128 / 255.f)) : 128 / 255.0;
+    CHECK(f.picture.texture->levels()[0].at(0, 0).x == Approx(grey));
+    CHECK(refusal(d, {w.name + "_picture=" + path, "style=points"}).find("solid") != std::string::npos);
+    CHECK(refusal(d, {w.name + "_picture=/no/such.png"}).find("such.png") != std::string::npos);
+  }
+  const Shown lamp = shown(d, {"emission_picture=" + path});
+  CHECK(lamp.item(0).made_of->emission == Vec3(1, 1, 1));
+  CHECK(lamp.item(0).pictures->emission->texture->levels()[0].at(0, 0).x == Approx(srgb_decode(128 / 255.f)));
+  CHECK(refusal(d, {"emission_picture=" + path, "emission_by=t"}).find("leave one out") != std::string::npos);
+  // What is not stated is the picture's alone; an index of refraction stays the largest.
+  CHECK(shown(d, {"coat_weight_picture=" + path}).item(0).made_of->coat_weight == 1);
+  CHECK(shown(d, {"material=diamond", "specular_ior_picture=" + path}).item(0).made_of->specular_ior == 2.417);
+  std::filesystem::remove(path);
+}

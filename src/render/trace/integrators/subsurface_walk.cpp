@@ -38,11 +38,10 @@ Vec3f turned(Vec3f along, float g, RandomStream& random) {
 }  // namespace
 
 std::optional<WalkExit> walk_below(const World& world, const Vertex& entry, RandomStream& random) {
-  const Material& m = *entry.material;
-  const float g = m.subsurface_anisotropy();
+  const float g = entry.below_anisotropy;
   const Vec3f albedo = single_scatter_albedo(entry.bsdf.base_color(), g);
   Vec3f extinction;
-  for (int c = 0; c < 3; ++c) extinction[c] = 1 / std::max(m.subsurface_radius()[c], shortest_path);
+  for (int c = 0; c < 3; ++c) extinction[c] = 1 / std::max(entry.below_radius[c], shortest_path);
 
   Vec3f weight{1, 1, 1};
   Vec3f direction = normalize(LocalFrame::about(-entry.point.face_normal).to_world(cosine_hemisphere(two(random))));

@@ -87,6 +87,17 @@ Vec4f surface_picture(const raster::PlacedPicture& picture, const PreparedItem& 
   return picture.lookup(*picture.texture, place_in(picture, item.triangles, hit.primitive, picture_ray(ray, hit, footprint, scale)));
 }
 
+Vec3f surface_direction(const raster::PictureSet& pictures, const PreparedItem& item, const Hit& hit) {
+  const auto* all = reinterpret_cast<const float*>(pictures.stretched_along.raw());
+  const Places at = places_of(item, hit);
+  Vec3f sum;
+  for (size_t i = 0; i < size_t(at.count); ++i) {
+    const float* d = all + 3 * at.points[i];
+    sum += Vec3f(d[0], d[1], d[2]) * at.weights[i];
+  }
+  return sum;
+}
+
 Vec3f surface_normal(const PreparedItem& item, const Ray& ray, const Hit& hit, const RayFootprint& footprint, double scale, Vec3f normal) {
   const raster::PictureSet& pictures = *item.pictures;
   return Vec3f(picture_normal(*pictures.normal, pictures.normal_scale, item.triangles, hit.primitive,

@@ -16,6 +16,9 @@ Vec4f surface_color(const raster::PreparedItem& item, const Ray& ray, const Hit&
 Vec4f surface_picture(const raster::PlacedPicture& picture, const raster::PreparedItem& item, const Ray& ray, const Hit& hit,
                       const RayFootprint& footprint, double scale);
 
+/// Along what its highlights are stretched there, of any length.
+Vec3f surface_direction(const raster::PictureSet& pictures, const raster::PreparedItem& item, const Hit& hit);
+
 /// `normal`, unit, as its picture of normals bends it there.
 Vec3f surface_normal(const raster::PreparedItem& item, const Ray& ray, const Hit& hit, const RayFootprint& footprint, double scale,
                      Vec3f normal);

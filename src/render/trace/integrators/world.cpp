@@ -2,6 +2,8 @@
 #include "render/trace/integrators/world.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 
 #include "render/prepare/picture_set.h"
@@ -38,30 +40,47 @@ std::vector<AnyLight> with_emitters(const PreparedScene& scene, const std::vecto
   return lights;
 }
 
-bool roughness_varies(const raster::PreparedItem& item) {
-  if (!item.pictures || !item.made_of) return false;
-  for (const raster::PlacedFactors& f : item.pictures->factors)
-    for (const FactorChannel& c : f.channels)
-      if (c.factor == MaterialFactor::roughness || c.factor == MaterialFactor::coat_roughness) return true;
-  return false;
+// Which of the numbers that materials are prepared for its pictures multiply.
+MaterialPalette::Varies varying_numbers(const raster::PreparedItem& item) {
+  MaterialPalette::Varies varies{};
+  if (item.pictures && item.made_of)
+    for (const raster::PlacedFactors& f : item.pictures->factors)
+      for (const FactorChannel& c : f.channels)
+        if (size_t(c.factor) < MaterialPalette::numbers) varies[size_t(c.factor)] = true;
+  return varies;
+}
+
+std::unique_ptr<const MaterialPalette> palette_of(const raster::PreparedItem& item, double length, double around) {
+  const MaterialPalette::Varies varies = varying_numbers(item);
+  if (std::none_of(varies.begin(), varies.end(), [](bool v) { return v; })) return nullptr;
+  return std::make_unique<const MaterialPalette>(*item.made_of, length, around, varies);
 }
 
 // What pictures multiply numbers of a material with at a point.
-struct Factors {
-  float roughness = 1, metalness = 1, transmission = 1, coat = 1, coat_roughness = 1, subsurface = 1;
-
-  float& operator[](MaterialFactor f) {
-    switch (f) {
-      case MaterialFactor::roughness: break;
-      case MaterialFactor::metalness: return metalness;
-      case MaterialFactor::transmission: return transmission;
-      case MaterialFactor::coat: return coat;
-      case MaterialFactor::coat_roughness: return coat_roughness;
-      case MaterialFactor::subsurface: return subsurface;
-    }
-    return roughness;
+class Factors {
+ public:
+  Factors() { of_.fill({1, 1, 1}); }
+  void multiply(MaterialFactor f, Vec3f by) { of_[size_t(f)] = of_[size_t(f)] * by; }
+  const Vec3f& color(MaterialFactor f) const { return of_[size_t(f)]; }
+  float operator[](MaterialFactor f) const { return of_[size_t(f)].x; }
+  MaterialPalette::Shares prepared() const {
+    MaterialPalette::Shares shares;
+    for (size_t i = 0; i < shares.size(); ++i) shares[i] = of_[i].x;
+    return shares;
   }
+
+ private:
+  std::array<Vec3f, material_factors> of_;
 };
+
+// A number for a point, as good as random.
+uint32_t spot_of(const Hit& hit) {
+  uint32_t n = hit.primitive;
+  for (const float x : {hit.u, hit.v, hit.t}) n = (n ^ std::bit_cast<uint32_t>(x)) * 0x85ebca6bu, n ^= n >> 15;
+  return n;
+}
+
+Vec3f root_of(Vec3f c) { return {std::sqrt(c.x), std::sqrt(c.y), std::sqrt(c.z)}; }
 
 Box3f bounds_of(const Geometry& geometry, const Media* media) {
   Box3f all = geometry.bounds();
@@ -106,10 +125,10 @@ World::World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_
     for (const Vec4f& c : look.colors) translucent_ = translucent_ || c.w < 1;
   for (const raster::PreparedItem& item : scene_->items) {
     pictures_ = pictures_ || item.pictures;
-    palettes_.push_back(roughness_varies(item) ? std::make_unique<const MaterialPalette>(*item.made_of, geometry_.placement().scale)
-                                               : nullptr);
+    palettes_.push_back(palette_of(item, geometry_.placement().scale, 1));
     translucent_ = translucent_ || (palettes_.back() && item.made_of->transmission_weight > 0);
   }
+  palettes_.resize(materials_.size());
   for (const auto& m : materials_) translucent_ = translucent_ || m->passes_straight();
   find_boundaries();
 }
@@ -130,18 +149,20 @@ void World::find_boundaries() {
     const std::optional<SurfaceMaterial>& made_of = i < items ? scene_->items[i].made_of : isosurfaces_[i - items].made_of;
     if (!orders(of) || !made_of) continue;
     translucent_ = true;  // light passes hidden surfaces
-    for (size_t k = 0; k < materials_.size(); ++k) {
-      const Material& in = *materials_[k];
-      if (i == k || !orders(in) || in.priority() > of.priority() || &boundary(of, in) != &of) continue;
-      boundaries_.push_back({&of, in.ior(), std::make_unique<const Material>(*made_of, geometry_.placement().scale, double(in.ior()))});
+    for (const auto& in : materials_) {
+      if (in.get() == &of || !orders(*in) || in->priority() > of.priority() || matter(uint32_t(i), in.get()).material != &of) continue;
+      const double scale = geometry_.placement().scale, around = double(in->ior());
+      boundaries_.push_back({uint32_t(i), in->ior(), std::make_unique<const Material>(*made_of, scale, around),
+                             i < items ? palette_of(scene_->items[i], scale, around) : nullptr});
     }
   }
 }
 
-const Material& World::boundary(const Material& of, const Material& in) const {
-  for (const Boundary& b : boundaries_)
-    if (b.of == &of && b.ior == in.ior()) return *b.material;
-  return of;
+World::Matter World::matter(uint32_t object, const Material* in) const {
+  if (in)
+    for (const Boundary& b : boundaries_)
+      if (b.object == object && b.ior == in->ior()) return {b.material.get(), b.palette.get()};
+  return {materials_[object].get(), palettes_[object].get()};
 }
 
 Insides World::insides_at(Vec3f place, Vec3f direction) const {
@@ -201,16 +222,21 @@ bool World::same_surface(const SurfacePoint& point, const Hit& hit) const {
 
 // What pictures make of the material and of the normal there.
 MaterialShares World::take_pictures(const raster::PreparedItem& item, const Ray& ray, const Hit& hit, const RayFootprint& footprint,
-                                    Vertex& v) const {
+                                    const MaterialPalette* palette, Vertex& v) const {
   const raster::PictureSet& pictures = *item.pictures;
   const double scale = geometry_.placement().scale;
   Factors factors;
   for (const raster::PlacedFactors& f : pictures.factors) {
     const Vec4f t = surface_picture(f.picture, item, ray, hit, footprint, scale);
     if (!(t.w > 0)) continue;
-    for (const FactorChannel& c : f.channels) factors[c.factor] *= std::clamp(t[c.channel] / t.w, 0.f, 1.f);
+    const auto share = [&](int channel) { return std::clamp(t[channel] / t.w, 0.f, 1.f); };
+    for (const FactorChannel& c : f.channels)
+      factors.multiply(c.factor, c.factor < MaterialFactor::transmission_color ? Vec3f(1, 1, 1) * share(c.channel)
+                                                                               : Vec3f(share(0), share(1), share(2)));
   }
-  if (const auto& palette = palettes_[hit.object]) v.material = &palette->at(factors.roughness, factors.coat_roughness);
+  if (palette) v.material = &palette->at(factors.prepared(), spot_of(hit));
+  v.below_radius = v.below_radius * factors.color(MaterialFactor::subsurface_radius);
+  v.below_anisotropy *= factors[MaterialFactor::subsurface_anisotropy];
   if (pictures.emission) {
     const Vec4f t = surface_picture(*pictures.emission, item, ray, hit, {}, scale);  // as the lights know it
     v.emission = v.emission * Vec3f{t.x, t.y, t.z};
@@ -220,24 +246,29 @@ MaterialShares World::take_pictures(const raster::PreparedItem& item, const Ray&
     // What looks away from a viewer who sees the face could not be seen.
     if ((dot(ray.direction, bent) < 0) == (dot(ray.direction, v.point.face_normal) < 0)) v.point.shading_normal = bent;
   }
+  if (!pictures.stretched_along.empty())
+    if (const Vec3f along = surface_direction(pictures, item, hit); dot(along, along) > 0) v.point.tangent = normalize(along);
   MaterialShares shares = v.material->shares;
-  shares.coat *= factors.coat, shares.metalness *= factors.metalness, shares.clear *= factors.transmission;
-  shares.subsurface *= factors.subsurface;
+  shares.coat *= factors[MaterialFactor::coat], shares.retro *= factors[MaterialFactor::retro];
+  shares.metalness *= factors[MaterialFactor::metalness], shares.clear *= factors[MaterialFactor::transmission];
+  shares.subsurface *= factors[MaterialFactor::subsurface];
+  shares.coat_filter = shares.coat_filter * root_of(factors.color(MaterialFactor::coat_color));  // of one passage of two
+  shares.clear_filter = shares.clear_filter * factors.color(MaterialFactor::transmission_color);
   return shares;
 }
 
 Vertex World::at(const Ray& ray, const Hit& hit, const RayFootprint& footprint, bool walks, const Insides& around) const {
   Vertex v;
   v.point = geometry_.at(ray, hit);
-  v.material = materials_[hit.object].get();
-  v.emission = v.material->emission();
+  const Material& body = *materials_[hit.object];
+  const Material* in = nullptr;  // what the body is in
+  if (body.has_inside()) v.body = {&body, hit.object}, v.hidden = around.hides(v.body), in = around.around(v.body);
+  const Matter matter = this->matter(hit.object, in);
+  v.material = matter.material, v.emission = body.emission();
+  v.below_radius = body.subsurface_radius(), v.below_anisotropy = body.subsurface_anisotropy();
   const Vec4f color = this->color(ray, hit, footprint);
   const raster::PreparedItem* item = hit.object < scene_->items.size() ? &scene_->items[hit.object] : nullptr;
-  const MaterialShares shares = item && item->pictures ? take_pictures(*item, ray, hit, footprint, v) : v.material->shares;
-  if (v.material->has_inside()) {
-    v.body = {v.material, hit.object}, v.hidden = around.hides(v.body);
-    if (const Material* in = around.around(v.body)) v.material = &boundary(*v.material, *in);
-  }
+  const MaterialShares shares = item && item->pictures ? take_pictures(*item, ray, hit, footprint, matter.palette, v) : v.material->shares;
   // At a silhouette the shading normal may look away from a viewer who sees the face.
   const bool above = dot(ray.direction, v.point.face_normal) < 0, shaded_above = dot(ray.direction, v.point.shading_normal) < 0;
   v.frame = LocalFrame::about(above == shaded_above ? v.point.shading_normal : v.point.face_normal, v.point.tangent);

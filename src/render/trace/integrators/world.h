@@ -27,8 +27,10 @@ struct Vertex {
   Bsdf bsdf;
   Vec3f emission;  ///< radiance that the surface gives off itself, to both sides
   const Material* material = nullptr;
-  ClearBody body;       ///< behind the surface; without a material: none
-  bool hidden = false;  ///< the surface lies within another body: rays pass it
+  Vec3f below_radius;          ///< mean free paths of light below the surface, of red, green and blue
+  float below_anisotropy = 0;  ///< mean cosine of its turns there
+  ClearBody body;              ///< behind the surface; without a material: none
+  bool hidden = false;         ///< the surface lies within another body: rays pass it
 
   /// The bodies of a path that came through `around` along `from`, and goes on along `to`.
   Insides onward(const Insides& around, Vec3f from, Vec3f to) const;
@@ -81,15 +83,20 @@ class World {
   bool is_line(uint32_t object) const {
     return object < scene_->items.size() && scene_->items[object].kind != raster::PreparedItem::Kind::surface;
   }
+  // The material of an object of the geometry, or what it varies between.
+  struct Matter {
+    const Material* material = nullptr;
+    const MaterialPalette* palette = nullptr;
+  };
   void find_boundaries();
-  const Material& boundary(const Material& of, const Material& in) const;
+  Matter matter(uint32_t object, const Material* in) const;
   MaterialShares take_pictures(const raster::PreparedItem& item, const Ray& ray, const Hit& hit, const RayFootprint& footprint,
-                               Vertex& v) const;
+                               const MaterialPalette* palette, Vertex& v) const;
 
   PreparedScenePtr scene_;
   Geometry geometry_;
   std::vector<std::shared_ptr<const Material>> materials_;
-  std::vector<std::unique_ptr<const MaterialPalette>> palettes_;  ///< of items; null where a material is as rough all over
+  std::vector<std::unique_ptr<const MaterialPalette>> palettes_;  ///< as materials_; null where one will do
   Lights lights_;
   std::optional<Lights> lamps_;  ///< where they are others
   std::shared_ptr<const Media> media_;
@@ -97,9 +104,10 @@ class World {
   std::vector<uint32_t> shows_;
   PictureLook look_;
   struct Boundary {
-    const Material* of;
+    uint32_t object;
     float ior;  ///< of what it is in
     std::unique_ptr<const Material> material;
+    std::unique_ptr<const MaterialPalette> palette;
   };
   Insides insides_of_viewer_;
   bool insides_matter_ = false;

@@ -79,6 +79,11 @@ MirrorAlbedo mirror_albedo(const Ggx& ggx) {
   return {both[0], both[1]};
 }
 
+AlbedoCurve mirror_albedo(const Ggx& ggx, const AlbedoCurve& passes) {
+  if (ggx.smooth()) return passes;
+  return curves<1>(ggx, [&](Vec3f w, Vec3f m) { return std::array<float, 1>{reflected_weight(ggx, w, m) * passes(reflected(w, m).z)}; })[0];
+}
+
 std::array<AlbedoCurve, 3> conductor_albedo(const Ggx& ggx, Vec3f eta, Vec3f k) {
   auto fresnel = [&](float cosine, int i) { return fresnel_conductor(cosine, eta[i], k[i]); };
   if (ggx.smooth()) {

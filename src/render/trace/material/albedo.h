@@ -46,6 +46,8 @@ struct MirrorAlbedo {
   AlbedoCurve white, grazing;
 };
 MirrorAlbedo mirror_albedo(const Ggx& ggx);
+/// Of mirrors that reflect everything, the share that `passes`, by the cosine of the reflected direction.
+AlbedoCurve mirror_albedo(const Ggx& ggx, const AlbedoCurve& passes);
 /// Mirrors of metal (fresnel_conductor), red, green and blue.
 std::array<AlbedoCurve, 3> conductor_albedo(const Ggx& ggx, Vec3f eta, Vec3f k);
 

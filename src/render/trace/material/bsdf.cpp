@@ -29,12 +29,15 @@ Bsdf make_bsdf(const Material& material, const MaterialShares& shares, Vec3f bas
   Bsdf b;
   b.material_ = &material, b.share_ = shares;
   b.base_ = clamped(base_color), b.opacity_ = std::clamp(opacity, 0.f, 1.f), b.walks_ = walks && !material.thin();
-  if (shares.metalness > 0 || shares.retro > 0)
-    b.again_ = multiple_mirrors(material.metal_average(b.base_), material.mirror.white.average());
+  if (shares.metalness > 0 || shares.retro > 0) {
+    const Vec3f once = material.metal_average(b.base_), through = shares.coat_filter * once;
+    b.again_ = multiple_mirrors(once, material.mirror.white.average());
+    b.trapped_ = through * through * shares.coat;
+  }
   return b;
 }
 
-Vec3f Bsdf::through_coat(float z) const { return material_->coat_filter * (1 - material_->coat_albedo(z)); }
+Vec3f Bsdf::through_coat(float z) const { return share_.coat_filter * (1 - material_->coat_albedo(z)); }
 
 // Of both directions, those of them that are outside.
 Vec3f Bsdf::through_coat(Vec3f o, Vec3f i, bool inside) const {
@@ -61,7 +64,7 @@ float Bsdf::body_through() const { return material_->thin() ? share_.subsurface 
 Vec3f Bsdf::body(float z_o, float z_i) const {
   const Material& m = *material_;
   const float coat = share_.coat, under = (1 - share_.retro) * (1 - share_.metalness) * body_share();
-  return base_ * m.body_filter(coat) * (under * given_back(m.open(z_o, coat), m.open(z_i, coat), m.open_average(coat)));
+  return base_ * share_.body_filter() * (under * given_back(m.open(z_o, coat), m.open(z_i, coat), m.open_average(coat)));
 }
 
 Vec3f Bsdf::reflected_facing(Vec3f o, Vec3f i, bool inside) const {
@@ -91,6 +94,7 @@ Vec3f Bsdf::reflected_facing(Vec3f o, Vec3f i, bool inside) const {
     const Vec3f again = again_ * given_back(m.mirror_lost, o.z, m.mirror_lost, i.z);
     f += (m.metal_fresnel(dot(o, back), base_) * mirrors + again) * through_coat(o, i, false) * share_.retro;
   }
+  if (share_.coat > 0) f += trapped_ * ((metal + share_.retro) * given_back(m.coat_traps, o.z, m.coat_traps, i.z));
   if (share_.coat > 0 && !m.coat_ggx.smooth()) {
     const float r = fresnel_dielectric(std::min(cosine, 1.f), m.coat_eta).reflected();
     f += white * (share_.coat * r * m.coat_ggx.normals(h) * m.coat_ggx.seen(o, i) / (4 * o.z * i.z));
@@ -115,7 +119,7 @@ Vec3f Bsdf::passed_facing(Vec3f o, Vec3f i, bool inside, Transport transport) co
                   (o.z * z);
       if (transport == Transport::radiance) passed /= side.eta * side.eta;
     }
-    f += m.clear_filter * (rest * passed);
+    f += share_.clear_filter * (rest * passed);
   }
   f = f * through_coat(o, i, inside);
   if (body_through() > 0) f += body(o.z, z) * body_through();
@@ -151,7 +155,7 @@ Vec3f Bsdf::straight_on(Vec3f wo) const {
   const bool inside = inside_of(wo);
   Vec3f through = white * (1 - opacity_);
   if (m.passes_straight() && o.z > 0)
-    through += m.clear_filter * through_coat(o, -o, inside) *
+    through += share_.clear_filter * through_coat(o, -o, inside) *
                (opacity_ * (1 - share_.retro) * (1 - share_.metalness) * share_.clear * (1 - reflectance(o.z, inside)));
   return through;
 }
@@ -159,8 +163,8 @@ Vec3f Bsdf::straight_on(Vec3f wo) const {
 Vec3f Bsdf::entering(Vec3f wo) const {
   const Material& m = *material_;
   if (!walks_ || inside_of(wo)) return {};
-  return m.body_filter(share_.coat) * ((1 - share_.retro) * (1 - share_.metalness) * (1 - share_.clear) * share_.subsurface * opacity_ *
-                                       m.open(std::abs(wo.z), share_.coat));
+  return share_.body_filter() * ((1 - share_.retro) * (1 - share_.metalness) * (1 - share_.clear) * share_.subsurface * opacity_ *
+                                 m.open(std::abs(wo.z), share_.coat));
 }
 
 float Bsdf::leaving(Vec3f wi) const { return material_->open(std::abs(wi.z), share_.coat) / material_->open_average(share_.coat); }

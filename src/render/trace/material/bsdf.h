@@ -98,7 +98,8 @@ class Bsdf {
   const Material* material_ = nullptr;
   MaterialShares share_;
   Vec3f base_;
-  Vec3f again_;  // what metal of this colour reflects twice or more (multiple_mirrors)
+  Vec3f again_;    // what metal of this colour reflects twice or more (multiple_mirrors)
+  Vec3f trapped_;  // what it and the coat leave of light that goes to and fro between them
   float opacity_ = 1;
   bool walks_ = false;
 };

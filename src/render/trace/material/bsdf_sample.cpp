@@ -32,7 +32,7 @@ bool Bsdf::is_delta(Way way) const {
 
 // Where the boundary lets light pass, how many of the samples that meet a mirror of this reflectance are reflected.
 float Bsdf::reflect_chance(float reflectance) const {
-  const float passed = share_.clear * mean_of(material_->clear_filter) * (1 - reflectance);
+  const float passed = share_.clear * mean_of(share_.clear_filter) * (1 - reflectance);
   return passed > 0 ? reflectance / (reflectance + passed) : 1;
 }
 
@@ -45,23 +45,27 @@ Bsdf::Shares Bsdf::shares(float z, bool inside) const {
   Vec3f layers = grey(1);
   if (share_.coat > 0 && !inside) {
     s.albedo[of_coat] = grey(share_.coat * m.coat_albedo(z));
-    layers = grey(1 - share_.coat) + through_coat(z) * m.coat_filter * (share_.coat * (1 - m.coat_albedo.average()) / m.coat_open);
+    layers = grey(1 - share_.coat) + through_coat(z) * share_.coat_filter * (share_.coat * (1 - m.coat_albedo.average()) / m.coat_open);
   }
   if (metal > 0 || (share_.retro > 0 && !inside)) {
     const Vec3f once = m.metal_albedo(z, base_);
     const Vec3f again = again_ * (m.ggx.smooth() ? 0 : m.mirror_lost(z));
     s.albedo[of_metal] = layers * once * metal, s.albedo[of_metal_again] = layers * again * metal;
-    if (!inside) s.albedo[of_retro] = layers * once * share_.retro, s.albedo[of_retro_again] = layers * again * share_.retro;
+    if (!inside) {
+      const Vec3f trapped = share_.coat > 0 ? trapped_ * m.coat_traps(z) : Vec3f();
+      s.albedo[of_metal_again] += trapped * metal;
+      s.albedo[of_retro] = layers * once * share_.retro, s.albedo[of_retro_again] = (layers * again + trapped) * share_.retro;
+    }
   }
   if (rest > 0) {
     const bool smooth = m.boundary_smooth();
     const float reflected = smooth ? reflectance(z, inside) : side.albedo.reflected(z),
                 passed = smooth ? 1 - reflected : side.albedo.passed(z);
-    s.albedo[of_boundary] = layers * (grey(reflected) + m.clear_filter * (share_.clear * passed)) * rest;
+    s.albedo[of_boundary] = layers * (grey(reflected) + share_.clear_filter * (share_.clear * passed)) * rest;
     if (share_.clear > 0 && !smooth)
       s.albedo[of_boundary_again] =
-          layers * (grey(1 - side.lost_passes) + m.clear_filter * side.lost_passes) * (rest * share_.clear * side.lost(z));
-    if (!inside) s.albedo[of_body] = base_ * m.body_filter(share_.coat) * (rest * body_share() * m.open(z, share_.coat));
+          layers * (grey(1 - side.lost_passes) + share_.clear_filter * side.lost_passes) * (rest * share_.clear * side.lost(z));
+    if (!inside) s.albedo[of_body] = base_ * share_.body_filter() * (rest * body_share() * m.open(z, share_.coat));
   }
   float sum = 0;
   for (Vec3f& a : s.albedo) a *= opacity_;
@@ -125,7 +129,7 @@ std::optional<BsdfSample> Bsdf::sample_delta(Way way, Vec3f o, bool inside, floa
       if (m.thin()) s.direction = -o;
       else s.direction = refracted(o, {0, 0, 1}, eta, fresnel_dielectric(o.z, eta).cosine_through), s.eta = eta;
       const float scale = transport == Transport::radiance && !m.thin() ? 1 / (eta * eta) : 1;
-      s.weight = m.clear_filter * through_coat(o, s.direction, inside) * (rest * share_.clear * (1 - r) * scale);
+      s.weight = share_.clear_filter * through_coat(o, s.direction, inside) * (rest * share_.clear * (1 - r) * scale);
     }
   }
   s.weight *= opacity_ / s.pdf;
@@ -201,7 +205,8 @@ bool Bsdf::delta_only() const {
   const float under_retro = 1 - share_.retro, rest = under_retro * (1 - share_.metalness);
   const bool mirrors = share_.metalness * under_retro > 0 || share_.retro > 0, body = rest * body_share() > 0;
   const bool boundary = rest > 0 && (m.side[0].eta != 1 || share_.clear > 0);
-  return !body && !(share_.coat > 0 && !m.coat_ggx.smooth()) && !(mirrors && !m.ggx.smooth()) && !(boundary && !m.boundary_smooth());
+  return !body && !(share_.coat > 0 && (mirrors || !m.coat_ggx.smooth())) && !(mirrors && !m.ggx.smooth()) &&
+         !(boundary && !m.boundary_smooth());
 }
 
 }  // namespace sg::trace

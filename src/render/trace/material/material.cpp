@@ -21,6 +21,18 @@ AlbedoCurve lost_by(const BoundaryAlbedo& albedo) {
   return AlbedoCurve::of([&](float cosine) { return std::max(0.f, 1 - albedo.reflected(cosine) - albedo.passed(cosine)); });
 }
 
+// What enters through the coat less what Bsdf lets out again: reflected once by the metal, or several times within its roughness.
+AlbedoCurve trapped_by_coat(const Ggx& ggx, const AlbedoCurve& mirror_lost, const AlbedoCurve& coat_albedo, float coat_open) {
+  const AlbedoCurve passes = AlbedoCurve::of([&](float cosine) { return 1 - coat_albedo(cosine); });
+  const AlbedoCurve once = mirror_albedo(ggx, passes);
+  const float lost = mirror_lost.average();
+  const float again = lost > 0 ? AlbedoCurve::of([&](float c) { return mirror_lost(c) * passes(c); }).average() / lost : 0;
+  return AlbedoCurve::of([&](float cosine) {
+    const float out = (once(cosine) + mirror_lost(cosine) * again) / coat_open;
+    return passes(cosine) * std::max(0.f, 1 - out);
+  });
+}
+
 }  // namespace
 
 Material::Material(const SurfaceMaterial& m, double length, double around, bool varies) {
@@ -28,12 +40,18 @@ Material::Material(const SurfaceMaterial& m, double length, double around, bool 
   priority_ = m.dielectric_priority;
   base_color_ = Vec3f(m.base_color), emission_ = Vec3f(m.emission), subsurface_radius_ = Vec3f(m.subsurface_radius * length);
   subsurface_anisotropy_ = float(m.subsurface_anisotropy), thin_ = m.thin_walled;
-  shares = {float(m.coat_weight), float(m.retro_weight), float(m.base_metalness), float(m.transmission_weight), float(m.subsurface_weight)};
-  const auto& [coat, retro, metalness, clear, subsurface] = shares;
+  shares = {float(m.coat_weight),
+            float(m.retro_weight),
+            float(m.base_metalness),
+            float(m.transmission_weight),
+            float(m.subsurface_weight),
+            {1, 1, 1},
+            {1, 1, 1}};
+  const float coat = shares.coat, retro = shares.retro, metalness = shares.metalness, clear = shares.clear;
   has_boundary_ = varies || (metalness < 1 && retro < 1);
   for (int i = 0; i < 3; ++i) {
-    coat_filter[i] = float(std::sqrt(m.coat_color[i]));
-    if (m.transmission_depth <= 0 || thin_) clear_filter[i] = float(m.transmission_color[i]);
+    shares.coat_filter[i] = float(std::sqrt(m.coat_color[i]));
+    if (m.transmission_depth <= 0 || thin_) shares.clear_filter[i] = float(m.transmission_color[i]);
     else absorption_[i] = float(-std::log(std::max(m.transmission_color[i], 1e-10)) / (m.transmission_depth * length));
   }
   if (coat > 0) {
@@ -44,6 +62,7 @@ Material::Material(const SurfaceMaterial& m, double length, double around, bool 
   ggx = Ggx::of_roughness(float(m.specular_roughness), float(m.specular_anisotropy));
   if (metalness > 0 || retro > 0) mirror = mirror_albedo(ggx);
   mirror_lost = AlbedoCurve::of([&](float cosine) { return 1 - mirror.white(cosine); });
+  if (coat > 0 && (metalness > 0 || retro > 0)) coat_traps = trapped_by_coat(ggx, mirror_lost, coat_albedo, coat_open);
   if (has_boundary_) {
     ior_ = weighted_ior(m.specular_ior, m.specular_weight);
     const float eta = ior_ / float(around);

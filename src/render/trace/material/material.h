@@ -10,9 +10,15 @@
 
 namespace sg::trace {
 
-/// How much of a surface is what, each a share of what those before leave: of a material, or lowered at a point by pictures.
+/// How much of a surface is what, each a share of what those before leave, and what filters light there: of a material, or lowered at a
+/// point by pictures.
 struct MaterialShares {
   float coat = 0, retro = 0, metalness = 0, clear = 0, subsurface = 0;
+  Vec3f coat_filter{1, 1, 1};   ///< of one passage through the coat
+  Vec3f clear_filter{1, 1, 1};  ///< of one through the boundary of clear matter
+
+  /// Of the way through the coat, where there is one, and back.
+  Vec3f body_filter() const { return Vec3f(1, 1, 1) * (1 - coat) + coat_filter * coat_filter * coat; }
 };
 
 /// One side of the boundary between outside and body.
@@ -51,20 +57,17 @@ class Material {
   Ggx coat_ggx;
   float coat_eta = 1;
   AlbedoCurve coat_albedo;
-  Vec3f coat_filter{1, 1, 1};  ///< of one passage
-  float coat_open = 1;         ///< what it lets through at most, of any angle
+  AlbedoCurve coat_traps;  ///< of light that metal which reflects everything sends to the coat, what is thrown back on it again
+  float coat_open = 1;     ///< what it lets through at most, of any angle
   // Of the boundary below it, metal and retroreflectors, which have the same roughness:
   Ggx ggx;
   BoundarySide side[2];     ///< seen from outside and from inside; of thin walls and opaque bodies the first alone
   MirrorAlbedo mirror;      ///< of metal that reflects everything, single reflections
   AlbedoCurve mirror_lost;  ///< 1 - mirror.white
-  Vec3f clear_filter{1, 1, 1};
   // Of the diffuse body, under both, where the coat has the share `coat`:
   /// What gets there, and from there out again; its mean over uniform light.
   float open(float cosine, float coat) const { return open_(cosine) - (coat > 0 ? coat * under_coat_(cosine) : 0); }
   float open_average(float coat) const { return open_.average() - coat * under_coat_.average(); }
-  /// Of the way there and back.
-  Vec3f body_filter(float coat) const { return Vec3f(1, 1, 1) * (1 - coat) + coat_filter * coat_filter * coat; }
   std::optional<ConductorIndex> conductor;
   std::array<AlbedoCurve, 3> metal_curves;  ///< of its single reflections, red, green and blue
 

@@ -1,32 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
-// MaterialPalette: a material whose roughness changes from point to point, prepared for the values that are met.
+// MaterialPalette: a material of which numbers that a Material is prepared for change from point to point, for the values that are met.
 #pragma once
 #include <array>
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <vector>
 
+#include "data/fields/material_table.h"
 #include "render/trace/material/material.h"
 
 namespace sg::trace {
 
-/// A Material for each of 33 steps of roughness and 9 of the coat's; made when a ray first asks for it, some ten milliseconds each.
 class MaterialPalette {
  public:
-  /// `described` holds the factors. `length`: as of Material.
-  MaterialPalette(const SurfaceMaterial& described, double length) : described_(described), length_(length) {}
+  /// Those numbers: the first of MaterialFactor, roughness to coat_ior.
+  static constexpr size_t numbers = size_t(MaterialFactor::coat_ior) + 1;
+  using Varies = std::array<bool, numbers>;
+  using Shares = std::array<float, numbers>;
 
-  /// What is described, with these shares of its roughness and of its coat's. Lives as long as the palette.
-  const Material& at(float roughness, float coat_roughness) const;
+  /// `described` holds the numbers that shares are of. `length`, `around`: as of Material.
+  MaterialPalette(const SurfaceMaterial& described, double length, double around, Varies varies);
+
+  /// What is described, with these shares of its numbers. Numbers are kept in steps: 33 where one varies, down to 5 where all five do; of
+  /// the two next to a share the one is taken, or the other, in that proportion, by `spot`, the same for the same point. Lives as long as
+  /// the palette; made when it is first asked for, some ten milliseconds each.
+  const Material& at(const Shares& shares, uint32_t spot) const;
 
  private:
-  static constexpr size_t rough_steps = 33, coat_steps = 9;
   const Material& made(size_t place) const;
 
   SurfaceMaterial described_;
-  double length_;
-  mutable std::array<std::atomic<const Material*>, rough_steps * coat_steps> materials_{};
+  double length_, around_;
+  std::array<uint32_t, numbers> steps_;  // 1 where a number is the same everywhere
+  mutable std::vector<std::atomic<const Material*>> materials_;
   mutable std::vector<std::unique_ptr<const Material>> owned_;
   mutable std::mutex making_;
 };

@@ -60,7 +60,7 @@ Lit scattered(const LitRay& lit, Vec3 place) {
   float sum = e.glow;
   for (size_t i = 0; i < lit.lights.size(); ++i) {
     const SeenLamp& l = lit.lights[i];
-    sum += e.albedo * lamp_irradiance * l.intensity * e.scatters->density(dot(l.light, lit.direction)) * e.arriving(i, place);
+    sum += e.albedo * l.irradiance * e.scatters->density(dot(l.light, lit.direction)) * e.arriving(i, place);
   }
   Lit out{sum, 0, {0, 0, 0}, 1};
   if (e.depth_cue > 0) {

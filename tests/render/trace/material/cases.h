@@ -36,6 +36,9 @@ inline std::vector<Case> cases() {
     add("retroreflector" + r, true, [&](SurfaceMaterial& m) { m.retro_weight = 1, m.specular_roughness = rough; });
     add("coat" + r, false, [&](SurfaceMaterial& m) { m.coat_weight = .8, m.coat_roughness = rough, m.coat_color = {.9, .6, .5}; });
     add("white coat" + r, true, [&](SurfaceMaterial& m) { m.coat_weight = 1, m.coat_roughness = rough, m.specular_weight = 0; });
+    add("coated mirror" + r, true, [&](SurfaceMaterial& m) { m.base_metalness = 1, m.coat_weight = .7, m.coat_roughness = rough; });
+    add("mirror under smooth coat" + r, true, [&](SurfaceMaterial& m) { m.base_metalness = 1, m.coat_weight = 1; });
+    add("coated retroreflector" + r, true, [&](SurfaceMaterial& m) { m.retro_weight = 1, m.coat_weight = 1, m.coat_roughness = .3; });
     add("coated glass" + r, false, [&](SurfaceMaterial& m) { m.coat_weight = .8, m.coat_roughness = rough, m.transmission_weight = 1; });
   }
   add("chromium", false, [](SurfaceMaterial& m) { m = preset_material(MaterialPreset::chromium); });

@@ -68,9 +68,9 @@ TEST_CASE("materials: the clear body has its colour at its depth, or else at the
   CHECK(std::exp(-deep.absorption().x * 2) == Approx(.5));
   CHECK(std::exp(-deep.absorption().y * 2) == Approx(.25));
   CHECK(deep.absorption().z == 0);
-  CHECK(deep.clear_filter == Vec3f(1, 1, 1));
+  CHECK(deep.shares.clear_filter == Vec3f(1, 1, 1));
   described.transmission_depth = 0;
-  CHECK(Material(described).clear_filter.y == .25f);
+  CHECK(Material(described).shares.clear_filter.y == .25f);
   CHECK(Material(described).absorption() == Vec3f());
   described.specular_weight = 0;
   CHECK(Material(described).ior() == 1);

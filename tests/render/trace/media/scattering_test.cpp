@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light scattered in media, where its amount is known.
 #include "media_support.h"
+#include "scene/light/light_text.h"
 
 #include "base/error.h"
 #include "render/render.h"
@@ -145,7 +146,7 @@ TEST_CASE("media: light maps give the light of single scattering") {
   lamp.direction = {1, 0.5, 0.8}, lamp.follows_camera = false, lamp.intensity = 1;
   scene.lights = {lamp};
   std::get<VolumeItem>(scene.items[0]).scattering.light = VolumeLighting::single;
-  const float e = lamp_irradiance;
+  const float e = 0.75f * 3.14159265f;
   const World world = world_of(scene, {DistantLight{Vec3f(normalize(lamp.direction)), {e, e, e}, 0}}, {});
   std::get<VolumeItem>(scene.items[0]).scattering.light = VolumeLighting::map;
   for (const Vec2 at : {Vec2{0.013, 0.017}, Vec2{0.4, -0.3}, Vec2{-0.6, 0.2}}) {
@@ -154,6 +155,20 @@ TEST_CASE("media: light maps give the light of single scattering") {
     CAPTURE(at.x);
     CHECK(std::abs(double(map.rgba[0]) - single.value) <= 4 * single.error + 2e-3);
   }
+}
+
+TEST_CASE("media: a stated lamp is as bright by light maps as by paths") {
+  VolumeItem v = item(grid(cube(33, -1, 1), [](Vec3 p) { return 1.1 - length(p); }), one_color({0.9f, 0.9f, 0.9f}), density_is_value(0, 2));
+  v.unit_distance = 0.3;
+  v.scattering.light = VolumeLighting::single;
+  Scene scene = scene_of({v});
+  scene.lighting.lights = parse_lights("directional angle=0 direction=1,0.5,0.8 brightness=0.7");
+  const float e = 0.7f * 3.14159265f;
+  const World world = world_of(scene, {DistantLight{Vec3f(normalize(Vec3(1, 0.5, 0.8))), {e, e, e}, 0}}, {});
+  std::get<VolumeItem>(scene.items[0]).scattering.light = VolumeLighting::map;
+  const Frame map = look(scene, 0.2, -0.1);
+  const Mean single = seen(world, {0.2, -0.1, 3}, {0, 0, -1}, 20000);
+  CHECK(std::abs(double(map.rgba[0]) - single.value) <= 4 * single.error + 2e-3);
 }
 
 TEST_CASE("media: smoke shadows surfaces, and surfaces stand in smoke") {

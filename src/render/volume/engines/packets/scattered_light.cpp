@@ -8,7 +8,7 @@ ScatteredLight::ScatteredLight(const LightEffects& effects, const std::vector<La
   const Mat3 to_world = inverse(volume.to_q);
   for (size_t i = 0; i < lamps.size() && i < effects.lamps.size(); ++i) {
     const LightMap& map = *effects.lamps[i].volumes[0];
-    Source s{map.samples(), {}, Vec3f(lamps[i].direction), effects.albedo * lamp_irradiance * lamps[i].intensity};
+    Source s{map.samples(), {}, Vec3f(lamps[i].direction), effects.albedo * lamps[i].irradiance};
     for (int a = 0; a < 3; ++a) {
       const double first = map.coordinate(a, volume.origin);
       for (int k = 0; k < 3; ++k) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "light_scenes.h"
+#include "scene/show/surface.h"
 
 using namespace sg;
 using namespace sg::trace;
@@ -254,4 +255,29 @@ TEST_CASE("all the same: through a lens, with perspective and without") {
     if (parallel) s.camera.parallel = true, s.camera.parallel_height = 1.6;
     check_all(s);
   }
+}
+
+TEST_CASE("all the same: numbers of a material that differ over a ball, and stretched highlights") {
+  LightScene s = on_floor();
+  SurfaceMesh mesh = std::get<SurfaceMesh>(ball({0, 0.1f, -0.4f}, 0.45f, 16, diffuse()).data->mesh());
+  std::vector<float> share, index, along;
+  for (size_t i = 0; i < mesh.points.count(); ++i) {
+    const Vec3 p = mesh.points.at(i) - mesh.points.origin;
+    share.push_back(float(0.5 + p.z / 0.9)), index.push_back(float(1.6 - p.x / 0.9)), along.insert(along.end(), {0.2f, 0, 1});
+  }
+  FieldSet fields;
+  fields.add({"share", Association::point, Array::from_vector(std::move(share)), "", Role::none});
+  fields.add({"index", Association::point, Array::from_vector(std::move(index)), "", Role::none});
+  fields.add({"along", Association::point, Array::from_vector(std::move(along), 3), "", Role::none});
+  SurfaceShow show;
+  using enum MaterialFactor;
+  for (const MaterialFactor f : {roughness, metalness, coat}) show.varying.by[size_t(f)] = {"share"};
+  show.varying.by[size_t(ior)] = {"index"}, show.varying.specular_direction = {"along"};
+  show.material.specular_weight = 1, show.material.specular_roughness = 0.7, show.material.coat_roughness = 0.4;
+  show.coloring.color = "#e0b060";
+  Context context;
+  add(s.scene, make_dataset(Mesh(std::move(mesh)), std::move(fields)), show, context);
+  s.lights = {DiscLight{{0, -0.5f, 0.8f}, normalize(Vec3f{0, 0.4f, -1}), 0.4f, white * 4}};
+  s.environment = Environment(white * 0.2f);  // so that no region is all but black
+  check_all(s);
 }

@@ -228,7 +228,7 @@ TEST_CASE("volume cells: lit packets shade as the general integral does") {
   const float per_scale = float(1 / (0.002 * (v.range.hi - v.range.lo)));
   volume::TetRays rays(v, p, medium, context, 1e-5f);
   const Vec3 lamp = normalize(Vec3(1, 2, 3));
-  rays.light({Lamp{lamp, 0.9f}}, item.light, per_scale);
+  rays.light({Lamp{lamp, 0.9f, 2.1f}}, item.light, per_scale);
   const auto source = volume::cell_source(item, context);
   const auto walker = source->walker();
   double most = 0, sum = 0, change = 0;
