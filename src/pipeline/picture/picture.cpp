@@ -94,7 +94,8 @@ void describe(Schema& s, PictureParams& p) {
                 fmt::join(light_kinds() | std::views::transform(&LightKind::name), ", ")));
   s("environment", p.environment,
     "With an integrator: what shines from all around. 'sky elevation=20', 'even brightness=0.5', the name of a picture of all directions "
-    "with 'rotate=90', or none. Default: an even sky, dim where lights are stated; none beside the lights where it is stated.");
+    "with 'rotate=90', or none. Default: a soft sky that is bright above the viewer, a dim even sky where lights are stated; none beside "
+    "the lights where it is stated.");
 }
 
 void parse_size(const std::string& words, int& width, int& height) {

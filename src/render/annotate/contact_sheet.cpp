@@ -38,7 +38,10 @@ Image scaled(const Image& image, int width, int height) {
 
 Image contact_sheet(const std::vector<CaptionedImage>& pictures, int columns, int width) {
   columns = std::max(1, std::min<int>(columns, int(std::max<size_t>(pictures.size(), 1))));
-  const int gap = 12, caption = 26, height = width * 9 / 16;
+  double tallest = 0;
+  for (const CaptionedImage& p : pictures)
+    if (p.image.width > 0) tallest = std::max(tallest, double(p.image.height) / p.image.width);
+  const int gap = 12, caption = 26, height = std::max(1, int(std::lround(width * std::min(tallest, 1.0))));
   const int rows = int((pictures.size() + size_t(columns) - 1) / size_t(columns));
   Image sheet(gap + columns * (width + gap), std::max(1, gap + rows * (height + caption + gap)), 3);
   std::fill(sheet.pixels.begin(), sheet.pixels.end(), uint8_t(236));

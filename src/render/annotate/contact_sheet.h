@@ -13,8 +13,9 @@ struct CaptionedImage {
   std::string caption;
 };
 
-/// Pictures side by side in `columns`, each scaled down to `width` x 9/16 `width` (keeping its proportions, averaged in
-/// linear light), the caption below, cut with "..." when it is longer than the picture is wide. RGB.
+/// Pictures side by side in `columns`, each scaled to fit into cells of `width` that are as high as the tallest of them is at that width,
+/// or square (keeping its proportions, averaged in linear light), the caption below, cut with "..." when it is longer than the picture is
+/// wide. RGB.
 Image contact_sheet(const std::vector<CaptionedImage>& pictures, int columns = 4, int width = 480);
 
 }  // namespace sg

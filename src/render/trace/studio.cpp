@@ -18,7 +18,7 @@ namespace sg::trace {
 
 namespace {
 
-constexpr float usual_sky = 0.35f, beside_lights = 0.15f;
+constexpr float beside_lights = 0.15f;
 constexpr double set_brightness = 0.2;  // of what lies level when the sun has set
 constexpr int sky_height = 256;         // pixels of its picture
 
@@ -28,6 +28,16 @@ float rise_of(double degrees) {
   return float(2 * s * s);
 }
 Environment even(float v) { return Environment(Vec3f{v, v, v}); }
+
+/// Metals and glass show what is around them: bright above the viewer's head, so that metals have a shape, and behind the data, so that
+/// glass is clear and what is seen at a slant has a rim; dark below. A white surface that faces the viewer is 0.31 of white by it.
+Environment usual_sky(const Projection& projection) {
+  constexpr float dark = 0.1f, above = 0.45f, behind = 0.4f;
+  constexpr double tilt = 0.45;  // radians, towards the viewer
+  const auto grey = [](float v) { return Vec3f(v, v, v); };
+  const Vec3 top = projection.up * std::cos(tilt) - projection.forward * std::sin(tilt);
+  return {grey(dark), {grey(above), Vec3f(normalize(top)), -0.3f}, {grey(behind), Vec3f(projection.forward), 0.2f}};
+}
 Vec3f direction_of(const PlacedLight& p, const Lighting& l, const Projection& projection) {
   return Vec3f(world_way(p, l, projection.right, projection.up, projection.forward));
 }
@@ -124,7 +134,7 @@ Studio studio_of(const Scene& scene, const Projection& projection, const Placeme
   Studio studio;
   for (const PlacedLight& p : place_lights(stated, scene_bounds(scene))) studio.lights.push_back(traced(p, stated, projection, placement));
   if (stated.environment) add_environment(scene, projection, studio);
-  else studio.environment = even(stated.lights.empty() ? usual_sky : beside_lights);
+  else studio.environment = stated.lights.empty() ? usual_sky(projection) : even(beside_lights);
   if (stated.stated() && scene.lights.empty()) return studio;
   for (const Lamp& lamp : lamps_of(lights_of(scene), projection)) {
     if (!(lamp.intensity > 0)) continue;

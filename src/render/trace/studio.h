@@ -24,9 +24,9 @@ struct Studio {
   Environment environment;
   Backdrop backdrop;
 };
-/// Where nothing is stated: the scene's lights as discs in the sky, twelve degrees across, and an even sky; a white surface that faces the
-/// first of the default ones is white. Stated lights have a dim even sky, a stated environment no lights but stated ones. Throws
-/// Error(usage) for a sun that is stated as a light below the horizon.
+/// Where nothing is stated: the scene's lights as discs in the sky, twelve degrees across, and a soft sky that is bright above the viewer;
+/// a white surface that faces the first of the default ones is white. Stated lights have a dim even sky, a stated environment no lights but
+/// stated ones. Throws Error(usage) for a sun that is stated as a light below the horizon.
 Studio studio_of(const Scene& scene, const Projection& projection, const Placement& placement);
 
 }  // namespace sg::trace

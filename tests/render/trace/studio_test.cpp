@@ -149,3 +149,23 @@ TEST_CASE("studio: the middle of a picture lies behind the data, and turns clock
   hall->pixels.assign(32, Vec3f{});
   CHECK(test::contains(test::error_of([&] { studio(scene); }), "black"));
 }
+
+TEST_CASE("studio: where nothing is stated, light comes from above the viewer's head, and a surface that faces the viewer has its share") {
+  const Scene scene = scene_with("");
+  const Projection p = projection_of(scene, {0, -1, 0.4});
+  const Environment sky = studio_of(scene, p, Placement::of(scene_bounds(scene))).environment;
+  const Vec3f up(p.up), back(-p.forward), right(p.right);
+  CHECK(sky.radiance(normalize(up * 2 + back)).x > 5 * sky.radiance(-up).x);
+  CHECK(sky.radiance(right).x == Approx(sky.radiance(-right).x));
+  // The mean over all directions, and irradiance / pi of what faces the viewer, by a grid of 10^6 directions.
+  double mean = 0, facing = 0;
+  constexpr int n = 1000;
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < n; ++k) {
+      const double z = (i + 0.5) / n * 2 - 1, a = (k + 0.5) / n * 2 * 3.14159265358979, r = std::sqrt(1 - z * z);
+      const double l = double(sky.radiance(back * float(z) + up * float(r * std::cos(a)) + right * float(r * std::sin(a))).x);
+      mean += l / n / n, facing += std::max(0.0, z) * 4 * l / n / n;
+    }
+  CHECK(double(sky.mean().x) == Approx(mean).epsilon(1e-4));
+  CHECK(facing == Approx(0.31).epsilon(0.02));
+}

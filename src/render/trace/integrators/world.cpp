@@ -112,7 +112,7 @@ World::World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_
       isosurfaces_(std::move(isosurfaces)),
       shows_(std::move(shows)),
       look_(std::move(look)) {
-  if (const Environment& around = lights_.environment(); around.even() && !around.dark()) {
+  if (const Environment& around = lights_.environment(); around.soft() && !around.dark()) {
     std::vector<AnyLight> all;
     for (uint32_t i = 0; i < lights_.count(); ++i) all.push_back(lights_.light(i));
     lamps_.emplace(std::move(all), around, reach_of(geometry_, media_.get()), false);

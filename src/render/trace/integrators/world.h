@@ -46,8 +46,8 @@ class World {
 
   const Geometry& geometry() const { return geometry_; }
   const Lights& lights() const { return lights_; }
-  /// The same for paths that go on into every direction: they do not ask for an environment that is the same everywhere, which they meet by
-  /// chance as well as by asking.
+  /// The same for paths that go on into every direction: they do not ask for a soft environment, which they meet by chance as well as by
+  /// asking.
   const Lights& lamps() const { return lamps_ ? *lamps_ : lights_; }
   /// Linear colour and opacity of what was met, and the id of its item (its number + 1).
   Vec4f color(const Ray& ray, const Hit& hit, const RayFootprint& footprint = {}) const;

@@ -104,14 +104,29 @@ Vec2f Environment::place(Vec3f direction) const {
 }
 
 Vec3f Environment::radiance(Vec3f direction) const {
-  if (!picture_) return even_;
-  return picture_->at(place(direction));
+  if (picture_) return picture_->at(place(direction));
+  Vec3f sum = even_;
+  for (const Side& side : sides_) {
+    if (side.radiance == Vec3f()) continue;
+    const float t = std::clamp((dot(direction, side.towards) - side.least) / (1 - side.least), 0.f, 1.f);
+    sum += side.radiance * (t * t * (3 - 2 * t));
+  }
+  return sum;
 }
 
-Vec3f Environment::mean() const { return picture_ ? picture_->mean : even_; }
+Vec3f Environment::mean() const {
+  if (picture_) return picture_->mean;
+  // Half of its strength, on average over the part of the sphere where a side gives light.
+  Vec3f sum = even_;
+  for (const Side& side : sides_) sum += side.radiance * ((1 - side.least) / 4);
+  return sum;
+}
 
 Environment::Sample Environment::sample(Vec2f u) const {
-  if (!picture_) return {uniform_sphere(u), even_, uniform_sphere_pdf()};
+  if (!picture_) {
+    const Vec3f d = uniform_sphere(u);
+    return {d, radiance(d), uniform_sphere_pdf()};
+  }
   // Even over each pixel's part of the sphere: in a row the cosine is what is drawn evenly.
   const Distribution2D::Sample s = picture_->brightness.sample(u);
   const float in_rows = s.point.y * float(picture_->height);

@@ -193,7 +193,7 @@ Vec3f TriangleLight::radiance_at(Vec3f w) const {
   return radiance * Vec3f{texel.x, texel.y, texel.z};
 }
 
-Lights::Lights(std::vector<AnyLight> lights, Environment environment, float reach, bool ask_even)
+Lights::Lights(std::vector<AnyLight> lights, Environment environment, float reach, bool ask_soft)
     : lights_(std::move(lights)), environment_(std::move(environment)) {
   std::vector<float> powers;
   for (const AnyLight& l : lights_) {
@@ -206,7 +206,7 @@ Lights::Lights(std::vector<AnyLight> lights, Environment environment, float reac
   }
   std::sort(triangles_.begin(), triangles_.end());
   const float around = pi * reach * reach * pi * luminance(environment_.mean());
-  if (around > 0 && (ask_even || !environment_.even())) {
+  if (around > 0 && (ask_soft || !environment_.soft())) {
     // Light from everywhere is half of what is asked for, however bright single lights are: all shadows are filled by it.
     float sum = 0;
     for (const float p : powers) sum += p;

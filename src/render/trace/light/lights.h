@@ -90,8 +90,8 @@ class Lights {
  public:
   Lights() = default;
   /// `reach`: radius of a ball about the scene, for the power of what is far away. Throws Error(usage) for a light without size or power.
-  /// `ask_even` = false: sample() leaves out an environment that is the same everywhere.
-  Lights(std::vector<AnyLight> lights, Environment environment, float reach, bool ask_even = true);
+  /// `ask_soft` = false: sample() leaves out an environment that is soft.
+  Lights(std::vector<AnyLight> lights, Environment environment, float reach, bool ask_soft = true);
 
   bool any() const { return choice_.has_value() || !environment_.dark(); }
   size_t count() const { return lights_.size(); }
