@@ -56,6 +56,10 @@ double texture_memory(std::span<const std::byte> bytes) {
   return pixels * of_texel;
 }
 
+bool is_picture(std::span<const std::byte> bytes) {
+  return starts_with(bytes, "\x89PNG") || starts_with(bytes, "\xff\xd8\xff") || starts_with(bytes, "#?");
+}
+
 Texture decode_texture(std::span<const std::byte> bytes, const std::string& name, TexelEncoding encoding, bool alpha) {
   if (starts_with(bytes, "\x89PNG")) return Texture::of(decode_png(bytes, name), encoding, alpha);
   if (starts_with(bytes, "\xff\xd8\xff")) return Texture::of(decode_jpeg(bytes, name), encoding, alpha);

@@ -9,6 +9,9 @@
 
 namespace sg {
 
+/// Whether it begins as one of the files that decode_texture() knows.
+bool is_picture(std::span<const std::byte> bytes);
+
 /// PNG, JPEG or Radiance HDR, told apart by their content; numbers of HDR are linear whatever `encoding` says. Throws Error(data) naming
 /// `name` for other files, damaged ones, and those that are too large.
 Texture decode_texture(std::span<const std::byte> bytes, const std::string& name, TexelEncoding encoding, bool alpha);

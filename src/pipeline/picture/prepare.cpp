@@ -16,6 +16,7 @@
 #include "pipeline/file/transfer_file.h"
 #include "pipeline/picture/picture_cost.h"
 #include "pipeline/picture/picture_lights.h"
+#include "pipeline/picture/scene/grid_textures.h"
 #include "pipeline/picture/scene/picture_files.h"
 #include "pipeline/picture/scene/picture_scene.h"
 #include "pipeline/picture/settle_choices.h"
@@ -123,6 +124,8 @@ PreparedPicture prepare_picture(PipelineFile& file, const PictureOptions& option
   show_planes_as_measured(file);
   stated = stated_in(file);  // with what was chosen of it
   const std::vector<StatedShow> shows = stated_shows(file);
+  for (const StatedShow& s : shows)
+    if (s.kind->is<SurfaceShow>()) read_grid_textures(s.params.as<SurfaceShow>(), context);
   if (const auto* of_file = stated.lighting.environment ? std::get_if<PictureEnvironmentParams>(&*stated.lighting.environment) : nullptr)
     stated.lighting.picture = read_environment(path_beside(file.origin, of_file->file), context);
 

@@ -23,6 +23,11 @@ constexpr ShowKind kind(std::string_view name, std::string_view sentence) {
   k.name = name, k.sentence = sentence;
   k.make_params = make_param_set<P>;
   k.has_params = [](const std::type_info& type) { return type == typeid(P); };
+  k.copy = [](const ParamSet& from) {
+    ParamSet to = param_set_of(from.as<P>());
+    for (size_t i = 0; i < to.schema.decls().size(); ++i) to.schema.decls()[i].stated = from.schema.decls()[i].stated;
+    return to;
+  };
   if constexpr (requires(P p) { p.coloring; }) k.coloring = [](const ParamSet& params) { return &params.as<P>().coloring; };
   if constexpr (requires(const P p) { check(p); }) k.check = [](const ParamSet& params) { check(params.as<P>()); };
   if constexpr (requires(const P p, const Dataset d) { automatic_field(p, d); })

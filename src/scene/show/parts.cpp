@@ -72,7 +72,7 @@ std::vector<std::vector<DatasetPtr>> colored_alike(const std::vector<ShownParts>
 std::vector<ParamSet> params_of_parts(const std::vector<DatasetPtr>& parts, const ShowKind& kind, const ParamSet& stated,
                                       const std::vector<DatasetPtr>& beside) {
   std::vector<ParamSet> params;
-  for (size_t i = 0; i < parts.size(); ++i) params.push_back(copy_of(stated));
+  for (size_t i = 0; i < parts.size(); ++i) params.push_back(kind.copy(stated));
   if (kind.coloring && parts.size() + beside.size() > 1) share_colors(parts, kind, beside, params);
   if (kind.share && parts.size() > 1) kind.share(parts, params);
   return params;

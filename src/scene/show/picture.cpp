@@ -17,7 +17,8 @@ namespace sg {
 
 void describe(Schema& s, PictureShow& p) {
   s("picture", p.picture,
-    "Picture on the surface, by its texture coordinates: a file (PNG, JPEG, Radiance HDR). It takes the place of colours by a field; "
+    "Picture on the surface, by its texture coordinates: a file (PNG, JPEG, Radiance HDR, or a grid of one layer, in its own colours or "
+    "coloured by its field). It takes the place of colours by a field; "
     "color= "
     "tints it, and what it leaves transparent is not drawn.")
       .unit("file");
@@ -102,7 +103,8 @@ SurfacePicture placed(const Dataset& d, const PictureShow& p) {
 
 SurfacePicture picture_in_file(const Dataset& d, const PictureShow& p, const std::string& path, TexelEncoding encoding) {
   SurfacePicture on = placed(d, p);
-  on.texture = texture_in_file(d, path, encoding);
+  const auto grid = p.grids.find({path, encoding});
+  on.texture = grid != p.grids.end() ? grid->second : texture_in_file(d, path, encoding);
   return on;
 }
 

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The words for pictures on a surface.
 #pragma once
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "base/context.h"
 #include "base/schema/schema.h"
 #include "data/dataset.h"
@@ -19,6 +25,8 @@ struct PictureShow {
   TexelEncoding picture_encoding = TexelEncoding::srgb;
   std::string normal_picture, material_picture;
   double normal_scale = 1;
+  /// Of files of data, by their names: who reads these puts them here, no word does.
+  std::map<std::pair<std::string, TexelEncoding>, std::shared_ptr<const Texture>> grids;
 
   /// Whether there is one of colours.
   bool any() const { return !picture.empty() || pattern; }

@@ -21,6 +21,8 @@ struct ShowKind {
   std::string_view name, sentence;
   ParamSet (*make_params)() = nullptr;
   bool (*has_params)(const std::type_info& type) = nullptr;
+  /// Another set of the same parameters, with what no word states, too.
+  ParamSet (*copy)(const ParamSet& params) = nullptr;
   /// Throws Error(usage) for what no data could make right; all mistakes at once. Null: nothing beyond ranges and choices.
   void (*check)(const ParamSet& params) = nullptr;
   /// How its values become colours; null: it has one colour.
