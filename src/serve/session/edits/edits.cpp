@@ -13,13 +13,14 @@
 #include "pipeline/picture/picture.h"
 #include "serve/session/edits/light_edits.h"
 #include "serve/session/edits/node_edits.h"
+#include "serve/session/edits/step_edits.h"
 #include "serve/session/params_of.h"
 
 namespace sg::serve {
 
 namespace {
 
-constexpr size_t most_edits = 200, most_steps = 1000, most_shows = 250;
+constexpr size_t most_edits = 200, most_shows = 250;
 
 enum class Addition { step, show, light, environment, node };
 constexpr auto enum_words(Addition) {
@@ -33,9 +34,9 @@ class Editing {
 
   // Throws Error(usage) where lights as they stand cannot be read.
   void make(const Json& edit) {
-    if (edit.contains("at")) return set(edit["at"].text(), edit["set"]);
+    if (edit.contains("at")) return change(edit["at"].text(), edit);
     if (edit.contains("move")) return move(edit["move"].text(), edit["to"]);
-    if (edit.contains("remove")) return remove(edit["remove"].text());
+    if (edit.contains("remove")) return remove(edit["remove"].text(), edit["join"]);
     const auto adds = value_of_word<Addition>(edit["add"].text());
     if (!adds) return mistake("", "", "an edit has 'at' and 'set', 'add', 'move' or 'remove'");
     const std::string kind = bytes_of_text(edit["kind"].text());
@@ -58,12 +59,10 @@ class Editing {
     const auto n = at.starts_with("show/") ? parse_int(std::string_view(at).substr(5)) : std::nullopt;
     return n && *n >= 0 && size_t(*n) < file_.show.size() ? &file_.show[size_t(*n)] : nullptr;
   }
-  PipelineFile::Step* step_named(std::string_view name) {
-    const auto it = std::find_if(file_.steps.begin(), file_.steps.end(), [&](const auto& s) { return s.name == name; });
-    return it == file_.steps.end() ? nullptr : &*it;
-  }
-  PipelineFile::Step* step_at(const std::string& at) {
-    return at.starts_with("steps/") ? step_named(bytes_of_text(at.substr(6))) : nullptr;
+
+  void change(const std::string& at, const Json& edit) {
+    if (edit.contains("from")) connect_step(file_, at, edit["from"], mistakes_);
+    if (edit.contains("set") || !edit.contains("from")) set(at, edit["set"]);
   }
 
   void set(const std::string& at, const Json& words) {
@@ -72,9 +71,8 @@ class Editing {
         PictureParams picture;
         Schema schema = schema_of(picture);
         set_words(at, words, schema, file_.picture, mistakes_);
-      } else if (PipelineFile::Step* step = step_at(at)) {
-        ParamSet params = params_of_step(*step);
-        set_words(at, words, params.schema, step->words, mistakes_);
+      } else if (is_step_place(at)) {
+        set_step(file_, at, words, mistakes_);
       } else if (PipelineFile::Show* show = show_at(at)) {
         ParamSet params = params_of_show(show->kind);
         set_words(at, words, params.schema, show->words, mistakes_);
@@ -90,23 +88,14 @@ class Editing {
     }
   }
 
-  void remove(const std::string& at) {
+  void remove(const std::string& at, const Json& join) {
     if (const PipelineFile::Show* show = show_at(at)) {
       file_.show.erase(file_.show.begin() + (show - file_.show.data()));
       return;
     }
     if (is_light_place(at)) return remove_light(file_, at, mistakes_);
     if (is_node_place(at)) return remove_node(file_, at, mistakes_);
-    const PipelineFile::Step* step = step_at(at);
-    if (!step) return mistake(at, "", "there is nothing there to remove");
-    const std::string name = step->name;
-    for (const PipelineFile::Step& s : file_.steps)
-      if (std::find(s.from.begin(), s.from.end(), name) != s.from.end())
-        return mistake(at, "", fmt::format("'{}' takes it; remove that first", s.name));
-    for (const PipelineFile::Node& n : file_.scene)
-      if (n.at == name) return mistake(at, "", fmt::format("node '{}' has its instances there; remove that first", n.name));
-    std::erase_if(file_.show, [&](const auto& s) { return s.of == name; });
-    std::erase_if(file_.steps, [&](const auto& s) { return s.name == name; });
+    remove_step(file_, at, join, mistakes_);
   }
 
   // What is shown stands in a node, or with "" where the data lie.
@@ -119,26 +108,15 @@ class Editing {
   }
 
   void add_step(const Json& edit) {
-    PipelineFile::Step step;
-    step.operation = bytes_of_text(edit["operation"].text());
-    const Operation* op = known_operation(step.operation);
-    if (!op) return mistake("", "", fmt::format("there is no operation '{}'", step.operation));
-    if (file_.steps.size() >= most_steps) return mistake("", "", "there are too many steps");
-    for (const Json& from : edit["from"].items()) {
-      step.from.push_back(bytes_of_text(from.text()));
-      if (!step_named(step.from.back())) return mistake("", "", fmt::format("there is no step '{}'", step.from.back()));
-    }
-    if (step.from.empty() && op->min_inputs > 0) return mistake("", "", fmt::format("'{}' takes the result of a step", step.operation));
-    for (int n = 1; step.name.empty() || step_named(step.name); ++n) step.name = fmt::format("{}{}", step.operation, n);
-    file_.steps.push_back(step);
-    set("steps/" + step.name, edit["set"]);
-    if (!(edit["show"].is_bool() && !edit["show"].boolean())) file_.show.push_back({std::string(auto_show), {}, step.name, 0});
+    const std::string name = serve::add_step(file_, edit, mistakes_);
+    const bool hidden = edit["show"].is_bool() && !edit["show"].boolean();
+    if (!name.empty() && !hidden) file_.show.push_back({std::string(auto_show), {}, name, 0});
   }
 
   void add_show(const Json& edit) {
     PipelineFile::Show show;
     show.kind = bytes_of_text(edit["kind"].text()), show.of = bytes_of_text(edit["of"].text());
-    if (!step_named(show.of)) return mistake("", "", fmt::format("there is no step '{}'", show.of));
+    if (!step_named(file_, show.of)) return mistake("", "", fmt::format("there is no step '{}'", show.of));
     if (file_.show.size() >= most_shows) return mistake("", "", "there are too many ways to show");
     file_.show.push_back(show);
     const std::string at = fmt::format("show/{}", file_.show.size() - 1);
