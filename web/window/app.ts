@@ -45,6 +45,8 @@ export class App {
   panelOpen = window.innerWidth > 700;
   selected = "show/0"; // of show/N, steps/NAME, lights/N, scene/NAME, picture
   dialog: Dialog = null;
+  /** Places that take the selected step, and what is added next in its place. */
+  inFront: string[] = [];
   message = "";
   /** The pipeline as it was when the window opened. */
   beginning = "";
@@ -113,6 +115,13 @@ export class App {
   select(at: string): void {
     this.selected = at;
     this.changed();
+  }
+
+  /** Opens the search for an operation that goes between a step and some of what takes it. */
+  insert(step: string, inFront: string[]): void {
+    this.select(`steps/${step}`);
+    this.inFront = inFront;
+    this.dialog = "add";
   }
 
   open(tab: Tab): void {

@@ -104,12 +104,13 @@ export interface State {
 
 export type Edit =
   | { at: string; set: Record<string, string | null> }
-  | { add: "step"; operation: string; from: string[]; set: Words; show?: boolean }
+  | { at: string; from: string[] }
+  | { add: "step"; operation: string; from: string[]; before?: string[]; set: Words; show?: boolean }
   | { add: "show"; kind: string; of: string; in?: string; set: Words }
   | { add: "light" | "environment"; kind: string; set: Words }
   | { add: "node"; name: string; in: string; set: Words }
   | { move: string; to: string }
-  | { remove: string };
+  | { remove: string; join?: string[] };
 
 export interface Problem {
   at: string;

@@ -57,6 +57,7 @@ export class Commands {
 
   private openDialog(which: App["dialog"]): void {
     this.app.dialog = which;
+    this.app.inFront = [];
     this.app.changed();
   }
 

@@ -38,7 +38,11 @@ export class Pipeline {
 
   apply(p, e, errors) {
     const bad = (at, word, text) => errors.push({ at, word, text });
-    if (e.at) {
+    if (e.from && e.at) {
+      const step = p.steps.find((s) => `steps/${s.name}` === e.at);
+      if (!step) return bad(e.at, "", `'${e.at}' not found`);
+      step.from = e.from;
+    } else if (e.at) {
       const target =
         e.at === "picture" ? p.picture : e.at.startsWith("show/") ? p.show[+e.at.slice(5)]?.words : p.steps.find((s) => s.name === e.at.slice(6))?.words;
       if (!target) return bad(e.at, "", `'${e.at}' not found`);
@@ -51,15 +55,26 @@ export class Pipeline {
       const n = p.steps.filter((s) => s.operation === e.operation).length + 1;
       const name = `${e.operation}${n}`;
       p.steps.push({ name, operation: e.operation, words: { ...e.set }, from: e.from });
+      this.redirect(p, e.before, e.from[0], name);
       if (e.show !== false) p.show.push({ kind: /lines/.test(e.operation) ? "lines" : "surface", of: name, words: {} });
     } else if (e.add === "show") p.show.push({ kind: e.kind, of: e.of, words: { ...e.set } });
     else if (e.remove?.startsWith("show/")) p.show.splice(+e.remove.slice(5), 1);
     else if (e.remove) {
       const name = e.remove.slice(6);
+      this.redirect(p, e.join, name, p.steps.find((s) => s.name === name)?.from[0]);
       const user = p.steps.find((s) => s.from.includes(name));
       if (user) return bad(e.remove, "", `'${name}' is taken by '${user.name}'`);
       p.steps = p.steps.filter((s) => s.name !== name);
       p.show = p.show.filter((s) => s.of !== name);
+    }
+  }
+
+  /** What stands at those places takes another step than before. */
+  redirect(p, places, before, now) {
+    for (const place of places ?? []) {
+      const step = p.steps.find((s) => `steps/${s.name}` === place);
+      if (step) step.from = step.from.map((f) => (f === before ? now : f));
+      else if (place.startsWith("show/")) p.show[+place.slice(5)].of = now;
     }
   }
 

@@ -5,6 +5,7 @@ import type { App } from "../app";
 import { search, takesKind, type Entry } from "../catalog";
 import type { Step } from "../protocol";
 import { suiting } from "../controls/field";
+import { takersOf } from "../session/wiring";
 import { dialog } from "./dialog";
 
 const ui = { query: "", all: false, at: 0, second: "" };
@@ -16,11 +17,16 @@ export function addDialog(app: App): TemplateResult {
   const entries = [...app.catalog.operations, ...app.catalog.sources];
   const found = search(entries, ui.query).filter((e) => ui.all || e.kind === "source" || takesKind(e, input?.kind));
   ui.at = Math.max(0, Math.min(ui.at, found.length - 1));
+  const takers = input ? takersOf(s, input.name) : [];
+  const before = takers.map((t) => t.place).filter((p) => app.inFront.includes(p));
   const add = (e: Entry): void => {
     const wants = e.inputs?.[0] ?? 1;
+    if (e.kind === "source" && before.length > 0) return app.say(`'${e.name}' takes no step, so that it cannot stand between two`);
     const from = e.kind === "source" ? [] : [input?.name ?? "", ...(ui.second && (e.inputs?.[1] ?? 1) !== 1 ? [ui.second] : [])].filter(Boolean);
     if (from.length < wants) return app.say(`'${e.name}' takes ${wants} steps: choose the second one above the list`);
-    app.session.edit([{ add: "step", operation: e.name, from, set: seenField(app, e, input) }]);
+    // Between others it is seen by what it goes on to.
+    const place = before.length > 0 ? { before, show: false } : {};
+    app.session.edit([{ add: "step", operation: e.name, from, set: seenField(app, e, input), ...place }]);
     app.dialog = null;
     ui.query = "";
     ui.second = "";
@@ -36,7 +42,7 @@ export function addDialog(app: App): TemplateResult {
   };
   return dialog(
     app,
-    "Add an operation",
+    before.length > 0 ? "Insert an operation" : "Add an operation",
     html`<div class="row">
         <input class="grow" type="search" autofocus placeholder="contour, slice, streamlines, smooth …" aria-label="Search operations" role="combobox" aria-expanded="true"
           aria-controls="add-list" aria-activedescendant=${found[ui.at] ? `add-${found[ui.at].name}` : nothing}
@@ -48,6 +54,11 @@ export function addDialog(app: App): TemplateResult {
           <option value="">nothing else</option>${s.steps.filter((x) => x !== input).map((x) => html`<option ?selected=${x.name === ui.second}>${x.name}</option>`)}</select></label>
         <label><input type="checkbox" .checked=${ui.all} @change=${(e: Event) => { ui.all = (e.target as HTMLInputElement).checked; app.changed(); }} /> also what does not take ${input?.kind ?? "this"}</label>
       </div>
+      ${takers.length > 0 ? html`<div class="row wrap" role="group" aria-label="In front of">
+        <span>in front of</span>${takers.map((t) => html`<label><input type="checkbox" .checked=${before.includes(t.place)} @change=${(e: Event) => {
+          app.inFront = (e.target as HTMLInputElement).checked ? [...before, t.place] : before.filter((p) => p !== t.place);
+          app.changed();
+        }} /> ${t.name}</label>`)}</div>` : nothing}
       <ul class="add-list" id="add-list" role="listbox" aria-label="Operations">
         ${found.map((e, i) => html`<li id="add-${e.name}" role="option" aria-selected=${i === ui.at ? "true" : "false"} class=${i === ui.at ? "chosen" : ""} @click=${() => add(e)}>
           <span class="name">${e.name.replaceAll("_", " ")}</span><span class="quiet">${e.family ?? e.kind}</span><span class="sentence">${e.sentence}</span></li>`)}

@@ -6,8 +6,10 @@ import type { App } from "../app";
 import { stepEntry } from "../catalog";
 import { form } from "../controls/form";
 import type { Step } from "../protocol";
+import { canGo, removal, takersOf } from "../session/wiring";
 import { bytes, seconds } from "../words";
 import { graph } from "./graph";
+import { inputs } from "./inputs";
 
 const ui = { graph: false };
 
@@ -59,11 +61,15 @@ function details(app: App, s: Step): TemplateResult {
   const entry = stepEntry(app.catalog, s.operation);
   const at = `steps/${s.name}`;
   const input = s.from[0] ?? s.name;
+  const takers = takersOf(app.state!, s.name);
   return html`<section>
     <div class="row"><h2 class="grow">${s.name}</h2>
-      <button class="small" title="Add an operation that takes this step" @click=${() => app.commands.run("add")}>+ after</button>
+      <button class="small" title="Add an operation that takes this step" ?disabled=${!app.state!.may_edit} @click=${() => app.commands.run("add")}>+ after</button>
+      <button class="small" title="Insert an operation between this step and what takes it" ?disabled=${!app.state!.may_edit || takers.length === 0}
+        @click=${() => app.insert(s.name, takers.map((t) => t.place))}>+ between</button>
       <button class="small" @click=${() => app.open("table")}>Table</button>
-      <button class="icon small" aria-label="Remove ${s.name}" title="Remove" ?disabled=${!app.state!.may_edit || s.from.length === 0} @click=${() => app.session.edit([{ remove: at }])}>${icon("close")}</button>
+      <button class="icon small" aria-label="Remove ${s.name}" title=${s.from.length > 0 && takers.length > 0 ? `Remove; what takes it takes ${s.from[0]}` : "Remove"}
+        ?disabled=${!app.state!.may_edit || !canGo(app.state!, s)} @click=${() => app.session.edit([removal(app.state!, s)])}>${icon("close")}</button>
     </div>
     ${app.session.edits.problem(at, "") ? html`<p class="problem" role="alert">${app.session.edits.problem(at, "")}</p>` : nothing}
     <p class="quiet">${entry?.sentence ?? s.operation}</p>
@@ -73,6 +79,7 @@ function details(app: App, s: Step): TemplateResult {
           ${s.fields.map((f) => html`<li><span>${f.name}</span><span class="quiet">${f.on}${f.components > 1 ? ` ×${f.components}` : ""} ${f.range ? `${Number(f.range[0].toPrecision(4))} … ${Number(f.range[1].toPrecision(4))}` : ""} ${f.unit ?? ""}</span></li>`)}
         </ul></details>`
       : nothing}
+    ${inputs(app, s, entry)}
     ${entry ? form(app, { at, entry, step: input, without: s.operation === "read" ? ["path"] : [] }) : html`<p class="empty">The catalogue does not know '${s.operation}'.</p>`}
   </section>`;
 }

@@ -25,7 +25,7 @@ export class Edits {
   /** Adds an edit; a live one replaces the live one that waits before it, as far as it sets the same words. */
   put(edits: Edit[], live: boolean): void {
     for (const e of edits)
-      if ("at" in e)
+      if (sets(e))
         for (const [word, value] of Object.entries(e.set)) {
           this.drafts.set(keyOf(e.at, word), { value, n: 0, refused: false });
           this.problems.delete(keyOf(e.at, word));
@@ -52,7 +52,7 @@ export class Edits {
     if (n === 0) return; // no connection: what was dragged meanwhile is lost, as the state that comes next says
     this.underWay = n;
     for (const e of batch.edits)
-      if ("at" in e)
+      if (sets(e))
         for (const word of Object.keys(e.set)) {
           const draft = this.drafts.get(keyOf(e.at, word));
           if (draft && draft.n === 0 && !this.waits(e.at, word)) draft.n = n;
@@ -100,21 +100,24 @@ export class Edits {
   }
 
   private waits(at: string, word: string): boolean {
-    return this.queue.some((b) => b.edits.some((e) => "at" in e && e.at === at && word in e.set));
+    return this.queue.some((b) => b.edits.some((e) => sets(e) && e.at === at && word in e.set));
   }
 }
 
-const settings = (edits: Edit[]): boolean => edits.every((e) => "at" in e);
+type Setting = Extract<Edit, { at: string; set: unknown }>;
+
+const sets = (e: Edit): e is Setting => "at" in e && "set" in e;
+const settings = (edits: Edit[]): edits is Setting[] => edits.every(sets);
 
 function merges(before: Edit[], after: Edit[]): boolean {
   if (!settings(before) || !settings(after)) return false;
-  const places = (edits: Edit[]): string => edits.map((e) => ("at" in e ? e.at : "")).join(" ");
+  const places = (edits: Setting[]): string => edits.map((e) => e.at).join(" ");
   return places(before) === places(after);
 }
 
 function merged(before: Edit[], after: Edit[]): Edit[] {
   return after.map((e, i) => {
     const b = before[i];
-    return "at" in e && "at" in b ? { at: e.at, set: { ...b.set, ...e.set } } : e;
+    return sets(e) && sets(b) ? { at: e.at, set: { ...b.set, ...e.set } } : e;
   });
 }
