@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Offline pages in a browser without a graphics card: that they ask no network for anything, look as the PNG of the same words does, turn,
-// and take another opacity. Usage: node tests/web/offline.mjs PROGRAM [DATA]. Without a browser or playwright-core all is skipped, and says
+// take another opacity, and can be used by everybody. Usage: node tests/web/offline.mjs PROGRAM [DATA]. Without a browser or playwright-core all is skipped, and says
 // so. Times are printed and never judged: they are those of this machine.
 import { execFileSync } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync, statSync } from "node:fs";
@@ -39,9 +39,11 @@ function skip(why) {
   console.log(`SKIPPED: ${why}`);
 }
 
-let chromium;
+let chromium, AxeBuilder;
 try {
-  ({ chromium } = createRequire(join(here, "../../web/package.json"))("playwright-core"));
+  const required = createRequire(join(here, "../../web/package.json"));
+  ({ chromium } = required("playwright-core"));
+  ({ AxeBuilder } = required("@axe-core/playwright"));
 } catch {
   skip("playwright-core is not installed (npm ci in web/)");
 }
@@ -108,6 +110,12 @@ function compare(page, pngFile) {
   }, { png: "data:image/png;base64," + readFileSync(pngFile).toString("base64") });
 }
 
+/** Contrast, as WCAG 2 has it, of a grey of so much opacity on white. */
+function contrastOnWhite(grey, opacity) {
+  const seen = (255 - opacity * (255 - grey)) / 255;
+  return 1.05 / (((seen + 0.055) / 1.055) ** 2.4 + 0.05);
+}
+
 function render(words, output) {
   try {
     execFileSync(program, ["render", ...words, "--size", "640x400", "-q", "-o", output], { stdio: ["ignore", "ignore", "pipe"] });
@@ -157,6 +165,43 @@ for (const s of scenes) {
   console.log(`${s.name}: ${(statSync(html).size / 1024).toFixed(0)} KiB, mean ${d.mean?.toFixed(2)}, 99 % ${d.most99}, edges ${d.edge?.toFixed(1)}, bar ${d.bar ?? "-"} (of 255, ${d.pixels} pixels); opens in ${opened} ms, still after ${still} ms, turns at ${turned.frames.toFixed(1)} frames/s`);
   if (keep) await page.screenshot({ path: html.replace(".html", ".shot.png") });
   await page.close();
+}
+// Everybody can use it: in both colours of screens, wide and as narrow as a phone, with what each kind of page has beside the picture.
+if (!only || only === "accessible") {
+  const pages = {
+    surface: ["-s", "gyroid size=24", "-f", "contour", "--show", "surface field=Normals component=0"],
+    volume: ["-s", "gyroid size=24", "--show", "volume opacity=0:0,0.6:0,1:0.3"],
+    times: ["-s", "double_gyre dims=41,21,1", "--show", "surface field=velocity", "--times", "0,0.3,0.6"],
+  };
+  for (const [name, words] of Object.entries(pages)) {
+    const html = join(folder, `accessible_${name}.html`);
+    const trouble = render(words, html);
+    check(!trouble, `accessible ${name}: ${trouble}`);
+    if (trouble) continue;
+    for (const [colorScheme, viewport] of [["light", { width: 640, height: 400 }], ["dark", { width: 640, height: 400 }], ["light", { width: 390, height: 700 }]]) {
+      const context = await browser.newContext({ colorScheme, viewport });
+      const page = await context.newPage();
+      await page.goto("file://" + html);
+      await page.waitForFunction(() => document.documentElement.dataset.state === "still", null, { timeout: 300000 });
+      // Over a canvas axe cannot say: dark words on white, as far as the bar lets the picture through.
+      const through = await page.evaluate(() => Number(getComputedStyle(document.querySelector(".bar")).opacity));
+      check(contrastOnWhite(0x17, through) >= 4.5, `accessible ${name}: words of the bar stand out by ${contrastOnWhite(0x17, through).toFixed(1)}`);
+      for (const opens of ["opacity", "about"]) {
+        const control = page.locator(".bar").getByText(opens, { exact: true });
+        if (await control.count()) await control.click();
+      }
+      const { violations } = await new AxeBuilder({ page }).analyze();
+      for (const v of violations.filter((v) => v.impact === "serious" || v.impact === "critical"))
+        check(false, `accessible ${name}, ${colorScheme}, ${viewport.width} wide: ${v.id}: ${v.nodes.slice(0, 3).map((n) => n.html.slice(0, 140)).join(" | ")}`);
+      const outside = await page.evaluate(() => [...document.querySelectorAll("button, input, select, summary")].filter((e) => e.checkVisibility()).filter((e) => {
+        const b = e.getBoundingClientRect();
+        return b.left < 0 || b.top < 0 || b.right > window.innerWidth || b.bottom > window.innerHeight;
+      }).map((e) => e.textContent));
+      check(outside.length === 0, `accessible ${name}, ${viewport.width} wide: within the page, not so ${outside}`);
+      if (keep) await page.screenshot({ path: join(folder, `accessible_${name}_${colorScheme}_${viewport.width}.png`) });
+      await context.close();
+    }
+  }
 }
 if (!only) {
   // Time steps: another one is another picture, and the slider tells of it.

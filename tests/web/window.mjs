@@ -7,6 +7,7 @@ import { gzipSync } from "node:zlib";
 import { accessibility, phone } from "./access.mjs";
 import { measuring, overTime } from "./measuring.mjs";
 import { scene } from "./scene.mjs";
+import { views } from "./views.mjs";
 import { wiring } from "./wiring.mjs";
 import { andSettle, cleanUp, dataFile, dragOn, launch, middleOf, openPage, options, seen, serve, seriesFile, settled, shot } from "./browser.mjs";
 
@@ -538,6 +539,7 @@ if (!o.url && !o.mock) {
 if (!o.url && !o.mock) await measuring(test, o, browser);
 if (!o.url && !o.mock) await scene(test, o, browser);
 if (!o.url && !o.mock) await wiring(test, o, browser);
+if (!o.url && !o.mock) await views(test, o, browser);
 
 if (!o.url) {
   const series = await serve(o, seriesFile(o), { MOCK_TIMES: "1" });

@@ -66,14 +66,19 @@ export function dragged(camera: Camera, size: Size, origin: Vec3, dx: number, dy
   return add(scale(f.right, dx * perPixel), scale(f.up, -dy * perPixel));
 }
 
-/** How far along a direction a drag of pixels leads; the direction seen head on counts upward pixels instead. */
+/** How far along a direction of length 1 a drag of pixels leads; the direction seen head on counts upward pixels instead. */
 export function draggedAlong(camera: Camera, size: Size, origin: Vec3, direction: Vec3, dx: number, dy: number): number {
   const f = frameOf(camera);
-  const depth = -dot(sub(origin, camera.position), f.back);
+  const from = sub(origin, camera.position);
+  const depth = -dot(from, f.back);
   const perPixel = Math.abs(pixelSize(camera, size, depth)) || heightAtTarget(camera) / size.height;
-  const x = dot(direction, f.right);
-  const y = dot(direction, f.up);
+  // In perspective what goes away also goes towards the middle of the picture, the more slowly the farther it is.
+  const away = camera.parallel ? 0 : -dot(direction, f.back) / depth;
+  const x = dot(direction, f.right) - away * dot(from, f.right);
+  const y = dot(direction, f.up) - away * dot(from, f.up);
   const seen = Math.hypot(x, y);
   if (seen < 0.2) return -dy * perPixel * Math.sign(dot(direction, f.back) || 1);
-  return ((dx * x - dy * y) / (seen * seen)) * perPixel;
+  const along = ((dx * x - dy * y) / seen) * perPixel;
+  const pace = seen - along * away;
+  return pace > 1e-6 ? along / pace : Math.sign(along) * 1e6 * Math.abs(depth); // else beyond the end of the direction in the picture
 }

@@ -68,13 +68,14 @@ function arrow(app: App, view: View, step: Step, plane: Plane): SVGTemplateResul
     <g class="handle" data-handle tabindex="0" role="slider" aria-label="Plane of ${step.name}" aria-valuenow=${Math.round((100 * dot(normal, sub(plane.origin, middleOf(bounds)))) / (reach / 0.12))}
       aria-valuetext=${plain(along)}
       @pointerdown=${(e: PointerEvent) =>
-        beginDrag(e, () => ({
-          move: (dx, dy, done) => move.drag(scale(normal, placeDraggedAlong(app.state, camera, view.area, plane.origin, normal, dx, dy)), !done),
-        }))}
+        beginDrag(e, () => {
+          const taken = (e.target as Element).closest(".tip") ? add(plane.origin, scale(normal, reach)) : plane.origin;
+          return { move: (dx, dy, done) => move.drag(scale(normal, placeDraggedAlong(app.state, camera, view.area, taken, normal, dx, dy)), !done) };
+        })}
       @keydown=${(e: KeyboardEvent) => keyed(e, (by) => move.key(scale(normal, by * reach * 0.1)))}>
       <line x1=${p[0]} y1=${p[1]} x2=${q[0]} y2=${q[1]} class="handle-stem" />
       <circle cx=${p[0]} cy=${p[1]} r="12" class="handle-hit" /><circle cx=${p[0]} cy=${p[1]} r="5" class="handle-dot" />
-      <circle cx=${q[0]} cy=${q[1]} r="14" class="handle-hit" /><circle cx=${q[0]} cy=${q[1]} r="6" class="handle-dot" />
+      <g class="tip"><circle cx=${q[0]} cy=${q[1]} r="14" class="handle-hit" /><circle cx=${q[0]} cy=${q[1]} r="6" class="handle-dot" /></g>
     </g>`;
 }
 

@@ -94,12 +94,19 @@ describe("a picture that is stretched", () => {
   });
 
   it("moves a plane along its normal as far as the hand goes along that", () => {
-    const c = camera({ parallel: true, position: [10, -80, 30], target: [2, 0, -1], height: 50 });
     const place: Vec3 = [1, 0.2, 0.5], normal: Vec3 = [0, 0.6, 0.8];
-    const at = placeInView(state, c, size, place)!;
-    const end = placeInView(state, c, size, place.map((x, i) => x + normal[i]) as Vec3)!;
-    const times = placeDraggedAlong(state, c, size, place, normal, 0.3 * (end[0] - at[0]), 0.3 * (end[1] - at[1]));
-    expect(times).toBeCloseTo(0.3, 9);
+    for (const parallel of [false, true])
+      for (const way of [-0.5, 0.3, 0.8]) {
+        const c = camera({ parallel, position: [10, -80, 30], target: [2, 0, -1], height: 50 });
+        const at = placeInView(state, c, size, place)!;
+        const end = placeInView(state, c, size, place.map((x, i) => x + way * normal[i]) as Vec3)!;
+        expect(placeDraggedAlong(state, c, size, place, normal, end[0] - at[0], end[1] - at[1])).toBeCloseTo(way, 9);
+      }
+  });
+
+  it("goes on without end where the hand is beyond the end of a direction in the picture", () => {
+    const c = camera({ position: [0, -10, 3], target: [0, 0, 0] });
+    expect(draggedAlong(c, size, [0, 0, 0], [0, 1, 0], 0, -1000)).toBeGreaterThan(1e6);
   });
 });
 
