@@ -10,14 +10,14 @@ using sg::test::Window;
 namespace {
 
 // u from 0 to 1 along x, and w = 10 + 5 u, which has no steep place anywhere.
-Json plane_of(const std::string& second) {
+Json plane_of(const std::string& second, const std::string& more = "") {
   const auto session = test::opened(
       "sightglass: 1\nsteps:\n  ball: {sphere: {size: 25, radius: 0.7692307692307693}}\n  u: {calc: {expr: (x+1)/2, name: u}}\n"
       "  head: {calc: {expr: 10+5*u, name: w}}\nshow:\n  - {volume: {field: u, opacity: 0.3, second: " +
       second + "}, of: head}\n");
   Window window(*session);
   window.next("state");
-  window.say("{'do':'plane','n':3,'show':0}");
+  window.say("{'do':'plane','n':3,'show':0" + more + "}");
   return window.next("plane");
 }
 
@@ -45,4 +45,15 @@ TEST_CASE("plane: over the gradient it stays as it was") {
   const Json plane = plane_of("gradient");
   CHECK(plane["second"][0].number() == 0);
   CHECK(plane["second"][1].number() == Approx(0.5).epsilon(0.01));
+}
+
+TEST_CASE("plane: at a place it tells the value and what stands on the second axis there") {
+  const Json steep = plane_of("gradient", ",'at':[0.25,0.1,-0.3]")["at"];
+  CHECK(steep[0].number() == Approx(0.625));
+  CHECK(steep[1].number() == Approx(0.5));
+  const Json other = plane_of("w", ",'at':[0.25,0.1,-0.3]")["at"];
+  CHECK(other[0].number() == Approx(0.625));
+  CHECK(other[1].number() == Approx(13.125));
+  CHECK(plane_of("gradient", ",'at':[3,0,0]")["at"].is_null());
+  CHECK(plane_of("curvature", ",'at':[0,0,0]")["at"].is_null());
 }

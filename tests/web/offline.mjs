@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Offline pages in a browser without a graphics card: that they ask no network for anything, look as the PNG of the same words does, turn,
-// take another opacity, and can be used by everybody. Usage: node tests/web/offline.mjs PROGRAM [DATA]. Without a browser or playwright-core all is skipped, and says
-// so. Times are printed and never judged: they are those of this machine.
+// take another opacity, and can be used by everybody. Usage: node tests/web/offline.mjs PROGRAM [DATA]. Without a browser or
+// playwright-core all is skipped, and says so. Times are printed and never judged: they are those of this machine.
 import { execFileSync } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync, statSync } from "node:fs";
 import { createRequire } from "node:module";

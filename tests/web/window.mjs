@@ -182,6 +182,18 @@ await test("widgets over value and gradient are drawn, moved and undone", async 
   await andSettle(page, () => page.click("text=Remove all"));
 });
 
+await test("the place that was clicked is marked over value and gradient, too", async () => {
+  await page.mouse.click(middle[0] - 61, middle[1] - 10);
+  await tab("color");
+  const opens = page.locator("section:has(h2:text('Value and gradient')) button").first();
+  if ((await opens.getAttribute("aria-expanded")) !== "true") await opens.click();
+  const mark = page.locator(".plane .marked");
+  await mark.locator("circle").waitFor({ state: "attached" });
+  assert.equal(await mark.locator("circle").getAttribute("cx"), await mark.locator("line").getAttribute("x1"));
+  await mark.scrollIntoViewIfNeeded();
+  await shot(o, page, "plane_mark");
+});
+
 await test("an ellipse is drawn and moved by keys, strokes are painted by pointer and keys, each one step of undo", async () => {
   await tab("color");
   const words = async () => (await page.locator("[aria-label=\"The command line's words\"]").textContent()) ?? "";

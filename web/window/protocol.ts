@@ -224,6 +224,13 @@ export interface PlaneAnswer {
   counts: number[];
 }
 
+/** A place of the data in that plane. */
+export interface PlanePlaceAnswer {
+  is: "plane";
+  n: number;
+  at: [number, number] | null;
+}
+
 export interface HistogramAnswer extends Histogram {
   is: "histogram";
   n: number;
@@ -238,6 +245,7 @@ export type ServerMessage =
   | MeasuresAnswer
   | OverTimeAnswer
   | PlaneAnswer
+  | PlanePlaceAnswer
   | HistogramAnswer
   | { is: "saved"; n: number; url: string; name: string }
   | { is: "proposals"; n: number; list: Proposal[] }

@@ -2,11 +2,12 @@
 // Histograms of fields and of the plane of value and second axis, asked once per revision and kept. A server that does not answer such
 // questions is not asked again.
 import type { App } from "../app";
-import type { Histogram, HistogramAnswer, PlaneAnswer } from "../protocol";
+import type { Histogram, HistogramAnswer, PlaneAnswer, PlanePlaceAnswer } from "../protocol";
 
 export class Histograms {
   private known = new Map<string, Histogram | null>();
   private planes = new Map<string, PlaneAnswer | null>();
+  private places = new Map<string, [number, number] | null>();
   private revision = 0;
   private unknownToServer = false;
   private readonly begins = performance.now() + 3000;
@@ -18,6 +19,7 @@ export class Histograms {
     if (!s || s.revision === this.revision) return;
     this.revision = s.revision;
     this.planes.clear();
+    this.places.clear();
   }
 
   /** The histogram of a step's field, once it is known; asks for it at first. */
@@ -47,6 +49,25 @@ export class Histograms {
       .ask<PlaneAnswer>({ do: "plane", show })
       .then((a) => {
         this.planes.set(key, a);
+        this.app.changed();
+      })
+      .catch(() => undefined);
+    return null;
+  }
+
+  /** Where the place that was clicked in the picture lies in that plane, once it is known. In nodes the data lie elsewhere. */
+  placeInPlane(show: number): [number, number] | null {
+    const shown = this.app.session.shown(show);
+    const position = this.app.probe.pinned?.answer.position;
+    if (!position || !shown || shown.in) return null;
+    const key = `${show} ${shown.transfer?.field} ${shown.words.second} ${this.app.state?.time} ${position}`;
+    const known = this.places.get(key);
+    if (known !== undefined) return known;
+    this.places.set(key, null);
+    this.app.session
+      .ask<PlanePlaceAnswer>({ do: "plane", show, at: position })
+      .then((a) => {
+        this.places.set(key, a.at ?? null);
         this.app.changed();
       })
       .catch(() => undefined);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Two-dimensional transfer functions: widgets over the histogram of value and second axis, and the brush that paints more of them.
 import { icon } from "../icons";
-import { html, nothing, type TemplateResult } from "lit";
+import { html, nothing, svg, type SVGTemplateResult, type TemplateResult } from "lit";
 import { live } from "lit/directives/live.js";
 import { ref } from "lit/directives/ref.js";
 import type { PlaneAnswer } from "../protocol";
@@ -67,6 +67,7 @@ export function planeEditor(c: Curve): TemplateResult {
             x,
           ),
         )}
+        ${mark(c, counts)}
         ${ui.painting.on ? paintArea({ painting: ui.painting, range: c.range, size: [width, height], axis, color: color(), changed: () => c.app.changed(), list: () => now() ?? [], set: drawn }) : nothing}
       </svg>
     </div>
@@ -81,6 +82,20 @@ export function planeEditor(c: Curve): TemplateResult {
     ${ui.painting.on ? brushSize(c) : nothing}
     ${w ? details(c, list, w, set) : html`<p class="quiet">Widgets pick out materials and their borders; they replace the opacity curve.</p>`}
   </div>`;
+}
+
+/** The value that was clicked in the picture, and with what stands on the second axis there the place in the plane. */
+function mark(c: Curve, counts: PlaneAnswer | null): SVGTemplateResult | typeof nothing {
+  const place = c.app.histograms.placeInPlane(c.index);
+  const value = place?.[0] ?? c.app.probe.valueOf(c.transfer.field);
+  const across = value === null ? NaN : (value - c.range[0]) / (c.range[1] - c.range[0]);
+  if (!(across >= 0 && across <= 1)) return nothing;
+  const x = across * width;
+  const up = place && counts ? (place[1] - counts.second[0]) / (counts.second[1] - counts.second[0] || 1) : NaN;
+  // What is steeper than the plane is high stands at its upper edge.
+  const y = (1 - Math.min(1, up)) * height;
+  return svg`<g class="marked"><line x1=${x} x2=${x} y1="0" y2=${height} /><path d="M${x - 4} 0h8l-4 6z" />
+    ${up >= 0 ? svg`<circle cx=${x} cy=${y} r="4.5"><title>The place that was clicked</title></circle>` : nothing}</g>`;
 }
 
 function brushSize(c: Curve): TemplateResult {

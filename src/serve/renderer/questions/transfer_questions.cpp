@@ -2,10 +2,12 @@
 #include "serve/renderer/questions/transfer_questions.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <vector>
 
 #include "base/error.h"
+#include "filter/probe/probe.h"
 #include "scene/choose/volume/derivatives.h"
 #include "scene/show/volume_presets.h"
 #include "serve/renderer/questions/place_values.h"
@@ -58,6 +60,35 @@ std::vector<PlaneSample> samples_of(const VolumeItem& volume, const Field& field
   return samples;
 }
 
+// Value and second axis at a place; the gradient by differences over the width of a cell. Nothing outside, and where more than that is
+// asked.
+Json plane_place(const VolumeItem& volume, const Field& field, SecondAxis axis, const Field* other, Vec3 at, Context& context) {
+  if (axis != SecondAxis::gradient && !other) return {};
+  const Box3 b = volume.data->bounds();
+  const Vec3 size = b.hi - b.lo;
+  const double width = std::cbrt(size.x * size.y * size.z / double(std::max<size_t>(1, volume.data->cell_count())));
+  ProbeAtParams p;
+  p.points = {at.x, at.y, at.z};
+  for (int a = 0; a < 3 && !other; ++a)
+    for (const double side : {-0.5, 0.5}) {
+      Vec3 beside = at;
+      beside[a] += side * width;
+      p.points.insert(p.points.end(), {beside.x, beside.y, beside.z});
+    }
+  const DatasetPtr there = probe_at(volume.data, p, context);
+  const Field* valid = there->fields().find("valid", Association::point);
+  const auto value = [&](const Field& f, int component, size_t i) {
+    const Field* probed = there->fields().find(f.name, Association::point);
+    if (!probed || !valid || valid->array.get(i) == 0) return std::nan("");
+    return component < 0 ? size_at(probed->array, i) : probed->array.get(i, component);
+  };
+  const auto of_field = [&](size_t i) { return value(field, volume.component, i); };
+  double squares = 0;
+  for (size_t a = 0; a < 3 && !other; ++a) squares += std::pow((of_field(2 * a + 2) - of_field(2 * a + 1)) / width, 2);
+  const double second = other ? value(*other, -1, 0) : std::sqrt(squares);
+  return std::isfinite(of_field(0)) && std::isfinite(second) ? numbers({of_field(0), second}) : Json();
+}
+
 }  // namespace
 
 // Looks of a volume that suit the data, each with its reason: the presets, and what the histogram and the boundaries tell.
@@ -102,6 +133,7 @@ Json::Members answer_plane(const Json& q, const PreparedPicture& prepared, Conte
   SecondAxis axis = volume->detail.second;
   const Field* other = axis == SecondAxis::field ? volume->data->fields().find(volume->detail.second_field, volume->association) : nullptr;
   if (axis == SecondAxis::none || (axis == SecondAxis::field && !other)) axis = SecondAxis::gradient;
+  if (q.contains("at")) return {{"at", plane_place(*volume, *field, axis, other, place_of(q["at"], "at"), context)}};
   const Range value = volume->data->range(*field, volume->component);
   const Range second = second_axis_range(volume->data, *field, volume->component, axis, other, context);
   std::vector<uint64_t> counts(columns * rows);
