@@ -110,6 +110,49 @@ export async function scene(test, o, browser) {
     await page.waitForSelector("h2:text-matches('^Node ')", { state: "detached" });
   });
 
+  await test("a node moves by keys, and stands in copies, listed or at points", async () => {
+    await tab("scene");
+    const still = await sum();
+    await andSettle(page, () => page.getByLabel("Add a node", { exact: true }).selectOption({ index: 1 }));
+    await page.waitForSelector("h2:text-matches('^Node ')");
+    const entry = (name) => page.locator(`.panel li:has(button[aria-label='Remove ${name}'])`);
+    const box = (name, word) => entry(name).getByLabel(word, { exact: true });
+    await andSettle(page, () => page.click("button:text-is('+ key')"));
+    await entry("time 0").waitFor();
+    await andSettle(page, () => page.click("button:text-is('+ key')"));
+    await type(box("time 1", "translate x"), "2");
+    assert.equal(await sum(), still, "at the first key it is where it was");
+    const time = page.locator(".panel [data-word=time] input[type=text]").first();
+    await type(time, "1");
+    const moved = await sum();
+    assert.notEqual(moved, still, "at the second one elsewhere");
+    await shots("keys");
+    await type(entry("time 1").locator("[data-word=time] input[type=text]"), "0");
+    await page.waitForSelector("[data-word=time] .problem:has-text('does not come after')");
+    await type(entry("time 1").locator("[data-word=time] input[type=text]"), "1");
+    await andSettle(page, () => page.click("button[aria-label='Remove time 1']"));
+    assert.equal(await sum(), still, "the first key stays");
+    await undo();
+    assert.equal(await sum(), moved);
+
+    await andSettle(page, () => page.click("button:text-is('+ copy')"));
+    await andSettle(page, () => page.click("button:text-is('+ copy')"));
+    await type(box("copy 2", "translate z"), "2.5");
+    const twice = await sum();
+    assert.notEqual(twice, moved, "two of them");
+    await shots("copies");
+    const points = page.getByLabel(/^Copies of .* at the points of$/);
+    await andSettle(page, () => points.selectOption({ index: 1 }));
+    await page.locator("[data-word=vectors]").waitFor();
+    assert.equal(await page.locator("button[aria-label^='Remove copy']").count(), 0, "points take the place of the list");
+    await undo();
+    assert.equal(await sum(), twice);
+    await andSettle(page, () => page.locator("button[aria-label^='Remove node']").click());
+    await page.waitForSelector("h2:text-matches('^Node ')", { state: "detached" });
+    for (let i = 0; i < 2; i++) await undo();
+    await andSettle(page, () => page.locator("button[aria-label^='Remove node']").click());
+  });
+
   await test("colours are picked, as a word and as three numbers", async () => {
     await tab("look");
     await page.locator(".item-name").first().click();

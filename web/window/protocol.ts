@@ -74,6 +74,9 @@ export interface SceneNode {
   copies: number;
   copies_of: string; // the step at whose points the copies are; "" for none
   keys: number;
+  copy_words: Words[]; // of the first ones
+  points_words: Words; // of copies at points
+  key_words: Words[];
 }
 
 export interface State {
@@ -109,6 +112,8 @@ export type Edit =
   | { add: "show"; kind: string; of: string; in?: string; set: Words }
   | { add: "light" | "environment"; kind: string; set: Words }
   | { add: "node"; name: string; in: string; set: Words }
+  | { add: "key" | "copy"; to: string; set: Words }
+  | { add: "points"; to: string; of: string; set: Words }
   | { move: string; to: string }
   | { remove: string; join?: string[] };
 

@@ -14,13 +14,24 @@ Json light_json(const LightText& light) {
   return Json(Json::Members{{"kind", text(to_lower(light.kind))}, {"words", words_json(light.words)}});
 }
 
+// The words of so many entries as a person changes one by one; more are counted alone.
+Json entries_json(const std::vector<std::vector<std::string>>& entries) {
+  constexpr size_t most = 100;
+  std::vector<Json> list;
+  for (size_t i = 0; i < entries.size() && i < most; ++i) list.push_back(words_json(entries[i]));
+  return Json(std::move(list));
+}
+
 Json node_json(const PipelineFile& file, const PipelineFile::Node& n) {
   return Json(Json::Members{{"name", text(n.name)},
                             {"in", text(n.parent < 0 ? std::string() : file.scene[size_t(n.parent)].name)},
                             {"words", words_json(n.words)},
                             {"copies", Json(uint64_t(n.instances.size()))},
                             {"copies_of", text(n.at)},
-                            {"keys", Json(uint64_t(n.keys.size()))}});
+                            {"keys", Json(uint64_t(n.keys.size()))},
+                            {"copy_words", entries_json(n.instances)},
+                            {"points_words", words_json(n.at_words)},
+                            {"key_words", entries_json(n.keys)}});
 }
 
 }  // namespace

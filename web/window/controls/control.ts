@@ -20,7 +20,7 @@ export function idOf(c: Context): string {
 
 const unitOf = (c: Context): string => {
   const u = c.schema.unit;
-  if (!u || u === "file" || u === "new file" || isColor(c.schema)) return "";
+  if (!u || u === c.name || u === "file" || u === "new file" || isColor(c.schema)) return "";
   if (u === "@field") return fieldOf(c)?.unit ?? "";
   if (u === "length" || u === "world length") return c.app.state?.length_unit ?? "";
   return u === "deg" ? "°" : u.startsWith("@") ? "" : u;

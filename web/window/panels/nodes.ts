@@ -5,6 +5,7 @@ import type { App } from "../app";
 import { named } from "../catalog";
 import { form } from "../controls/form";
 import { icon } from "../icons";
+import { nodeEntries } from "./node_entries";
 import type { Edit, SceneNode, Shown, State } from "../protocol";
 
 const begin = ["translate", "scale", "angle", "axis", "center", "euler", "order", "visible"];
@@ -41,7 +42,7 @@ function details(app: App, s: State, n: SceneNode): TemplateResult {
     <div class="row"><h2 class="grow">Node ${n.name}</h2>${addNode(app, s, n.name)}</div>
     ${facts ? html`<p class="facts">${facts}</p>` : nothing}
     ${problem ? html`<p class="problem" role="alert">${problem}</p>` : nothing}
-    ${entry ? form(app, { at, entry, begin, without: n.keys > 0 ? [] : ["time"] }) : nothing}
+    ${entry ? form(app, n.keys > 0 ? { at, entry, begin: ["time", ...begin] } : { at, entry, begin, without: ["time"] }) : nothing}
     <div class="row"><h3 class="grow">Shown here</h3>${putHere(app, s, n)}</div>
     ${inside.length === 0 ? html`<p class="quiet">Nothing yet.</p>` : nothing}
     <ul class="list">${inside.map(
@@ -49,6 +50,7 @@ function details(app: App, s: State, n: SceneNode): TemplateResult {
         <button class="grow item-name" title="How it looks" @click=${() => { app.select(`show/${i}`); app.open("look"); }}><span>${x.kind}</span><span class="quiet">of ${x.of}</span></button>
         <button class="small" ?disabled=${!s.may_edit} aria-label="Take ${textOf(x)} out of ${n.name}" @click=${() => app.session.edit([{ move: `show/${i}`, to: "" }])}>Take out</button></li>`,
     )}</ul>
+    ${nodeEntries(app, s, n)}
   </section>`;
 }
 

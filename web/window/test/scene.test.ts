@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from "vitest";
 import { hexOf, hexOfNumbers, knownHex, numbersOfHex } from "../controls/color_text";
+import { nextKey, toldOf } from "../panels/node_entries";
 import { freeName } from "../panels/nodes";
 import type { SceneNode, Shown, State, Step } from "../protocol";
 import { selectionAfter } from "../session/selection";
 import { wordsAt } from "../session/words_at";
 
 const light = { kind: "sphere", words: {} };
-const node = (name: string, parent = ""): SceneNode => ({ name, in: parent, words: {}, copies: 0, copies_of: "", keys: 0 });
+const node = (name: string, parent = ""): SceneNode => ({ name, in: parent, words: {}, copies: 0, copies_of: "", keys: 0, copy_words: [], points_words: {}, key_words: [] });
 const show: Shown = { kind: "surface", of: "skin", words: {} };
 const state = (parts: Partial<State>): State => ({ steps: [] as Step[], show: [show], lights: [], environment: null, scene: [], picture: {}, ...parts }) as State;
 
@@ -32,12 +33,20 @@ it("words are found by their place", () => {
     steps: [{ name: "skin", operation: "contour", words: { values: "1" }, from: [] }],
     lights: [light, { kind: "sun", words: { haze: "2" } }],
     environment: { kind: "sky", words: { elevation: "7" } },
-    scene: [{ ...node("a/b c"), words: { angle: "5" } }],
+    scene: [{ ...node("a/b c"), words: { angle: "5" }, key_words: [{}, { time: "1" }], copy_words: [{ scale: "2" }], points_words: { size: "r" } }],
     picture: { title: "T" },
   });
-  const places: [string, object][] = [["show/0", { color: "red" }], ["steps/skin", { values: "1" }], ["lights/1", { haze: "2" }], ["environment", { elevation: "7" }], ["scene/a/b c", { angle: "5" }], ["picture", { title: "T" }]];
+  const places: [string, object][] = [["show/0", { color: "red" }], ["steps/skin", { values: "1" }], ["lights/1", { haze: "2" }], ["environment", { elevation: "7" }], ["scene/a/b c", { angle: "5" }], ["keys/1/a/b c", { time: "1" }], ["copies/0/a/b c", { scale: "2" }], ["points/a/b c", { size: "r" }], ["picture", { title: "T" }]];
   for (const [at, words] of places) expect(wordsAt(s, at), at).toEqual(words);
-  for (const at of ["show/1", "steps/none", "lights/2", "scene/none"]) expect(wordsAt(s, at), at).toEqual({});
+  for (const at of ["show/1", "steps/none", "lights/2", "scene/none", "keys/2/a/b c", "keys/0/none", "points/none"]) expect(wordsAt(s, at), at).toEqual({});
+});
+
+it("a key follows the last one at the pace of the keys", () => {
+  expect(nextKey([])).toEqual({ time: "0" });
+  expect(nextKey([{ angle: "5" }])).toEqual({ angle: "5", time: "1" });
+  expect(nextKey([{ time: "1" }, { time: "1.5", angle: "9" }])).toEqual({ time: "2", angle: "9" });
+  expect(nextKey([{ time: "{t}" }]).time).toBe("1");
+  expect(toldOf({ time: "1", angle: "90", axis: "0,0,1" })).toBe("angle 90, axis 0,0,1");
 });
 
 it("a node gets a name that no other has", () => {

@@ -11,7 +11,8 @@ namespace sg::serve {
 
 /// Why an edit cannot be, and at which control.
 struct EditMistake {
-  std::string at;    ///< "show/0", "steps/contour1", "picture", "lights/0", "environment", "scene/lid"; "" where it belongs to none
+  std::string
+      at;  ///< "show/0", "steps/contour1", "picture", "lights/0", "environment", "scene/lid", "keys/0/lid"; "" where it belongs to none
   std::string word;  ///< the parameter; "" where it belongs to none
   std::string text;
 };

@@ -11,6 +11,7 @@
 #include "base/text/utf8.h"
 #include "pipeline/catalog/catalog.h"
 #include "pipeline/picture/picture.h"
+#include "serve/session/edits/entry_edits.h"
 #include "serve/session/edits/light_edits.h"
 #include "serve/session/edits/node_edits.h"
 #include "serve/session/edits/step_edits.h"
@@ -22,10 +23,11 @@ namespace {
 
 constexpr size_t most_edits = 200, most_shows = 250;
 
-enum class Addition { step, show, light, environment, node };
+enum class Addition { step, show, light, environment, node, key, copy, points };
 constexpr auto enum_words(Addition) {
   using enum Addition;
-  return std::array{Word{"step", step}, Word{"show", show}, Word{"light", light}, Word{"environment", environment}, Word{"node", node}};
+  return std::array{Word{"step", step}, Word{"show", show}, Word{"light", light}, Word{"environment", environment},
+                    Word{"node", node}, Word{"key", key},   Word{"copy", copy},   Word{"points", points}};
 }
 
 class Editing {
@@ -46,6 +48,9 @@ class Editing {
       case Addition::light: return add_light(file_, kind, edit["set"], mistakes_);
       case Addition::environment: return put_environment(file_, kind, edit["set"], mistakes_);
       case Addition::node: return add_node(file_, edit, mistakes_);
+      case Addition::key: return add_entry(file_, EntryOf::key, edit, mistakes_);
+      case Addition::copy: return add_entry(file_, EntryOf::copy, edit, mistakes_);
+      case Addition::points: return add_entry(file_, EntryOf::points, edit, mistakes_);
     }
   }
 
@@ -80,6 +85,8 @@ class Editing {
         set_light(file_, at, words, mistakes_);
       } else if (is_node_place(at)) {
         set_node(file_, at, words, mistakes_);
+      } else if (is_entry_place(at)) {
+        set_entry(file_, at, words, mistakes_);
       } else {
         mistake(at, "", "there is nothing there to set");
       }
@@ -95,6 +102,7 @@ class Editing {
     }
     if (is_light_place(at)) return remove_light(file_, at, mistakes_);
     if (is_node_place(at)) return remove_node(file_, at, mistakes_);
+    if (is_entry_place(at)) return remove_entry(file_, at, mistakes_);
     remove_step(file_, at, join, mistakes_);
   }
 

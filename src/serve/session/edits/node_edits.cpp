@@ -35,18 +35,6 @@ void renumber(PipelineFile& file, const std::vector<int>& numbers) {
   for (PipelineFile::Show& s : file.show) change(s.node);
 }
 
-// The node by itself; its words together are checked as a pipeline's are. What waits for the time is looked at when there is one.
-void check_alone(PipelineFile::Node node) {
-  const auto waits = [](const std::vector<std::string>& words) { return std::any_of(words.begin(), words.end(), has_time_mark); };
-  if (waits(node.words) || std::any_of(node.keys.begin(), node.keys.end(), waits) ||
-      std::any_of(node.instances.begin(), node.instances.end(), waits))
-    return;
-  PipelineFile alone;
-  node.parent = -1, node.line = 0, node.at.clear(), node.at_words.clear();
-  alone.scene.push_back(std::move(node));
-  stated_scene(alone);
-}
-
 }  // namespace
 
 bool is_node_place(const std::string& at) { return at.starts_with(node_place); }
@@ -55,6 +43,17 @@ std::optional<int> node_named(const PipelineFile& file, const std::string& name)
   if (name.empty()) return -1;
   const auto it = std::find_if(file.scene.begin(), file.scene.end(), [&](const auto& n) { return n.name == name; });
   return it == file.scene.end() ? std::nullopt : std::optional(int(it - file.scene.begin()));
+}
+
+void check_node(PipelineFile::Node node) {
+  const auto waits = [](const std::vector<std::string>& words) { return std::any_of(words.begin(), words.end(), has_time_mark); };
+  if (waits(node.words) || std::any_of(node.keys.begin(), node.keys.end(), waits) ||
+      std::any_of(node.instances.begin(), node.instances.end(), waits))
+    return;
+  PipelineFile alone;
+  node.parent = -1, node.line = 0, node.at.clear(), node.at_words.clear();
+  alone.scene.push_back(std::move(node));
+  stated_scene(alone);
 }
 
 void set_node(PipelineFile& file, const std::string& at, const Json& set, std::vector<EditMistake>& mistakes) {
@@ -67,7 +66,7 @@ void set_node(PipelineFile& file, const std::string& at, const Json& set, std::v
   set_words(at, set, schema, node.words, mistakes);
   if (mistakes.size() > before) return;
   try {
-    check_alone(node);
+    check_node(node);
   } catch (const Error& e) {
     mistakes.push_back(mistake_of_set(at, set, e.what()));
   }

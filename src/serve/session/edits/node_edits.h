@@ -12,6 +12,9 @@ bool is_node_place(const std::string& at);
 /// The number of a node; -1 for "", where the data lie, and nothing where no node has that name.
 std::optional<int> node_named(const PipelineFile& file, const std::string& name);
 
+/// The node by itself: throws Error(usage) for words that cannot be together. Those that wait for the time of a film are left out.
+void check_node(PipelineFile::Node node);
+
 void set_node(PipelineFile& file, const std::string& at, const Json& set, std::vector<EditMistake>& mistakes);
 /// "name", which may be left open, and the node "in" which it stands, with "set".
 void add_node(PipelineFile& file, const Json& edit, std::vector<EditMistake>& mistakes);
