@@ -148,4 +148,6 @@ TEST_CASE("step edits: a session takes them back, and tells what the data do not
   const Json errors = window.next("refused")["errors"];
   CHECK(errors[0]["at"].text() == "steps/join_fields1");
   CHECK(errors[0]["text"].text().find("join_fields") != std::string::npos);
+  window.say("{'do':'undo','n':50}");  // of what was made, not of what was refused
+  CHECK(state_by(50)["steps"].size() == 5);
 }

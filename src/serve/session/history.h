@@ -28,8 +28,12 @@ class History {
     }
     now_ = std::move(next), after_.clear();
   }
-  /// The same pipeline with what was chosen from the data.
-  void complete(PipelineFile completed) { now_ = std::move(completed); }
+  /// The same pipeline with what was chosen from the data, or the one before where the data do not allow it: then there is nothing to be
+  /// taken back.
+  void complete(PipelineFile completed) {
+    now_ = std::move(completed);
+    if (!before_.empty() && before_.back() == now_) before_.pop_back(), dragged_.clear();
+  }
   void undo() { move(before_, after_); }
   void redo() { move(after_, before_); }
 
