@@ -2,6 +2,10 @@
 // The graph of a pipeline as a window edits it: what steps take, steps between others, steps that go.
 #include "serve/session/edits/edits.h"
 
+#include <array>
+#include <random>
+
+#include "pipeline/picture/picture.h"
 #include "serve/support/looking.h"
 #include "support/test.h"
 
@@ -122,6 +126,52 @@ TEST_CASE("step edits: what hung on a step that goes hangs on its input") {
   refused("{'remove':'steps/skin'}", "steps/skin", "'smooth1' takes it");
   refused("{'remove':'steps/skin','join':['steps/cut']}", "steps/skin", "'steps/cut' does not take it");
   refused("{'remove':'steps/ball','join':['steps/skin','steps/cut']}", "steps/ball", "takes no step");
+}
+
+TEST_CASE("step edits: what is shown may be of another step") {
+  const PipelineFile file = good("{'at':'show/0','of':'cut','set':{'color':'red'}}").file;
+  CHECK(file.show.at(0).of == "cut");
+  CHECK(file.show.at(0).words == Names{"color=red"});
+  refused("{'at':'show/0','of':'ghost'}", "show/0", "no step 'ghost'");
+  refused("{'at':'show/9','of':'cut'}", "show/9", "nothing there");
+}
+
+// Whatever is asked for, wise or not: what is accepted can be built, and is read back from its file.
+TEST_CASE("step edits: thousands of random edits leave a pipeline that can be built") {
+  std::mt19937 random(7);
+  const auto below = [&](size_t n) { return size_t(random() % n); };
+  PipelineFile file = test::parsed(forked);
+  int made = 0, refusals = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const auto name = [&] { return file.steps[below(file.steps.size())].name; };
+    const auto list = [](const Names& names, const std::string& in_front) {
+      std::string text;
+      for (const std::string& n : names) text += (text.empty() ? "\"" : ",\"") + in_front + n + "\"";
+      return "[" + text + "]";
+    };
+    Names some, takers;
+    for (size_t n = below(4); n > 0; --n) some.push_back(name());
+    const std::string one = name(), operation = std::array{"sphere", "contour", "append", "slice", "probe"}[below(5)];
+    for (const auto& s : file.steps)
+      if (!some.empty() && std::find(s.from.begin(), s.from.end(), some[0]) != s.from.end() && below(2)) takers.push_back(s.name);
+    const bool full = file.steps.size() > 30;
+    const std::string edit = full || below(3) == 0 ? "{\"remove\":\"steps/" + one + "\",\"join\":" + list(some, "steps/") + "}"
+                             : below(2)            ? "{\"at\":\"steps/" + one + "\",\"from\":" + list(some, "") + "}"
+                                                   : "{\"add\":\"step\",\"operation\":\"" + operation + "\",\"from\":" + list(some, "") +
+                                              ",\"before\":" + list(takers, "steps/") + ",\"show\":false}";
+    std::vector<EditMistake> mistakes;
+    PipelineFile next = edited(file, parse_json("[" + edit + "]", "edits"), mistakes);
+    if (!mistakes.empty() || next.steps.empty()) {
+      ++refusals;
+      continue;
+    }
+    ++made;
+    REQUIRE_NOTHROW(build_graph(next));
+    if (i % 50 == 0) REQUIRE(parse_pipeline(emit_pipeline(next), "", picture_vocabulary()) == next);
+    file = std::move(next);
+  }
+  CHECK(made > 300);
+  CHECK(refusals > 500);
 }
 
 TEST_CASE("step edits: a session takes them back, and tells what the data do not allow at the step") {

@@ -116,6 +116,21 @@ export async function wiring(test, o, browser) {
     assert.doesNotMatch(await text(), /gaussian_smooth1/);
     await tab("steps");
     assert.equal(await page.locator(".panel .problem").count(), 0);
+  });
+
+  await test("what is shown may be of another step, with the same words", async () => {
+    await tab("look");
+    await page.locator(".item-name:has-text('of contour1')").first().click();
+    const of = page.getByLabel("Step that is shown");
+    const before = (await seen(page)).sum;
+    await andSettle(page, () => of.selectOption("mirror1"));
+    await page.waitForSelector(".item-name:has-text('of mirror1')");
+    assert.notEqual((await seen(page)).sum, before);
+    await noSeriousFindings(page, "look");
+    await shot(o, page, "shown_of");
+    await andSettle(page, () => page.click("button[aria-label=Undo]"));
+    await page.waitForSelector(".item-name:has-text('of contour1')");
+    assert.equal((await seen(page)).sum, before);
     assert.deepEqual(page.faults, []);
   });
 

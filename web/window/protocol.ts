@@ -108,6 +108,7 @@ export interface State {
 export type Edit =
   | { at: string; set: Record<string, string | null> }
   | { at: string; from: string[] }
+  | { at: string; of: string }
   | { add: "step"; operation: string; from: string[]; before?: string[]; set: Words; show?: boolean }
   | { add: "show"; kind: string; of: string; in?: string; set: Words }
   | { add: "light" | "environment"; kind: string; set: Words }

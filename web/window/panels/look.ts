@@ -2,6 +2,7 @@
 // The tab of what is shown: each way to show with its controls, and the words of the picture.
 import { icon } from "../icons";
 import { html, nothing, type TemplateResult } from "lit";
+import { live } from "lit/directives/live.js";
 import type { App } from "../app";
 import { showEntry } from "../catalog";
 import { form } from "../controls/form";
@@ -25,7 +26,10 @@ export function lookPanel(app: App): TemplateResult {
     </section>
     ${shown && entry
       ? html`<section>
-          <div class="row"><h2 class="grow">${shown.kind} of ${shown.of}</h2>
+          <div class="row"><h2 class="grow">${shown.kind} of</h2>
+            <select aria-label="Step that is shown" ?disabled=${!s.may_edit} .value=${live(shown.of)} @change=${(e: Event) => app.session.edit([{ at: `show/${index}`, of: (e.target as HTMLSelectElement).value }])}>
+              ${s.steps.map((x) => html`<option value=${x.name} ?selected=${x.name === shown.of}>${x.name}</option>`)}
+            </select>
             <select aria-label="Way to show ${shown.of}" @change=${(e: Event) => changeKind(app, index, (e.target as HTMLSelectElement).value)}>
               ${app.catalog.show.map((k) => html`<option value=${k.name} ?selected=${k.name === shown.kind}>as ${k.name}</option>`)}
             </select></div>

@@ -67,7 +67,15 @@ class Editing {
 
   void change(const std::string& at, const Json& edit) {
     if (edit.contains("from")) connect_step(file_, at, edit["from"], mistakes_);
-    if (edit.contains("set") || !edit.contains("from")) set(at, edit["set"]);
+    if (edit.contains("of")) show_other(at, bytes_of_text(edit["of"].text()));
+    if (edit.contains("set") || !(edit.contains("from") || edit.contains("of"))) set(at, edit["set"]);
+  }
+
+  void show_other(const std::string& at, const std::string& step) {
+    PipelineFile::Show* show = show_at(at);
+    if (!show) return mistake(at, "", "there is nothing there that shows a step");
+    if (!step_named(file_, step)) return mistake(at, "", fmt::format("there is no step '{}'", step));
+    show->of = step;
   }
 
   void set(const std::string& at, const Json& words) {
