@@ -37,4 +37,4 @@ const onKey = (act: () => void) => (e: KeyboardEvent): void => {
   act();
 };
 
-const clip = (s: string): string => (s.length > 14 ? `${s.slice(0, 13)}…` : s);
+const clip = (s: string): string => (s.length > 13 ? `${s.slice(0, 12)}…` : s);

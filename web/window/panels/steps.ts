@@ -63,13 +63,15 @@ function details(app: App, s: Step): TemplateResult {
   const input = s.from[0] ?? s.name;
   const takers = takersOf(app.state!, s.name);
   return html`<section>
-    <div class="row"><h2 class="grow">${s.name}</h2>
+    <div class="row"><h2 class="grow clipped" title=${s.name}>${s.name}</h2>
+      <button class="icon small" aria-label="Remove ${s.name}" title=${s.from.length > 0 && takers.length > 0 ? `Remove; what takes it takes ${s.from[0]}` : "Remove"}
+        ?disabled=${!app.state!.may_edit || !canGo(app.state!, s)} @click=${() => app.session.edit([removal(app.state!, s)])}>${icon("close")}</button>
+    </div>
+    <div class="row">
       <button class="small" title="Add an operation that takes this step" ?disabled=${!app.state!.may_edit} @click=${() => app.commands.run("add")}>+ after</button>
       <button class="small" title="Insert an operation between this step and what takes it" ?disabled=${!app.state!.may_edit || takers.length === 0}
         @click=${() => app.insert(s.name, takers.map((t) => t.place))}>+ between</button>
       <button class="small" @click=${() => app.open("table")}>Table</button>
-      <button class="icon small" aria-label="Remove ${s.name}" title=${s.from.length > 0 && takers.length > 0 ? `Remove; what takes it takes ${s.from[0]}` : "Remove"}
-        ?disabled=${!app.state!.may_edit || !canGo(app.state!, s)} @click=${() => app.session.edit([removal(app.state!, s)])}>${icon("close")}</button>
     </div>
     ${app.session.edits.problem(at, "") ? html`<p class="problem" role="alert">${app.session.edits.problem(at, "")}</p>` : nothing}
     <p class="quiet">${entry?.sentence ?? s.operation}</p>

@@ -486,7 +486,7 @@ const C=(t,e)=>[t[0]+e[0],t[1]+e[1],t[2]+e[2]],T=(t,e)=>[t[0]-e[0],t[1]-e[1],t[2
     transform="translate(${s} ${n})" @click=${()=>t.select(`steps/${e.name}`)} @keydown=${Pn(()=>t.select(`steps/${e.name}`))}>
     <rect width=${B.box} height=${B.tall} rx="6" /><text x=${B.box/2} y="15">${Ts(e.name)}</text>
     <text class="quiet" x=${B.box/2} y="29">${Ts(e.operation===e.name?e.kind??"":e.operation)}</text></g>`}function wl(t,e){const s=()=>t.insert(e.from,[`steps/${e.to}`]);return v`<g class="insert" tabindex="0" role="button" aria-label="Insert between ${e.from} and ${e.to}" transform="translate(${e.middle[0]} ${e.middle[1]})"
-    @click=${s} @keydown=${Pn(s)}><title>Insert between ${e.from} and ${e.to}</title><circle class="hit" r="10" /><circle r="6" /><path d="M-3 0h6M0 -3v6" /></g>`}const Pn=t=>e=>{e.key!=="Enter"&&e.key!==" "||(e.preventDefault(),t())},Ts=t=>t.length>14?`${t.slice(0,13)}…`:t;function vl(t,e,s){const n=da(s,e.from);if(n.length===0)return f;const i=t.state,o=ha(i.steps,e.name),a=(c,r)=>{r!==n[c].takes&&t.session.edit([{at:`steps/${e.name}`,from:ua(e.from,c,r)}])},l=(c,r)=>{const d=`takes-${e.name}-${r}`.replace(/[^\w-]/g,"-"),u=r===0?"Takes":c.takes===""&&c.optional?"Further input":`Input ${r+1}`;return h`<div class="control" data-input=${r}>
+    @click=${s} @keydown=${Pn(s)}><title>Insert between ${e.from} and ${e.to}</title><circle class="hit" r="10" /><circle r="6" /><path d="M-3 0h6M0 -3v6" /></g>`}const Pn=t=>e=>{e.key!=="Enter"&&e.key!==" "||(e.preventDefault(),t())},Ts=t=>t.length>13?`${t.slice(0,12)}…`:t;function vl(t,e,s){const n=da(s,e.from);if(n.length===0)return f;const i=t.state,o=ha(i.steps,e.name),a=(c,r)=>{r!==n[c].takes&&t.session.edit([{at:`steps/${e.name}`,from:ua(e.from,c,r)}])},l=(c,r)=>{const d=`takes-${e.name}-${r}`.replace(/[^\w-]/g,"-"),u=r===0?"Takes":c.takes===""&&c.optional?"Further input":`Input ${r+1}`;return h`<div class="control" data-input=${r}>
       <div class="control-head"><label for=${d}>${u}</label></div>
       <div class="control-body"><select id=${d} ?disabled=${!i.may_edit} .value=${q(c.takes)} @change=${p=>a(r,p.target.value)}>
         ${c.optional||c.takes===""?h`<option value="" ?selected=${c.takes===""}>nothing</option>`:f}
@@ -512,13 +512,15 @@ const C=(t,e)=>[t[0]+e[0],t[1]+e[1],t[2]+e[2]],T=(t,e)=>[t[0]-e[0],t[1]-e[1],t[2
       aria-label="Show ${e.name}" ?disabled=${!t.state.may_edit}
       @click=${()=>t.session.edit(i>=0?[{remove:`show/${i}`}]:[{add:"show",kind:xl(e),of:e.name,set:{}}])}>${M(i>=0?"eye":"hidden")}</button>
   </li>`}function xl(t){return t.kind==="points"?"points":t.kind==="uniform"||t.kind==="rectilinear"?"volume":/lines$/.test(t.operation)?"lines":"surface"}function Ml(t,e){const s=In(t.catalog,e.operation),n=`steps/${e.name}`,i=e.from[0]??e.name,o=ut(t.state,e.name);return h`<section>
-    <div class="row"><h2 class="grow">${e.name}</h2>
+    <div class="row"><h2 class="grow clipped" title=${e.name}>${e.name}</h2>
+      <button class="icon small" aria-label="Remove ${e.name}" title=${e.from.length>0&&o.length>0?`Remove; what takes it takes ${e.from[0]}`:"Remove"}
+        ?disabled=${!t.state.may_edit||!fa(t.state,e)} @click=${()=>t.session.edit([pa(t.state,e)])}>${M("close")}</button>
+    </div>
+    <div class="row">
       <button class="small" title="Add an operation that takes this step" ?disabled=${!t.state.may_edit} @click=${()=>t.commands.run("add")}>+ after</button>
       <button class="small" title="Insert an operation between this step and what takes it" ?disabled=${!t.state.may_edit||o.length===0}
         @click=${()=>t.insert(e.name,o.map(a=>a.place))}>+ between</button>
       <button class="small" @click=${()=>t.open("table")}>Table</button>
-      <button class="icon small" aria-label="Remove ${e.name}" title=${e.from.length>0&&o.length>0?`Remove; what takes it takes ${e.from[0]}`:"Remove"}
-        ?disabled=${!t.state.may_edit||!fa(t.state,e)} @click=${()=>t.session.edit([pa(t.state,e)])}>${M("close")}</button>
     </div>
     ${t.session.edits.problem(n,"")?h`<p class="problem" role="alert">${t.session.edits.problem(n,"")}</p>`:f}
     <p class="quiet">${s?.sentence??e.operation}</p>
