@@ -63,6 +63,7 @@ export function answer(m, pipeline) {
     case "histogram":
       return { is: "histogram", range: [a, b], counts: Array.from({ length: 64 }, (_, i) => Math.round(1000 * Math.exp(-((i - 20) ** 2) / 60))) };
     case "plane": {
+      if (m.at) return { is: "plane", at: [a + 0.3 * (b - a), (b - a) / 10] };
       const [w, h] = [64, 48];
       const counts = [];
       for (let j = 0; j < h; j++) for (let i = 0; i < w; i++) counts.push(Math.round(4000 * Math.exp(-((i - 10) ** 2 + j * j * 4) / 60) + 800 * Math.exp(-((((i - 30) / 16) ** 2 + (j - 30) / 20) ** 2) * 9)));
