@@ -5,7 +5,9 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <future>
 #include <thread>
+#include <utility>
 
 #include "base/error.h"
 #include "pipeline/picture/picture.h"
@@ -77,6 +79,28 @@ TEST_CASE("workers: pictures by paths come on the way, and end as in this proces
   CHECK(there.told == here.told);
   REQUIRE_FALSE(told.empty());
   CHECK(told[0].find("paths a pixel") != std::string::npos);
+}
+
+TEST_CASE("workers: what moves is drawn while an exact picture is") {
+  PipelineFile file = pipeline();
+  file.picture = {"integrator=path", "noise=0.0001", "paths=1000000"};  // an hour
+  Context context, exact_context;
+  WorkerRenderer worker(options());
+  worker.load(file, context);
+  std::promise<void> begun;
+  std::thread exact([&] {
+    bool first = true;
+    const OnFiner on_finer = [&](const DrawnView&) {
+      if (std::exchange(first, false)) begun.set_value();
+    };
+    CHECK_THROWS_AS(worker.draw(request(), on_finer, exact_context), Error);
+  });
+  begun.get_future().wait();
+  DrawRequest moving = request();
+  moving.view = 1, moving.quality = Quality::moving;
+  CHECK(worker.draw(moving, context).type == "image/jpeg");
+  exact_context.cancel();
+  exact.join();
 }
 
 TEST_CASE("workers: errors and cancelling pass between the processes") {

@@ -195,7 +195,7 @@ DrawnView LocalRenderer::draw_whole(const PreparedPicture& prepared, const State
   planes->seen = std::move(picture.seen), planes->width = stated.width, planes->area = area;
   planes->projection = make_projection(panel.camera, int(area.width), int(area.height));
   const std::lock_guard lock(mutex_);
-  planes_[request.view] = planes;
+  if (&loaded_->prepared == &prepared) planes_[request.view] = planes;  // else something else was loaded meanwhile
   return drawn;
 }
 

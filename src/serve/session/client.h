@@ -26,9 +26,15 @@ struct WantedView {
   Quality next = Quality::moving;
   bool on_its_way = false;  ///< a frame was sent that the window has not shown
   std::chrono::steady_clock::time_point served;
+  std::chrono::steady_clock::time_point waits_since;  ///< of a better picture than the first one
+  bool gave_way = false;                              ///< and was interrupted since then by what moved
 
   /// Everything anew: for another camera, size or pipeline.
-  void restart() { due = true, next = Quality::moving; }
+  void restart() { due = true, gave_way = false, next = Quality::moving; }
+  /// A better picture could be drawn from now on.
+  void wait() {
+    if (!gave_way) waits_since = std::chrono::steady_clock::now();
+  }
 };
 
 struct Client {

@@ -9,8 +9,9 @@ namespace sg::serve {
 
 std::shared_ptr<Session> Session::open(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title, std::string pictures_in) {
   std::shared_ptr<Session> s(new Session(std::move(renderer), std::move(file), std::move(title), std::move(pictures_in)));
-  s->draws_ = std::thread([p = s.get()] { p->draw_thread(); });
-  s->asks_ = std::thread([p = s.get()] { p->ask_thread(); });
+  s->threads_.emplace_back([p = s.get()] { p->draw_thread(); });
+  s->threads_.emplace_back([p = s.get()] { p->patient_thread(); });
+  for (const bool lengthy : {false, true}) s->threads_.emplace_back([p = s.get(), lengthy] { p->ask_thread(lengthy); });
   return s;
 }
 
@@ -25,12 +26,10 @@ Session::~Session() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
-    if (running_) running_->cancel();
-    if (asking_) asking_->cancel();
+    for (Work* work : {&drawing_, &beside_, &asking_[0], &asking_[1]}) work->stop();
   }
   work_.notify_all(), questions_wait_.notify_all();
-  if (draws_.joinable()) draws_.join();
-  if (asks_.joinable()) asks_.join();
+  for (std::thread& t : threads_) t.join();
 }
 
 size_t Session::clients() const {
@@ -57,7 +56,7 @@ SocketHandler Session::join(Rights rights, const std::string& user, std::shared_
     send(id, own);
   }
   tell_people();
-  work_.notify_one();
+  work_.notify_all();
   const std::weak_ptr<Session> self = weak_from_this();
   return {[self, id](std::string_view text) {
             if (const auto s = self.lock()) s->take_message(id, text);
@@ -72,10 +71,11 @@ void Session::leave(int id) {
   const auto it = clients_.find(id);
   if (it == clients_.end()) return;
   for (const auto& [number, view] : it->second->views) interrupt(view.request.view), left_.push_back(view.request.view);
-  work_.notify_one();
+  work_.notify_all();
   clients_.erase(it);
-  std::erase_if(questions_, [&](const Question& q) { return q.client == id; });
-  if (asking_ && asking_client_ == id) asking_->cancel();
+  questions_.leave(id);
+  for (Work& asking : asking_)
+    if (asking.client == id) asking.stop();
   tell_people();
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One pipeline, the windows that look at it, and the pictures that they get (docs/protocol.md).
 #pragma once
+#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -21,11 +22,13 @@
 #include "serve/session/client.h"
 #include "serve/session/edits/edits.h"
 #include "serve/session/history.h"
-#include "serve/session/time_curve.h"
+#include "serve/session/question_queue.h"
+#include "serve/session/work.h"
 
 namespace sg::serve {
 
-/// One thread draws, another answers questions; messages are taken in by whichever thread has them. Ends with its last owner.
+/// One thread runs what was edited and draws, another does what has waited too long while that one had to draw what moves; two answer
+/// questions, quick and lengthy ones. Messages are taken in by whichever thread has them. Ends with its last owner.
 class Session : public std::enable_shared_from_this<Session> {
  public:
   /// `title`: of the window, and of pictures that are saved. `pictures_in`: the folder from which recipes in those name files; "": they
@@ -41,17 +44,14 @@ class Session : public std::enable_shared_from_this<Session> {
   std::optional<Saved> saved(const std::string& id) const;
 
  private:
+  using Moment = std::chrono::steady_clock::time_point;
+  using ClientView = std::pair<Client*, WantedView*>;
+
   // Something that changes the pipeline, as it came.
   struct Change {
     int client;
     Json message;
   };
-  struct Question {
-    int client;
-    Json message;
-    std::shared_ptr<TimeCurve> curve = {};  ///< of a question over time, once it has begun
-  };
-
   // What the renderer has, as the last state told it.
   struct Loaded {
     PipelineFile file;
@@ -63,30 +63,34 @@ class Session : public std::enable_shared_from_this<Session> {
   void take_message(int client, std::string_view text);
   void leave(int client);
   void draw_thread();
-  void ask_thread();
+  void patient_thread();
+  void ask_thread(bool lengthy);
 
   // With the mutex held; those that take the lock let go of it while they work.
   void take_draw(Client& client, const Json& message);
   void take_cursor(Client& client, const Json& message);
   void make_change(const Change& change);
   void load(std::unique_lock<std::mutex>& lock);
-  void tell(std::unique_lock<std::mutex>& lock);
+  void tell(std::unique_lock<std::mutex>& lock, Work& work);
   void warm_up(std::unique_lock<std::mutex>& lock);
-  std::pair<Client*, WantedView*> next_view(bool coarse_only);
-  void draw(std::unique_lock<std::mutex>& lock, Client& client, WantedView& view);
+  std::vector<int> forgettable();
+  ClientView next_view(Quality best);
+  ClientView waiting_view();
+  void draw(std::unique_lock<std::mutex>& lock, Work& work, ClientView which);
   void send_finer(int client, const DrawnView& drawn, const WantedView& view, uint64_t revision);  // takes the mutex itself
-  void answer(std::unique_lock<std::mutex>& lock, const Question& question);
-  void answer_next_time(std::unique_lock<std::mutex>& lock, Question question);
+  void answer(std::unique_lock<std::mutex>& lock, Work& work, const Question& question);
+  void answer_next_time(std::unique_lock<std::mutex>& lock, Work& work, Question question);
   Saved save(const Json& question, const Loaded& loaded, Context& context);  // without the mutex
-  Context& begin_answer(int client);
   void restart_views();
   void interrupt(int view);
+  void make_way();
   void send(int client, const Json::Members& message);
   void send_all(const Json::Members& message);
   void refuse(int client, uint64_t n, const std::vector<EditMistake>& mistakes);
   void tell_people();
   void take_together(Client& client, const Json& message);
-  Context& begin_work(int view);
+  Context& begin(Work& work, Work::Kind kind, int client = 0);
+  void end(Work& work);
 
   std::unique_ptr<Renderer> renderer_;
   const std::string title_, pictures_in_;
@@ -97,30 +101,29 @@ class Session : public std::enable_shared_from_this<Session> {
   int next_client_ = 1;
   std::map<int, std::unique_ptr<Client>> clients_;
   std::deque<Change> changes_;
-  std::deque<Question> questions_;
+  QuestionQueue questions_;
   std::vector<int> left_;  ///< views of the renderer whose windows have gone
 
   History history_;
   PipelineFile good_;  ///< the last one that could be loaded
   Change last_change_{0, Json()};
-  bool live_ = false;                              ///< the last edit was one of a drag that may go on
-  std::chrono::steady_clock::time_point rest_at_;  ///< when that drag counts as over
+  bool live_ = false;  ///< the last edit was one of a drag that may go on
+  Moment rest_at_;     ///< when that drag counts as over
   bool loaded_ = false, needs_load_ = true, needs_tell_ = false, cold_ = true;
+  Moment tell_since_;  ///< when what is to be told was there
   uint64_t revision_ = 0;
   std::optional<FilmTimes> film_;
   std::optional<size_t> time_;        ///< index of the step that is shown; none: what the reader gives
   std::optional<size_t> shown_time_;  ///< that of the revision
   std::string state_;                 ///< the last message "state", without what depends on the window
-  std::unique_ptr<Context> running_, asking_;
-  int asking_client_ = 0;  ///< whose question is answered
-  static constexpr int warming = -2;
-  int running_view_ = -1;  ///< of the renderer; -1: something else runs; warming: a picture that nobody sees
+  Work drawing_, beside_;             ///< of the thread that draws, and of the patient one beside it
+  std::array<Work, 2> asking_;        ///< of those that answer: quick questions, lengthy ones
   std::deque<std::pair<std::string, Saved>> saved_;
   bool together_ = false;             ///< all windows look from where the last one of them went
   std::optional<ViewCamera> common_;  ///< that camera, once one of them has told it
   int leader_ = 0;                    ///< who told it
 
-  std::thread draws_, asks_;
+  std::vector<std::thread> threads_;
 };
 
 }  // namespace sg::serve

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The thread that answers.
+// The threads that answer: one quick questions, one lengthy ones.
 #include "serve/session/session.h"
 
 #include <fmt/core.h>
@@ -16,16 +16,11 @@
 
 namespace sg::serve {
 
-void Session::ask_thread() {
+void Session::ask_thread(bool lengthy) {
   std::unique_lock lock(mutex_);
   while (!stopping_) {
-    if (questions_.empty()) {
-      questions_wait_.wait(lock);
-      continue;
-    }
-    const Question question = questions_.front();
-    questions_.pop_front();
-    answer(lock, question);
+    if (const auto question = questions_.pop(lengthy)) answer(lock, asking_[lengthy], *question);
+    else questions_wait_.wait(lock);
   }
 }
 
@@ -55,13 +50,8 @@ Json for_renderer(Wish wish, int client, const Json& question) {
 
 }  // namespace
 
-Context& Session::begin_answer(int client) {
-  asking_ = std::make_unique<Context>(), asking_client_ = client;
-  return *asking_;
-}
-
 // One time more of a field over time; the question then waits behind the others.
-void Session::answer_next_time(std::unique_lock<std::mutex>& lock, Question question) {
+void Session::answer_next_time(std::unique_lock<std::mutex>& lock, Work& work, Question question) {
   const uint64_t n = question.message["n"].whole();
   if (!question.curve) {
     if (!loaded_ || !film_ || film_->times.empty()) return refuse(question.client, n, {{"", "", "nothing here changes with time"}});
@@ -71,7 +61,7 @@ void Session::answer_next_time(std::unique_lock<std::mutex>& lock, Question ques
     question.curve = std::make_shared<TimeCurve>(TimeCurve{good_, *film_, {}, {}, ""});
   }
   TimeCurve& curve = *question.curve;
-  Context& context = begin_answer(question.client);
+  Context& context = begin(work, Work::Kind::question, question.client);
   lock.unlock();
   Json::Members reply, members = question.message.members();
   std::string problem;
@@ -87,7 +77,7 @@ void Session::answer_next_time(std::unique_lock<std::mutex>& lock, Question ques
     problem = e.what();
   }
   lock.lock();
-  asking_.reset();
+  end(work);
   if (!clients_.contains(question.client)) return;
   const size_t known = curve.values.size() + 1, all = curve.film.times.size();
   const bool none = gap && known == all && curve.gaps.size() + 1 == all;
@@ -101,7 +91,7 @@ void Session::answer_next_time(std::unique_lock<std::mutex>& lock, Question ques
     curve.told = now;
     send(question.client, {{"is", text("progress")}, {"share", number(double(known) / double(all))}, {"doing", text("over time")}});
   }
-  if (known < all) return void(questions_.push_back(std::move(question)));
+  if (known < all) return void(questions_.push(std::move(question)));
   std::vector<Json> times;
   for (const double t : curve.film.times) times.push_back(number(t));
   send(question.client, {{"is", text(std::string(word_of(Wish::over_time)))},
@@ -127,14 +117,14 @@ Saved Session::save(const Json& question, const Loaded& loaded, Context& context
   return {name, std::string(type.media), std::make_shared<const std::string>(renderer_->save(picture, place, context))};
 }
 
-void Session::answer(std::unique_lock<std::mutex>& lock, const Question& question) {
+void Session::answer(std::unique_lock<std::mutex>& lock, Work& work, const Question& question) {
   const Json& m = question.message;
-  const Wish wish = wish_of(m).value_or(Wish::probe);
+  const Wish wish = question.wish();
   const auto it = clients_.find(question.client);
   if (it == clients_.end()) return;
-  if (wish == Wish::over_time) return answer_next_time(lock, question);
+  if (wish == Wish::over_time) return answer_next_time(lock, work, question);
   const std::optional<Loaded> loaded = wish == Wish::save ? std::optional(Loaded{good_, film_, shown_time_}) : std::nullopt;
-  Context& context = begin_answer(question.client);
+  Context& context = begin(work, Work::Kind::question, question.client);
   lock.unlock();
   Json::Members reply;
   std::string problem;
@@ -146,7 +136,7 @@ void Session::answer(std::unique_lock<std::mutex>& lock, const Question& questio
     problem = e.what();
   }
   lock.lock();
-  asking_.reset();
+  end(work);
   if (!problem.empty()) return refuse(question.client, m["n"].whole(), {{"", "", problem}});
   Json::Members message{{"is", text(saved ? "saved" : std::string(word_of(wish)))}, {"n", m["n"]}};
   if (saved) {

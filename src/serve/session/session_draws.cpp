@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The thread that draws.
+// Pictures of views.
 #include "serve/session/session.h"
 
-#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <string>
-#include <tuple>
 #include <utility>
 
 #include "base/error.h"
@@ -16,8 +14,6 @@
 namespace sg::serve {
 
 namespace {
-
-constexpr auto progress_pause = std::chrono::milliseconds(200);
 
 std::string frame_message(const DrawnView& drawn, const WantedView& view, int number, uint64_t revision, bool final) {
   const Json header(
@@ -44,62 +40,6 @@ std::string frame_message(const DrawnView& drawn, const WantedView& view, int nu
 
 }  // namespace
 
-void Session::draw_thread() {
-  std::unique_lock lock(mutex_);
-  while (!stopping_) {
-    const bool dragged = std::chrono::steady_clock::now() < rest_at_;  // what takes longer waits for the end of it
-    if (!left_.empty()) {
-      const std::vector<int> left = std::exchange(left_, {});
-      lock.unlock();
-      for (const int v : left) renderer_->forget(v);
-      lock.lock();
-    } else if (!changes_.empty()) {
-      const Change change = changes_.front();
-      changes_.pop_front();
-      make_change(change);
-    } else if (needs_load_) {
-      load(lock);
-    } else if (auto [client, view] = next_view(true); view) {  // a picture at once, then what is told, then better pictures
-      draw(lock, *client, *view);
-    } else if (dragged) {
-      work_.wait_until(lock, rest_at_);
-    } else if (needs_tell_) {
-      tell(lock);
-    } else if (auto [any, finer] = next_view(false); finer) {
-      draw(lock, *any, *finer);
-    } else if (cold_ && loaded_) {
-      warm_up(lock);
-    } else {
-      work_.wait(lock);
-    }
-  }
-}
-
-Context& Session::begin_work(int view) {
-  running_ = std::make_unique<Context>(), running_view_ = view;
-  running_->on_progress = [this, last = std::chrono::steady_clock::time_point{}](double share, std::string_view doing) mutable {
-    const auto now = std::chrono::steady_clock::now();
-    if (now - last < progress_pause) return;
-    last = now;
-    const std::lock_guard lock(mutex_);
-    send_all({{"is", text("progress")}, {"share", number(share)}, {"doing", text(std::string(doing))}});
-  };
-  return *running_;
-}
-
-// The view that has waited longest, moving ones and first pictures before others.
-std::pair<Client*, WantedView*> Session::next_view(bool coarse_only) {
-  std::pair<Client*, WantedView*> best{nullptr, nullptr};
-  if (!loaded_) return best;
-  const auto rank = [](const WantedView& v) { return std::tuple(v.next != Quality::moving, !v.moving, v.served); };
-  for (auto& [id, client] : clients_)
-    for (auto& [number, view] : client->views) {
-      if (!view.due || view.on_its_way || (coarse_only && view.next != Quality::moving)) continue;
-      if (!best.second || rank(view) < rank(*best.second)) best = {client.get(), &view};
-    }
-  return best;
-}
-
 // What is drawn by paths grows while nothing else is wanted.
 void Session::send_finer(int id, const DrawnView& drawn, const WantedView& view, uint64_t revision) {
   const int number = view.request.view % most_views;
@@ -113,15 +53,16 @@ void Session::send_finer(int id, const DrawnView& drawn, const WantedView& view,
   now.whole = revision, now.whole_area = drawn.area;
 }
 
-void Session::draw(std::unique_lock<std::mutex>& lock, Client& client, WantedView& wanted) {
-  const int id = client.id, renderer_view = wanted.request.view;
-  WantedView view = wanted;
+void Session::draw(std::unique_lock<std::mutex>& lock, Work& work, ClientView which) {
+  const int id = which.first->id, renderer_view = which.second->request.view;
+  WantedView view = *which.second;
   const uint64_t revision = revision_;
   view.request.quality = view.next;
   // While something is dragged legends may be those of before.
   const bool has_legends = view.base > 0 && view.base == view.whole && (view.base == revision || live_);
   if (has_legends) view.request.part = view.whole_area;
-  Context& context = begin_work(renderer_view);
+  Context& context = begin(work, Work::Kind::picture, id);
+  work.view = renderer_view, work.quality = view.next;
   lock.unlock();
   DrawnView drawn;
   std::string problem;
@@ -139,13 +80,17 @@ void Session::draw(std::unique_lock<std::mutex>& lock, Client& client, WantedVie
   if (problem.empty() && !cancelled)
     message = std::make_shared<const std::string>(frame_message(drawn, view, renderer_view % most_views, revision, final));
   lock.lock();
-  running_.reset();
+  end(work);
   const auto it = clients_.find(id);
   if (it == clients_.end()) return;
   WantedView& now = it->second->views[renderer_view % most_views];
   now.served = std::chrono::steady_clock::now();
-  if (cancelled) return;
+  if (revision != revision_) return;
   const bool newer = now.n != view.n;
+  if (cancelled) {
+    if (work.gave_way && !newer) now.wait(), now.gave_way = true;  // it waits since the first time that it gave way
+    return;
+  }
   if (!problem.empty()) {
     if (!newer) now.due = false;
     refuse(id, view.n, {{"", "", problem}});
@@ -157,6 +102,7 @@ void Session::draw(std::unique_lock<std::mutex>& lock, Client& client, WantedVie
   if (newer || now.next != view.next) return;
   if (view.moving || final) now.due = false;
   else now.next = view.next == Quality::moving ? Quality::draft : Quality::exact;
+  now.gave_way = false, now.wait();
 }
 
 }  // namespace sg::serve

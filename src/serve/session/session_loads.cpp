@@ -38,7 +38,7 @@ void Session::load(std::unique_lock<std::mutex>& lock) {
   const Change change = last_change_;
   const bool looks_same = loaded_ && make_same_picture(file, good_) && shown_time_ == time_;
   const bool times_known = film_.has_value() && loaded_ && file.steps == good_.steps;
-  Context& context = begin_work(-1);
+  Context& context = begin(drawing_, Work::Kind::pipeline);
   std::optional<FilmTimes> film = film_;
   if (!looks_same) send_all({{"is", text("busy")}, {"revision", Json(revision_ + 1)}});
   lock.unlock();
@@ -64,7 +64,7 @@ void Session::load(std::unique_lock<std::mutex>& lock) {
     problem = e.what();
   }
   lock.lock();
-  running_.reset();
+  end(drawing_);
   if (cancelled) {
     needs_load_ = !stopping_;
     return;
@@ -76,7 +76,7 @@ void Session::load(std::unique_lock<std::mutex>& lock) {
     return;
   }
   history_.complete(completed);
-  good_ = std::move(completed), film_ = std::move(film), loaded_ = true, needs_tell_ = true;
+  good_ = std::move(completed), film_ = std::move(film), loaded_ = true, needs_tell_ = true, tell_since_ = std::chrono::steady_clock::now();
   if (looks_same) return;  // what is drawn stays
   shown_time_ = time_;
   ++revision_;
@@ -94,7 +94,7 @@ void Session::warm_up(std::unique_lock<std::mutex>& lock) {
   constexpr int most = 6;
   double coarse = 0;
   for (int i = 0; i < most && clients_.empty() && !stopping_ && !needs_load_; ++i) {
-    Context& context = begin_work(i == 0 ? -1 : warming);
+    Context& context = begin(drawing_, i == 0 ? Work::Kind::pipeline : Work::Kind::unseen);
     lock.unlock();
     double drawn = coarse;
     try {
@@ -103,7 +103,7 @@ void Session::warm_up(std::unique_lock<std::mutex>& lock) {
     } catch (const std::exception&) {  // the window is told when it asks
     }
     lock.lock();
-    running_.reset();
+    end(drawing_);
     if (i > 0 && drawn == coarse) break;
     coarse = i == 0 ? 0 : drawn, request = full;
   }
@@ -112,11 +112,11 @@ void Session::warm_up(std::unique_lock<std::mutex>& lock) {
   lock.lock();
 }
 
-void Session::tell(std::unique_lock<std::mutex>& lock) {
+void Session::tell(std::unique_lock<std::mutex>& lock, Work& work) {
   needs_tell_ = false;
   const uint64_t revision = revision_, by = last_change_.message["n"].whole();
   const PipelineFile file = good_;
-  Context& context = begin_work(-1);
+  Context& context = begin(work, Work::Kind::state);
   lock.unlock();
   Json::Members told;
   bool cancelled = false;
@@ -127,11 +127,9 @@ void Session::tell(std::unique_lock<std::mutex>& lock) {
     told.emplace_back("notes", list({e.what()}));
   }
   lock.lock();
-  running_.reset();
-  if (cancelled) {
-    needs_tell_ = true;
-    return;
-  }
+  end(work);
+  if (cancelled) needs_tell_ = true;
+  if (needs_tell_) return;  // something newer is to be told by now
   Json::Members state{{"is", text("state")},
                       {"revision", Json(revision)},
                       {"by", Json(by)},

@@ -54,30 +54,29 @@ void Session::take_message(int id, std::string_view words) {
       take_draw(client, message);
     } else if (*wish == Wish::shown) {
       const auto view = client.views.find(int(message["view"].number()));
-      if (view != client.views.end()) view->second.on_its_way = false, view->second.base = message["base"].whole();
+      if (view != client.views.end()) {
+        view->second.on_its_way = false, view->second.base = message["base"].whole();
+        view->second.wait();
+        make_way();
+      }
     } else if (*wish == Wish::cursor) {
       take_cursor(client, message);
     } else if (*wish == Wish::together) {
       take_together(client, message);
     } else if (changes(*wish)) {
       if (client.rights != Rights::edit) fail_usage("this window may look, but not change anything");
-      if (changes_.size() >= most_changes) fail_usage("there are more edits than can be made");
+      const auto own = std::count_if(changes_.begin(), changes_.end(), [&](const Change& c) { return c.client == id; });
+      if (size_t(own) >= most_changes) fail_usage("there are more edits than can be made");
       changes_.push_back({id, message});
-      if (running_) running_->cancel();
+      drawing_.stop(), beside_.stop();
     } else {
-      // Of what is asked while the mouse moves only the last counts.
-      if (*wish == Wish::probe)
-        std::erase_if(questions_, [&](const Question& q) {
-          return q.client == id && wish_of(q.message) == Wish::probe && !q.message["keep"].boolean();
-        });
-      if (questions_.size() >= most_questions) fail_usage("there are more questions than can be answered");
-      questions_.push_back({id, message});
-      questions_wait_.notify_one();
+      if (!questions_.push({id, message})) fail_usage("there are more questions than can be answered");
+      questions_wait_.notify_all();
     }
   } catch (const Error& e) {
     refuse(id, message["n"].whole(), {{"", "", e.what()}});
   }
-  work_.notify_one();
+  work_.notify_all();
 }
 
 void Session::take_draw(Client& client, const Json& message) {
@@ -98,7 +97,9 @@ void Session::take_draw(Client& client, const Json& message) {
   view.n = message["n"].whole(), view.moving = moving;
   view.restart();
   if (has_first && !moving) view.next = Quality::draft;
+  view.wait();
   interrupt(view.request.view);
+  make_way();
 }
 
 void Session::take_cursor(Client& client, const Json& message) {
@@ -118,15 +119,6 @@ void Session::take_together(Client& client, const Json& message) {
   common_ = together_ ? stated_camera(message) : std::nullopt;
   leader_ = client.id;
   tell_people();
-}
-
-void Session::interrupt(int view) {
-  if (running_ && (running_view_ == view || running_view_ == warming)) running_->cancel();
-}
-
-void Session::restart_views() {
-  for (auto& [id, client] : clients_)
-    for (auto& [number, view] : client->views) view.restart();
 }
 
 void Session::make_change(const Change& change) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <vector>
 
 #include "base/error.h"
 #include "base/file/file_fence.h"
@@ -27,7 +28,8 @@ class Worker {
   explicit Worker(int socket) : channel_(socket) {}
 
   void run() {
-    std::thread draws([this] { work(drawing_); }), answers([this] { work(answering_); });
+    std::vector<std::thread> threads;
+    for (int i = 0; i < callers; ++i) threads.emplace_back([this] { work(); });
     while (auto message = channel_.receive()) {
       const std::lock_guard lock(mutex_);
       const Json& head = message->head;
@@ -36,10 +38,9 @@ class Worker {
         if (it != contexts_.end()) it->second->cancel();
         continue;
       }
-      const auto call = value_of_word<Call>(head["call"].text());
-      (call == Call::answer || call == Call::save ? answering_ : drawing_).calls.push_back(head);
+      calls_.push_back(head);
       contexts_[head["id"].whole()] = std::make_unique<Context>();
-      wake_.notify_all();
+      wake_.notify_one();
     }
     {
       const std::lock_guard lock(mutex_);
@@ -47,23 +48,22 @@ class Worker {
       for (auto& [id, context] : contexts_) context->cancel();
     }
     wake_.notify_all();
-    draws.join(), answers.join();
+    for (std::thread& t : threads) t.join();
   }
 
  private:
-  struct Queue {
-    std::deque<Json> calls;
-  };
+  // As many threads of the server as ask a renderer (renderer.h): each waits for its answer, so that no call waits behind another one.
+  static constexpr int callers = 4;
 
-  void work(Queue& queue) {
+  void work() {
     std::unique_lock lock(mutex_);
     while (!over_) {
-      if (queue.calls.empty()) {
+      if (calls_.empty()) {
         wake_.wait(lock);
         continue;
       }
-      const Json call = queue.calls.front();
-      queue.calls.pop_front();
+      const Json call = calls_.front();
+      calls_.pop_front();
       const uint64_t id = call["id"].whole();
       Context& context = *contexts_[id];
       lock.unlock();
@@ -126,7 +126,7 @@ class Worker {
   std::mutex mutex_;
   std::condition_variable wake_;
   bool over_ = false;
-  Queue drawing_, answering_;
+  std::deque<Json> calls_;
   std::map<uint64_t, std::unique_ptr<Context>> contexts_;
 };
 

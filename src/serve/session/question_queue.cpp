@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "serve/session/question_queue.h"
+
+#include <algorithm>
+
+#include "serve/session/limits.h"
+
+namespace sg::serve {
+
+bool QuestionQueue::push(Question question) {
+  if (question.wish() == Wish::probe)
+    std::erase_if(waiting_, [&](const Question& q) {
+      return q.client == question.client && q.wish() == Wish::probe && !q.message["keep"].boolean();
+    });
+  const auto same = [&](const Question& q) { return q.client == question.client; };
+  if (!question.curve && size_t(std::count_if(waiting_.begin(), waiting_.end(), same)) >= most_questions) return false;
+  waiting_.push_back(std::move(question));
+  return true;
+}
+
+std::optional<Question> QuestionQueue::pop(bool lengthy) {
+  auto best = waiting_.end();
+  const auto turn = [&](const Question& q) {
+    const auto had = turns_.find(q.client);
+    return had == turns_.end() ? 0 : had->second[lengthy];
+  };
+  for (auto it = waiting_.begin(); it != waiting_.end(); ++it)
+    if (is_lengthy(it->wish()) == lengthy && (best == waiting_.end() || turn(*it) < turn(*best))) best = it;
+  if (best == waiting_.end()) return std::nullopt;
+  std::optional<Question> next = std::move(*best);
+  waiting_.erase(best);
+  turns_[next->client][lengthy] = ++turn_;
+  return next;
+}
+
+void QuestionQueue::leave(int client) {
+  std::erase_if(waiting_, [&](const Question& q) { return q.client == client; });
+  turns_.erase(client);
+}
+
+}  // namespace sg::serve

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whose turn it is: windows at one session do not hold each other up.
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <future>
+#include <mutex>
+#include <thread>
+
+#include "base/error.h"
+#include "serve/renderer/local_renderer.h"
+#include "serve/session/limits.h"
+#include "serve/session/question_queue.h"
+#include "serve/support/looking.h"
+#include "support/test.h"
+
+using namespace sg;
+using namespace sg::serve;
+using sg::test::Window;
+
+namespace {
+
+// What the renderers below have begun and finished, for the test to wait for.
+class Count {
+ public:
+  void add() {
+    const std::lock_guard lock(mutex_);
+    ++count_;
+    changed_.notify_all();
+  }
+  int now() const {
+    const std::lock_guard lock(mutex_);
+    return count_;
+  }
+  void wait_for(int least) {
+    std::unique_lock lock(mutex_);
+    REQUIRE(changed_.wait_for(lock, std::chrono::seconds(60), [&] { return count_ >= least; }));
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  int count_ = 0;
+};
+
+struct Stage {
+  Count moved, begun, stopped;        // moving pictures that were drawn; slow work that began, and that was stopped
+  std::atomic<bool> released{false};  // slow work may end
+  int until_moved = 1 << 30;          // it ends as well when so many moving pictures were drawn since it began
+  bool slow_pictures = true, slow_state = false;
+
+  void be_slow(Context& context) {
+    const int before = moved.now();
+    begun.add();
+    while (!released && moved.now() - before < until_moved) {
+      if (context.cancelled()) stopped.add();
+      context.check();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+};
+
+class Staged : public LocalRenderer {
+ public:
+  explicit Staged(Stage& stage) : LocalRenderer(64 << 20, {}), stage_(stage) {}
+  using LocalRenderer::draw;
+  DrawnView draw(const DrawRequest& request, const OnFiner& on_finer, Context& context) override {
+    if (stage_.slow_pictures && request.quality == Quality::exact) stage_.be_slow(context);
+    DrawnView drawn = LocalRenderer::draw(request, on_finer, context);
+    if (request.view >= 0 && request.quality == Quality::moving) stage_.moved.add();
+    return drawn;
+  }
+  Json::Members tell(Context& context) override {
+    if (stage_.slow_state) stage_.be_slow(context);
+    return LocalRenderer::tell(context);
+  }
+  std::string save(const DrawRequest& request, const std::string& name, Context& context) override {
+    stage_.be_slow(context);
+    return LocalRenderer::save(request, name, context);
+  }
+
+ private:
+  Stage& stage_;
+};
+
+std::shared_ptr<Session> session_of(Stage& stage) {
+  return Session::open(std::make_unique<Staged>(stage),
+                       test::parsed("sightglass: 1\nsteps:\n  ball: {sphere: {size: 9}}\nshow:\n  - {outline: , of: ball}\n"), "ball");
+}
+
+// The camera of its n-th picture.
+void move(Window& window, int n) {
+  window.say("{'do':'draw','n':" + std::to_string(n) + ",'view':0,'size':[64,48],'moving':true,'camera':{'position':[3,-4," +
+             std::to_string(0.01 * n) + "],'target':[0,0,0],'up':[0,0,1]}}");
+}
+
+const std::string at_rest = "{'do':'draw','n':1,'view':0,'size':[64,48]}";
+
+// Moves the window until `over`, waiting for each picture.
+void move_until(Window& window, const std::function<bool()>& over) {
+  const auto longest = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  for (int n = 1; !over(); ++n) {
+    move(window, n);
+    REQUIRE(window.next_frame().header["n"].whole() <= uint64_t(n));
+    REQUIRE(std::chrono::steady_clock::now() < longest);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("turns: what moves in one window interrupts the exact picture of another, which is drawn when nothing moves") {
+  Stage stage;
+  const auto session = session_of(stage);
+  Window still(*session), moves(*session);
+  still.say(at_rest);
+  for (int i = 0; i < 2; ++i) CHECK_FALSE(still.next_frame().header["final"].boolean());
+  stage.begun.wait_for(1);
+  move(moves, 1);
+  CHECK(moves.next_frame().header["n"].whole() == 1);  // the other picture would never end by itself
+  stage.stopped.wait_for(1);
+  stage.begun.wait_for(2);  // begun anew
+  stage.released = true;
+  CHECK(still.next_frame().header["final"].boolean());
+}
+
+TEST_CASE("turns: the first picture of a window does not wait for the exact one of another") {
+  Stage stage;
+  const auto session = session_of(stage);
+  Window slow(*session), other(*session);
+  slow.say(at_rest);
+  for (int i = 0; i < 2; ++i) CHECK_FALSE(slow.next_frame().header["final"].boolean());
+  stage.begun.wait_for(1);
+  other.say(at_rest);
+  for (int i = 0; i < 2; ++i) CHECK_FALSE(other.next_frame().header["final"].boolean());  // the draft, too
+  stage.released = true;
+  CHECK(other.frames().back().header["final"].boolean());
+  CHECK(slow.frames().back().header["final"].boolean());
+}
+
+TEST_CASE("turns: an exact picture is finished, and a state told, while another window moves for ever") {
+  for (const bool state : {false, true}) {
+    Stage stage;
+    stage.until_moved = 5;  // between two of which it would always be interrupted
+    stage.slow_pictures = !state;
+    const auto session = session_of(stage);
+    Window still(*session), moves(*session);
+    if (state) {
+      still.next("state");
+      stage.slow_state = true;
+      still.say("{'do':'edit','n':9,'edits':[{'at':'picture','set':{'title':'Ball'}}]}");
+      stage.begun.wait_for(1);
+    } else {
+      still.say(at_rest);
+    }
+    auto came = std::async(std::launch::async, [&] {
+      if (state) return still.next("state")["by"].whole() == 9;
+      return still.frames().back().header["final"].boolean();
+    });
+    move_until(moves, [&] { return came.wait_for(std::chrono::seconds(0)) == std::future_status::ready; });
+    CHECK(came.get());
+    CHECK(stage.stopped.now() > 0);
+  }
+}
+
+TEST_CASE("turns: a quick question does not wait for a picture that another window saves") {
+  Stage stage;
+  const auto session = session_of(stage);
+  Window saves(*session), asks(*session);
+  saves.next("state"), asks.next("state");
+  saves.say("{'do':'save','n':1,'size':[60,40]}");
+  stage.begun.wait_for(1);
+  asks.say("{'do':'rows','n':2,'step':'ball','on':'point','from':0,'count':1}");
+  CHECK(asks.next("rows")["n"].whole() == 2);
+  stage.released = true;
+  CHECK(saves.next("saved")["n"].whole() == 1);
+}
+
+TEST_CASE("turns: questions go round among windows, each of which has a few that wait") {
+  const auto question = [](int client, const std::string& what, uint64_t n) {
+    return Question{client, parse_json("{\"do\":\"" + what + "\",\"n\":" + std::to_string(n) + "}", "question")};
+  };
+  QuestionQueue queue;
+  for (uint64_t n = 1; n <= 3; ++n) CHECK(queue.push(question(1, "save", n)));
+  CHECK(queue.push(question(2, "rows", 4)));
+  CHECK(queue.push(question(2, "measures", 5)));
+  CHECK(queue.push(question(3, "save", 6)));
+  std::vector<uint64_t> order;
+  while (const auto next = queue.pop(true)) order.push_back(next->message["n"].whole());
+  CHECK(order == std::vector<uint64_t>{1, 5, 6, 2, 3});
+  CHECK(queue.pop(false)->message["n"].whole() == 4);
+  CHECK_FALSE(queue.pop(false));
+  for (size_t i = 0; i < most_questions; ++i) CHECK(queue.push(question(1, "rows", i)));
+  CHECK_FALSE(queue.push(question(1, "rows", 99)));
+  CHECK(queue.push(question(2, "rows", 100)));
+  CHECK(queue.pop(false)->client == 1);  // whose turn in this row was longest ago: it has had none
+  CHECK(queue.pop(false)->client == 2);
+  queue.leave(1);
+  CHECK_FALSE(queue.pop(false));
+}
