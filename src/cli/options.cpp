@@ -160,11 +160,12 @@ void add_serving(CLI::App& a, Options& o, std::initializer_list<std::string_view
   const Schema schema = schema_of(params);
   for (const std::string_view name : names) {
     const ParamDecl& d = *schema.find(name);
-    add_flag(a, d, d.name, d.doc, [&o, key = d.name](const std::string& text) {
+    const std::string flag = flag_of(d.name, {});
+    add_flag(a, d, flag, d.doc, [&o, key = d.name, flag = "--" + flag](const std::string& text) {
       serve::ServeParams checked;
       Schema words = schema_of(checked);
-      words.find(key)->name = "--" + key;
-      set_param(words, "--" + key, text, "");
+      words.find(key)->name = flag;
+      set_param(words, flag, text, "");
       o.serve.push_back(key + "=" + text);
     });
   }
@@ -317,7 +318,7 @@ void declare_render(CLI::App& a, Options& o, RawText& raw) {
 
 void declare_view(CLI::App& a, Options& o, RawText& raw) {
   a.add_option("input", o.inputs, "Files to read, or one pipeline file (YAML)");
-  add_serving(a, o, {"address", "port", "workers", "origin"});
+  add_serving(a, o, {"address", "port", "workers", "worker_memory", "origin"});
   a.add_flag("--no-browser", o.no_browser, "Print the address, and leave the browser to you");
   add_reading(a, o, raw), add_pipeline(a, o), add_look(a, o);
   a.footer(
@@ -327,7 +328,7 @@ void declare_view(CLI::App& a, Options& o, RawText& raw) {
 
 void declare_serve(CLI::App& a, Options& o, RawText&) {
   a.add_option("folder", o.inputs, "Folder of the data; nothing above it can be reached")->required()->expected(1);
-  add_serving(a, o, {"address", "port", "users", "workers", "origin"});
+  add_serving(a, o, {"address", "port", "users", "workers", "worker_memory", "most_seconds", "origin"});
   a.add_option("--add-user", o.add_user, "Print a token for a new user, and the line for the file of users: 'NAME view' or 'NAME edit'");
 }
 

@@ -7,11 +7,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
 
 #include "base/error.h"
 #include "base/file/file.h"
 #include "base/file/file_fence.h"
+#include "base/text/text.h"
 #include "data/memory/memory_budget.h"
 #include "pipeline/picture/picture_parts.h"
 #include "scene/show/show.h"
@@ -72,6 +75,11 @@ void describe(Schema& s, ServeParams& p) {
     "Draw in processes of their own, one a session and at most so many: what exhausts memory or crashes ends a session's picture, not the "
     "server. 0: all in this process.")
       .range(0, 256);
+  s("worker_memory", p.worker_memory,
+    "Memory that each worker may take, e.g. 4G: what needs more is told in the window, and ended. Default: what the machine has.");
+  s("most_seconds", p.most_seconds,
+    "Seconds that one picture, question, picture to save or edit of a window may take before it is ended; 0: any time.")
+      .at_least(0);
   s("origin", p.origin, "Address by which browsers reach this server through a proxy, e.g. https://view.example.org.");
 }
 
@@ -91,19 +99,30 @@ std::vector<std::string> folders_of(const std::vector<std::string>& files) {
   return folders;
 }
 
+uint64_t worker_memory(const ServeParams& p) {
+  if (p.worker_memory.empty()) return 0;
+  const auto bytes = parse_bytes(p.worker_memory);
+  if (!bytes || *bytes < least_worker_memory)
+    fail_usage(fmt::format("'{}' is no amount of memory in which a worker could work", p.worker_memory), "--worker-memory",
+               fmt::format("write e.g. 4G; at least {}", human_bytes(least_worker_memory)));
+  if (p.workers == 0) fail_usage("there are no workers", "--worker-memory", "--workers N starts them; --memory bounds this process");
+  return *bytes;
+}
+
 std::unique_ptr<Renderer> new_renderer(const ServeParams& p, const std::vector<std::string>& coloring,
                                        const std::vector<std::string>& folders) {
   if (p.workers == 0) return std::make_unique<LocalRenderer>(allowed_memory() / 2, coloring);
   WorkerOptions options;
   options.command = {"/proc/self/exe", worker_command};
   options.coloring = coloring, options.folders = folders, options.memory = memory_limit();
+  options.process_memory = worker_memory(p);
   return std::make_unique<WorkerRenderer>(std::move(options));
 }
 
 }  // namespace
 
 void view(PipelineFile file, const std::vector<std::string>& coloring, const std::string& title, const ServeParams& p, Context& context) {
-  check_pipeline(file);
+  check_pipeline(file), worker_memory(p);
   const std::vector<std::string> folders = folders_of(files_read(file));
   Sessions sessions([&](const std::string&) { return Session::open(new_renderer(p, coloring, folders), file, title); });
   fence_in(folders, "a window");
@@ -117,13 +136,15 @@ void view(PipelineFile file, const std::vector<std::string>& coloring, const std
 void serve(const std::string& folder, const ServeParams& p, Context& context) {
   DoorOptions options = door_options(p);
   options.folder = folder;
+  worker_memory(p);
+  const auto longest = std::chrono::milliseconds(int64_t(std::min(1000 * p.most_seconds, 1e12)));
   if (!p.users.empty()) options.users = read_users(p.users);
   Sessions sessions(
       [&](const std::string& path) {
         PipelineFile file;
         file.steps.push_back({"input", "read", {"path=" + path}, {}, 0});
         file.show.push_back({std::string(auto_show), {}, "input", 0});
-        return Session::open(new_renderer(p, {}, {folder}), std::move(file), file_name_of(path), folder);
+        return Session::open(new_renderer(p, {}, {folder}), std::move(file), file_name_of(path), folder, longest);
       },
       p.workers > 0 ? size_t(p.workers) : 16);
   fence_in({folder}, "a window");

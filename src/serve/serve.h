@@ -16,6 +16,8 @@ struct ServeParams {
   bool browser = true;  ///< of view
   std::string users;    ///< of serve
   int workers = 0;
+  std::string worker_memory;  ///< "4G"; "": any
+  double most_seconds = 600;  ///< of serve
   std::vector<std::string> origin;
 };
 void describe(Schema& s, ServeParams& p);

@@ -1,93 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whose turn it is: windows at one session do not hold each other up.
-#include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <functional>
 #include <future>
-#include <mutex>
-#include <thread>
 
-#include "base/error.h"
-#include "serve/renderer/local_renderer.h"
 #include "serve/session/limits.h"
 #include "serve/session/question_queue.h"
-#include "serve/support/looking.h"
+#include "serve/support/staged.h"
 #include "support/test.h"
 
 using namespace sg;
 using namespace sg::serve;
+using sg::test::Stage;
 using sg::test::Window;
 
 namespace {
-
-// What the renderers below have begun and finished, for the test to wait for.
-class Count {
- public:
-  void add() {
-    const std::lock_guard lock(mutex_);
-    ++count_;
-    changed_.notify_all();
-  }
-  int now() const {
-    const std::lock_guard lock(mutex_);
-    return count_;
-  }
-  void wait_for(int least) {
-    std::unique_lock lock(mutex_);
-    REQUIRE(changed_.wait_for(lock, std::chrono::seconds(60), [&] { return count_ >= least; }));
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::condition_variable changed_;
-  int count_ = 0;
-};
-
-struct Stage {
-  Count moved, begun, stopped;        // moving pictures that were drawn; slow work that began, and that was stopped
-  std::atomic<bool> released{false};  // slow work may end
-  int until_moved = 1 << 30;          // it ends as well when so many moving pictures were drawn since it began
-  bool slow_pictures = true, slow_state = false;
-
-  void be_slow(Context& context) {
-    const int before = moved.now();
-    begun.add();
-    while (!released && moved.now() - before < until_moved) {
-      if (context.cancelled()) stopped.add();
-      context.check();
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-  }
-};
-
-class Staged : public LocalRenderer {
- public:
-  explicit Staged(Stage& stage) : LocalRenderer(64 << 20, {}), stage_(stage) {}
-  using LocalRenderer::draw;
-  DrawnView draw(const DrawRequest& request, const OnFiner& on_finer, Context& context) override {
-    if (stage_.slow_pictures && request.quality == Quality::exact) stage_.be_slow(context);
-    DrawnView drawn = LocalRenderer::draw(request, on_finer, context);
-    if (request.view >= 0 && request.quality == Quality::moving) stage_.moved.add();
-    return drawn;
-  }
-  Json::Members tell(Context& context) override {
-    if (stage_.slow_state) stage_.be_slow(context);
-    return LocalRenderer::tell(context);
-  }
-  std::string save(const DrawRequest& request, const std::string& name, Context& context) override {
-    stage_.be_slow(context);
-    return LocalRenderer::save(request, name, context);
-  }
-
- private:
-  Stage& stage_;
-};
-
-std::shared_ptr<Session> session_of(Stage& stage) {
-  return Session::open(std::make_unique<Staged>(stage),
-                       test::parsed("sightglass: 1\nsteps:\n  ball: {sphere: {size: 9}}\nshow:\n  - {outline: , of: ball}\n"), "ball");
-}
 
 // The camera of its n-th picture.
 void move(Window& window, int n) {
@@ -111,7 +38,7 @@ void move_until(Window& window, const std::function<bool()>& over) {
 
 TEST_CASE("turns: what moves in one window interrupts the exact picture of another, which is drawn when nothing moves") {
   Stage stage;
-  const auto session = session_of(stage);
+  const auto session = test::session_of(stage);
   Window still(*session), moves(*session);
   still.say(at_rest);
   for (int i = 0; i < 2; ++i) CHECK_FALSE(still.next_frame().header["final"].boolean());
@@ -126,7 +53,7 @@ TEST_CASE("turns: what moves in one window interrupts the exact picture of anoth
 
 TEST_CASE("turns: the first picture of a window does not wait for the exact one of another") {
   Stage stage;
-  const auto session = session_of(stage);
+  const auto session = test::session_of(stage);
   Window slow(*session), other(*session);
   slow.say(at_rest);
   for (int i = 0; i < 2; ++i) CHECK_FALSE(slow.next_frame().header["final"].boolean());
@@ -143,7 +70,7 @@ TEST_CASE("turns: an exact picture is finished, and a state told, while another 
     Stage stage;
     stage.until_moved = 5;  // between two of which it would always be interrupted
     stage.slow_pictures = !state;
-    const auto session = session_of(stage);
+    const auto session = test::session_of(stage);
     Window still(*session), moves(*session);
     if (state) {
       still.next("state");
@@ -165,7 +92,7 @@ TEST_CASE("turns: an exact picture is finished, and a state told, while another 
 
 TEST_CASE("turns: a quick question does not wait for a picture that another window saves") {
   Stage stage;
-  const auto session = session_of(stage);
+  const auto session = test::session_of(stage);
   Window saves(*session), asks(*session);
   saves.next("state"), asks.next("state");
   saves.say("{'do':'save','n':1,'size':[60,40]}");

@@ -146,6 +146,26 @@ TEST_CASE("workers: a process that dies is told of, and the next picture comes f
   CHECK(worker.process() != first);
 }
 
+TEST_CASE("workers: what needs more memory than a worker may take is told, and the view goes on") {
+  WorkerOptions bounded = options();
+  bounded.process_memory = least_worker_memory;
+  const auto session = Session::open(std::make_unique<WorkerRenderer>(bounded), pipeline(), "ball");
+  Window window(*session);
+  window.say("{'do':'draw','n':1,'view':0,'size':[160,120]}");
+  const std::string before = window.frames().back().bytes;
+  window.say("{'do':'edit','n':2,'edits':[{'at':'steps/ball','set':{'size':'600'}}]}");
+  const std::string told = window.next("refused")["errors"][0]["text"].text();
+  INFO(told);
+  CHECK(told.find("256.0 MiB") != std::string::npos);
+  CHECK(told.find("--worker-memory") != std::string::npos);
+  window.say("{'do':'draw','n':3,'view':0,'size':[160,120]}");
+  CHECK(window.frames().back().bytes == before);
+  window.say("{'do':'edit','n':4,'edits':[{'at':'steps/ball','set':{'size':'20'}}]}");
+  Json state = window.next("state");
+  while (state["by"].whole() != 4) state = window.next("state");
+  CHECK(state["steps"][0]["size"].text() == "20x20x20");
+}
+
 TEST_CASE("workers: a session outlives the process that draws for it") {
   auto renderer = std::make_unique<WorkerRenderer>(options());
   WorkerRenderer& worker = *renderer;

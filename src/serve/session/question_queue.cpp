@@ -38,4 +38,11 @@ void QuestionQueue::leave(int client) {
   turns_.erase(client);
 }
 
+size_t QuestionQueue::bytes(int client) const {
+  size_t sum = 0;
+  for (const Question& q : waiting_)
+    if (q.client == client) sum += q.bytes;
+  return sum;
+}
+
 }  // namespace sg::serve

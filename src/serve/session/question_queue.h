@@ -17,6 +17,7 @@ namespace sg::serve {
 struct Question {
   int client;
   Json message;
+  size_t bytes = 0;                       ///< of the message as it came
   std::shared_ptr<TimeCurve> curve = {};  ///< of a question over time, once it has begun
 
   Wish wish() const { return wish_of(message).value_or(Wish::probe); }
@@ -32,6 +33,8 @@ class QuestionQueue {
   std::optional<Question> pop(bool lengthy);
   /// What a window asked is forgotten.
   void leave(int client);
+  /// Of the messages of a window that wait.
+  size_t bytes(int client) const;
 
  private:
   std::deque<Question> waiting_;

@@ -7,18 +7,22 @@
 
 namespace sg::serve {
 
-std::shared_ptr<Session> Session::open(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title, std::string pictures_in) {
-  std::shared_ptr<Session> s(new Session(std::move(renderer), std::move(file), std::move(title), std::move(pictures_in)));
+std::shared_ptr<Session> Session::open(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title, std::string pictures_in,
+                                       std::chrono::milliseconds longest) {
+  std::shared_ptr<Session> s(new Session(std::move(renderer), std::move(file), std::move(title), std::move(pictures_in), longest));
   s->threads_.emplace_back([p = s.get()] { p->draw_thread(); });
   s->threads_.emplace_back([p = s.get()] { p->patient_thread(); });
   for (const bool lengthy : {false, true}) s->threads_.emplace_back([p = s.get(), lengthy] { p->ask_thread(lengthy); });
+  if (longest.count() > 0) s->threads_.emplace_back([p = s.get()] { p->clock_thread(); });
   return s;
 }
 
-Session::Session(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title, std::string pictures_in)
+Session::Session(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title, std::string pictures_in,
+                 std::chrono::milliseconds longest)
     : renderer_(std::move(renderer)),
       title_(std::move(title)),
       pictures_in_(std::move(pictures_in)),
+      longest_(longest),
       history_(file),
       good_(std::move(file)) {}
 
@@ -26,9 +30,9 @@ Session::~Session() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
-    for (Work* work : {&drawing_, &beside_, &asking_[0], &asking_[1]}) work->stop();
+    for (Work* work : works()) work->stop();
   }
-  work_.notify_all(), questions_wait_.notify_all();
+  work_.notify_all(), questions_wait_.notify_all(), clock_.notify_all();
   for (std::thread& t : threads_) t.join();
 }
 

@@ -32,9 +32,9 @@ namespace sg::serve {
 class Session : public std::enable_shared_from_this<Session> {
  public:
   /// `title`: of the window, and of pictures that are saved. `pictures_in`: the folder from which recipes in those name files; "": they
-  /// name them absolutely.
+  /// name them absolutely. `longest`: that a picture, question, picture to save or edit may take; 0: any time.
   static std::shared_ptr<Session> open(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title,
-                                       std::string pictures_in = "");
+                                       std::string pictures_in = "", std::chrono::milliseconds longest = {});
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -44,13 +44,14 @@ class Session : public std::enable_shared_from_this<Session> {
   std::optional<Saved> saved(const std::string& id) const;
 
  private:
-  using Moment = std::chrono::steady_clock::time_point;
+  using Moment = Work::Moment;
   using ClientView = std::pair<Client*, WantedView*>;
 
   // Something that changes the pipeline, as it came.
   struct Change {
     int client;
     Json message;
+    size_t bytes = 0;  ///< of the message as it came
   };
   // What the renderer has, as the last state told it.
   struct Loaded {
@@ -59,12 +60,14 @@ class Session : public std::enable_shared_from_this<Session> {
     std::optional<size_t> time;
   };
 
-  Session(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title, std::string pictures_in);
+  Session(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title, std::string pictures_in,
+          std::chrono::milliseconds longest);
   void take_message(int client, std::string_view text);
   void leave(int client);
   void draw_thread();
   void patient_thread();
   void ask_thread(bool lengthy);
+  void clock_thread();
 
   // With the mutex held; those that take the lock let go of it while they work.
   void take_draw(Client& client, const Json& message);
@@ -89,14 +92,17 @@ class Session : public std::enable_shared_from_this<Session> {
   void refuse(int client, uint64_t n, const std::vector<EditMistake>& mistakes);
   void tell_people();
   void take_together(Client& client, const Json& message);
-  Context& begin(Work& work, Work::Kind kind, int client = 0);
+  Context& begin(Work& work, Work::Kind kind, int client = 0, std::chrono::steady_clock::duration spent = {});
   void end(Work& work);
+  std::array<Work*, 4> works() { return {&drawing_, &beside_, &asking_[0], &asking_[1]}; }
+  bool has_room(int client, size_t bytes) const;
 
   std::unique_ptr<Renderer> renderer_;
   const std::string title_, pictures_in_;
+  const std::chrono::milliseconds longest_;
 
   mutable std::mutex mutex_;
-  std::condition_variable work_, questions_wait_;
+  std::condition_variable work_, questions_wait_, clock_;
   bool stopping_ = false;
   int next_client_ = 1;
   std::map<int, std::unique_ptr<Client>> clients_;
@@ -106,7 +112,7 @@ class Session : public std::enable_shared_from_this<Session> {
 
   History history_;
   PipelineFile good_;  ///< the last one that could be loaded
-  Change last_change_{0, Json()};
+  Change last_change_{0, Json(), 0};
   bool live_ = false;  ///< the last edit was one of a drag that may go on
   Moment rest_at_;     ///< when that drag counts as over
   bool loaded_ = false, needs_load_ = true, needs_tell_ = false, cold_ = true;

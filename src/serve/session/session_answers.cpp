@@ -12,6 +12,7 @@
 #include "serve/renderer/tell.h"
 #include "serve/renderer/wish.h"
 #include "serve/session/limits.h"
+#include "serve/session/problem.h"
 #include "serve/session/saved_picture.h"
 
 namespace sg::serve {
@@ -61,7 +62,8 @@ void Session::answer_next_time(std::unique_lock<std::mutex>& lock, Work& work, Q
     question.curve = std::make_shared<TimeCurve>(TimeCurve{good_, *film_, {}, {}, ""});
   }
   TimeCurve& curve = *question.curve;
-  Context& context = begin(work, Work::Kind::question, question.client);
+  Context& context = begin(work, Work::Kind::question, question.client, curve.spent);
+  const auto began = std::chrono::steady_clock::now();
   lock.unlock();
   Json::Members reply, members = question.message.members();
   std::string problem;
@@ -74,10 +76,12 @@ void Session::answer_next_time(std::unique_lock<std::mutex>& lock, Work& work, Q
     problem = e.what();
     gap = e.kind() == ErrorKind::data || (e.kind() == ErrorKind::usage && curve.gaps.size() < curve.values.size());
   } catch (const std::exception& e) {
-    problem = e.what();
+    problem = problem_of(e);
   }
   lock.lock();
   end(work);
+  curve.spent += std::chrono::steady_clock::now() - began;
+  if (work.took_too_long) problem = took_too_long(longest_), gap = false;
   if (!clients_.contains(question.client)) return;
   const size_t known = curve.values.size() + 1, all = curve.film.times.size();
   const bool none = gap && known == all && curve.gaps.size() + 1 == all;
@@ -133,10 +137,11 @@ void Session::answer(std::unique_lock<std::mutex>& lock, Work& work, const Quest
     if (loaded) saved = save(m, *loaded, context);
     else reply = renderer_->answer(for_renderer(wish, question.client, m), context);
   } catch (const std::exception& e) {
-    problem = e.what();
+    problem = problem_of(e);
   }
   lock.lock();
   end(work);
+  if (!problem.empty() && work.took_too_long) problem = took_too_long(longest_);
   if (!problem.empty()) return refuse(question.client, m["n"].whole(), {{"", "", problem}});
   Json::Members message{{"is", text(saved ? "saved" : std::string(word_of(wish)))}, {"n", m["n"]}};
   if (saved) {

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "serve/renderer/tell.h"
 #include "serve/session/limits.h"
+#include "serve/session/problem.h"
 
 namespace sg::serve {
 
@@ -73,7 +74,7 @@ void Session::draw(std::unique_lock<std::mutex>& lock, Work& work, ClientView wh
   } catch (const Error& e) {
     cancelled = e.kind() == ErrorKind::cancelled, problem = e.what();
   } catch (const std::exception& e) {
-    problem = e.what();
+    problem = problem_of(e);
   }
   const bool final = view.next == Quality::exact;
   std::shared_ptr<const std::string> message;
@@ -81,6 +82,7 @@ void Session::draw(std::unique_lock<std::mutex>& lock, Work& work, ClientView wh
     message = std::make_shared<const std::string>(frame_message(drawn, view, renderer_view % most_views, revision, final));
   lock.lock();
   end(work);
+  if (cancelled && work.took_too_long) cancelled = false, problem = took_too_long(longest_);
   const auto it = clients_.find(id);
   if (it == clients_.end()) return;
   WantedView& now = it->second->views[renderer_view % most_views];

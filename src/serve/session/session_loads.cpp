@@ -12,6 +12,7 @@
 #include "serve/renderer/tell.h"
 #include "serve/session/command_text.h"
 #include "serve/session/limits.h"
+#include "serve/session/problem.h"
 #include "serve/session/saved_picture.h"
 
 namespace sg::serve {
@@ -61,10 +62,11 @@ void Session::load(std::unique_lock<std::mutex>& lock) {
   } catch (const Error& e) {
     cancelled = e.kind() == ErrorKind::cancelled, problem = e.what();
   } catch (const std::exception& e) {
-    problem = e.what();
+    problem = problem_of(e);
   }
   lock.lock();
   end(drawing_);
+  if (cancelled && drawing_.took_too_long) cancelled = false, problem = took_too_long(longest_);
   if (cancelled) {
     needs_load_ = !stopping_;
     return;

@@ -20,6 +20,7 @@ namespace sg::serve {
 
 namespace {
 
+constexpr const char* too_much = "what this window has asked for and is not done yet is too large; wait for answers";
 constexpr auto drag_pause = std::chrono::milliseconds(150);  // between two edits of a drag
 
 // Which words edits set, as one text: "show/0 opacity;".
@@ -67,16 +68,25 @@ void Session::take_message(int id, std::string_view words) {
       if (client.rights != Rights::edit) fail_usage("this window may look, but not change anything");
       const auto own = std::count_if(changes_.begin(), changes_.end(), [&](const Change& c) { return c.client == id; });
       if (size_t(own) >= most_changes) fail_usage("there are more edits than can be made");
-      changes_.push_back({id, message});
+      if (!has_room(id, words.size())) fail_usage(too_much);
+      changes_.push_back({id, message, words.size()});
       drawing_.stop(), beside_.stop();
     } else {
-      if (!questions_.push({id, message})) fail_usage("there are more questions than can be answered");
+      if (!has_room(id, words.size())) fail_usage(too_much);
+      if (!questions_.push({id, message, words.size()})) fail_usage("there are more questions than can be answered");
       questions_wait_.notify_all();
     }
   } catch (const Error& e) {
     refuse(id, message["n"].whole(), {{"", "", e.what()}});
   }
   work_.notify_all();
+}
+
+bool Session::has_room(int client, size_t bytes) const {
+  size_t sum = bytes + questions_.bytes(client);
+  for (const Change& c : changes_)
+    if (c.client == client) sum += c.bytes;
+  return sum <= most_waiting;
 }
 
 void Session::take_draw(Client& client, const Json& message) {

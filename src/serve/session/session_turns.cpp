@@ -64,8 +64,26 @@ void Session::patient_thread() {
   }
 }
 
-Context& Session::begin(Work& work, Work::Kind kind, int client) {
+// Ends what takes too long.
+void Session::clock_thread() {
+  std::unique_lock lock(mutex_);
+  while (!stopping_) {
+    Work* first = nullptr;
+    for (Work* work : works())
+      if (work->goes_on() && work->until && !work->took_too_long && (!first || *work->until < *first->until)) first = work;
+    if (!first) clock_.wait(lock);
+    else if (const Moment until = *first->until; until > std::chrono::steady_clock::now()) clock_.wait_until(lock, until);
+    else first->took_too_long = true, first->stop();
+  }
+}
+
+Context& Session::begin(Work& work, Work::Kind kind, int client, std::chrono::steady_clock::duration spent) {
   work = {std::make_unique<Context>(), kind, client};
+  const bool asked_for = kind == Work::Kind::picture || kind == Work::Kind::question || (kind == Work::Kind::pipeline && loaded_);
+  if (asked_for && longest_.count() > 0) {
+    work.until = std::chrono::steady_clock::now() + longest_ - spent;
+    clock_.notify_all();
+  }
   if (kind == Work::Kind::question) return *work.context;  // answers tell by themselves how far they are
   work.context->on_progress = [this, client, last = Moment()](double share, std::string_view doing) mutable {
     const auto now = std::chrono::steady_clock::now();

@@ -17,7 +17,8 @@ struct TimeCurve {
   std::vector<Json> values;  ///< of the first times
   std::vector<Json> gaps;    ///< times that could not be read: {"time", "text"}
   std::string unit;
-  std::chrono::steady_clock::time_point told;  ///< how far it is
+  std::chrono::steady_clock::time_point told;    ///< how far it is
+  std::chrono::steady_clock::duration spent{0};  ///< on the times so far
 };
 
 }  // namespace sg::serve

@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "serve/renderer/worker/worker_process.h"
 
+#include <fmt/core.h>
+#include <sys/resource.h>
+
+#include <algorithm>
 #include <condition_variable>
 #include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <thread>
 #include <vector>
 
 #include "base/error.h"
 #include "base/file/file_fence.h"
+#include "base/text/text.h"
 #include "base/text/utf8.h"
 #include "data/memory/memory_budget.h"
 #include "pipeline/picture/picture.h"
@@ -76,15 +82,29 @@ class Worker {
     }
   }
 
+  static Json::Members failed(const Json& call, const Error& e) {
+    return {{"id", call["id"]}, {"error", text(e.what())}, {"kind", Json(int64_t(e.kind()))}};
+  }
+
+  Error for_want_of_memory(const std::string& what) const {
+    if (process_memory_ == 0) return Error(ErrorKind::usage, what, "", "ask for less");
+    return Error(ErrorKind::usage, fmt::format("{}: a worker may take {} here", what, human_bytes(process_memory_)), "",
+                 "ask for less, or start the server with a larger --worker-memory");
+  }
+
   void answer(const Json& call, Context& context) {
     Json::Members reply{{"id", call["id"]}};
     std::string bytes;
     try {
       do_call(call, reply, bytes, context);
     } catch (const Error& e) {
-      reply = {{"id", call["id"]}, {"error", text(e.what())}, {"kind", Json(int64_t(e.kind()))}};
+      // As arrays say it (Buffer::allocate).
+      if (process_memory_ > 0 && e.problem().starts_with("not enough memory")) reply = failed(call, for_want_of_memory(e.what()));
+      else reply = failed(call, e);
+    } catch (const std::bad_alloc&) {
+      reply = failed(call, for_want_of_memory("not enough memory"));
     } catch (const std::exception& e) {
-      reply = {{"id", call["id"]}, {"error", text(e.what())}, {"kind", Json(int64_t(ErrorKind::internal))}};
+      reply = failed(call, Error(ErrorKind::internal, e.what()));
     }
     channel_.send(Json(std::move(reply)), bytes);
   }
@@ -99,7 +119,14 @@ class Worker {
       for (const Json& folder : call["folders"].items()) fence.read_below.push_back(bytes_of_text(folder.text()));
       fence.who = "a window";
       if (!fence.read_below.empty()) set_file_fence(std::move(fence));
-      renderer_ = std::make_unique<LocalRenderer>(allowed_memory() / 2, std::move(coloring));
+      uint64_t cache = allowed_memory() / 2;
+      if (process_memory_ = call["process_memory"].whole(); process_memory_ > 0) {
+        // What a process has allocated, in whatever way; files that are mapped do not count.
+        const rlimit limit{process_memory_, process_memory_};
+        if (::setrlimit(RLIMIT_DATA, &limit) != 0) fail_internal("the memory of a worker cannot be bounded");
+        cache = std::min(cache, process_memory_ / 4);
+      }
+      renderer_ = std::make_unique<LocalRenderer>(cache, std::move(coloring));
     } else if (what == Call::load) {
       const PipelineFile file =
           parse_pipeline(bytes_of_text(call["pipeline"].text()), bytes_of_text(call["origin"].text()), picture_vocabulary());
@@ -123,6 +150,7 @@ class Worker {
 
   Channel channel_;
   std::unique_ptr<Renderer> renderer_;
+  uint64_t process_memory_ = 0;  // 0: any
   std::mutex mutex_;
   std::condition_variable wake_;
   bool over_ = false;

@@ -157,7 +157,8 @@ std::shared_ptr<WorkerRenderer::Process> WorkerRenderer::started(Context& contex
   process_->call({{"call", word(Call::start)},
                   {"coloring", list(options_.coloring)},
                   {"folders", list(options_.folders)},
-                  {"memory", Json(options_.memory)}},
+                  {"memory", Json(options_.memory)},
+                  {"process_memory", Json(options_.process_memory)}},
                  context);
   if (!loaded_.empty()) process_->call(loaded_, context);
   return process_;

@@ -19,7 +19,10 @@ struct WorkerOptions {
   std::vector<std::string> coloring;  ///< of the first pipeline, as PictureOptions::coloring
   std::vector<std::string> folders;   ///< nothing is read but what lies below them; none: no fence
   uint64_t memory = 0;                ///< set_memory_limit() there; 0: none
+  uint64_t process_memory = 0;        ///< that the whole process may take; 0: any
 };
+/// With less a worker cannot start.
+inline constexpr uint64_t least_worker_memory = uint64_t(256) << 20;
 
 /// Starts a process with the first call, and another one when that has ended: then the call throws Error(data) that says so, and the next
 /// one finds the pipeline loaded again.
