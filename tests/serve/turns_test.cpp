@@ -11,6 +11,7 @@
 
 using namespace sg;
 using namespace sg::serve;
+using sg::test::Shot;
 using sg::test::Stage;
 using sg::test::Window;
 
@@ -88,6 +89,26 @@ TEST_CASE("turns: an exact picture is finished, and a state told, while another 
     CHECK(came.get());
     CHECK(stage.stopped.now() > 0);
   }
+}
+
+TEST_CASE("turns: what moves is drawn as it was while the steps of another window's edit run") {
+  Stage stage;
+  const auto session = test::session_of(stage);
+  Window edits(*session), moves(*session);
+  const uint64_t revision = edits.next("state")["revision"].whole();
+  stage.slow_steps = true;
+  edits.say("{'do':'edit','n':1,'edits':[{'at':'steps/ball','set':{'size':'7'}}]}");
+  stage.begun.wait_for(1);
+  for (int n = 1; n <= 3; ++n) {
+    move(moves, n);
+    CHECK(moves.next_frame().header["revision"].whole() == revision);
+  }
+  stage.released = true;
+  CHECK(edits.next("state")["revision"].whole() == revision + 1);
+  move(moves, 4);
+  Shot shot = moves.next_frame();
+  while (shot.header["n"].whole() != 4) shot = moves.next_frame();
+  CHECK(shot.header["revision"].whole() == revision + 1);
 }
 
 TEST_CASE("turns: a quick question does not wait for a picture that another window saves") {

@@ -46,9 +46,9 @@ struct DrawnView {
 /// Gets pictures that are better than the last one and not yet what was asked for. Called by the thread that draws.
 using OnFiner = std::function<void(const DrawnView&)>;
 
-/// A pipeline, and what becomes of it. load(), forget() and pictures of what moves are asked for by one thread; tell() and other pictures
-/// by that one or another one meanwhile, never two of the same view at a time; answer() and save() by two more, of what was last loaded.
-/// All stop with Error(cancelled) when the context is cancelled, and stay usable then and after any other error.
+/// A pipeline, and what becomes of it. load() is called by one thread; forget() and pictures of what moves by another one meanwhile, of
+/// what was loaded before; tell() and other pictures by either, never two of the same view at a time; answer() and save() by two more. All
+/// stop with Error(cancelled) when the context is cancelled, and stay usable then and after any other error.
 class Renderer {
  public:
   virtual ~Renderer() = default;

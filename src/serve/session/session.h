@@ -27,8 +27,8 @@
 
 namespace sg::serve {
 
-/// One thread runs what was edited and draws, another does what has waited too long while that one had to draw what moves; two answer
-/// questions, quick and lengthy ones. Messages are taken in by whichever thread has them. Ends with its last owner.
+/// One thread draws; another runs what was edited, and does what has waited too long while the first one had to draw what moves; two
+/// answer questions, quick and lengthy ones. Messages are taken in by whichever thread has them. Ends with its last owner.
 class Session : public std::enable_shared_from_this<Session> {
  public:
   /// `title`: of the window, and of pictures that are saved. `pictures_in`: the folder from which recipes in those name files; "": they
@@ -77,6 +77,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void tell(std::unique_lock<std::mutex>& lock, Work& work);
   void warm_up(std::unique_lock<std::mutex>& lock);
   std::vector<int> forgettable();
+  bool settled() const;
   ClientView next_view(Quality best);
   ClientView waiting_view();
   void draw(std::unique_lock<std::mutex>& lock, Work& work, ClientView which);

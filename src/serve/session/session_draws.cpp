@@ -63,7 +63,7 @@ void Session::draw(std::unique_lock<std::mutex>& lock, Work& work, ClientView wh
   const bool has_legends = view.base > 0 && view.base == view.whole && (view.base == revision || live_);
   if (has_legends) view.request.part = view.whole_area;
   Context& context = begin(work, Work::Kind::picture, id);
-  work.view = renderer_view, work.quality = view.next;
+  work.view = renderer_view, work.quality = view.next, work.moves = view.moving;
   lock.unlock();
   DrawnView drawn;
   std::string problem;
@@ -87,8 +87,8 @@ void Session::draw(std::unique_lock<std::mutex>& lock, Work& work, ClientView wh
   if (it == clients_.end()) return;
   WantedView& now = it->second->views[renderer_view % most_views];
   now.served = std::chrono::steady_clock::now();
-  if (revision != revision_) return;
-  const bool newer = now.n != view.n;
+  const bool newer = now.n != view.n, late = now.moving && view.moving;  // while it moves, late is better than nothing
+  if (revision != revision_ && (cancelled || !problem.empty() || !late)) return;
   if (cancelled) {
     if (work.gave_way && !newer) now.wait(), now.gave_way = true;  // it waits since the first time that it gave way
     return;
@@ -98,10 +98,10 @@ void Session::draw(std::unique_lock<std::mutex>& lock, Work& work, ClientView wh
     refuse(id, view.n, {{"", "", problem}});
     return;
   }
-  if (newer && !(now.moving && view.moving)) return;  // another view is wanted; while both move, late is better than nothing
+  if (newer && !late) return;  // another view is wanted
   now.on_its_way = it->second->socket->send_binary(message);
   if (!drawn.part) now.whole = revision, now.whole_area = drawn.area;
-  if (newer || now.next != view.next) return;
+  if (newer || now.next != view.next || revision != revision_) return;
   if (view.moving || final) now.due = false;
   else now.next = view.next == Quality::moving ? Quality::draft : Quality::exact;
   now.gave_way = false, now.wait();

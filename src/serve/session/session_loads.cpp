@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The thread that draws: what it does before pictures, and what it tells of them.
+// What is run and told of a pipeline before there are pictures.
 #include "serve/session/session.h"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ void Session::load(std::unique_lock<std::mutex>& lock) {
   const Change change = last_change_;
   const bool looks_same = loaded_ && make_same_picture(file, good_) && shown_time_ == time_;
   const bool times_known = film_.has_value() && loaded_ && file.steps == good_.steps;
-  Context& context = begin(drawing_, Work::Kind::pipeline);
+  Context& context = begin(beside_, Work::Kind::pipeline);
   std::optional<FilmTimes> film = film_;
   if (!looks_same) send_all({{"is", text("busy")}, {"revision", Json(revision_ + 1)}});
   lock.unlock();
@@ -65,8 +65,8 @@ void Session::load(std::unique_lock<std::mutex>& lock) {
     problem = problem_of(e);
   }
   lock.lock();
-  end(drawing_);
-  if (cancelled && drawing_.took_too_long) cancelled = false, problem = took_too_long(longest_);
+  end(beside_);
+  if (cancelled && beside_.took_too_long) cancelled = false, problem = took_too_long(longest_);
   if (cancelled) {
     needs_load_ = !stopping_;
     return;
@@ -95,7 +95,7 @@ void Session::warm_up(std::unique_lock<std::mutex>& lock) {
   request.width = 64, request.height = 36;
   constexpr int most = 6;
   double coarse = 0;
-  for (int i = 0; i < most && clients_.empty() && !stopping_ && !needs_load_; ++i) {
+  for (int i = 0; i < most && clients_.empty() && !stopping_ && settled(); ++i) {
     Context& context = begin(drawing_, i == 0 ? Work::Kind::pipeline : Work::Kind::unseen);
     lock.unlock();
     double drawn = coarse;

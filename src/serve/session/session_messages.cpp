@@ -70,7 +70,8 @@ void Session::take_message(int id, std::string_view words) {
       if (size_t(own) >= most_changes) fail_usage("there are more edits than can be made");
       if (!has_room(id, words.size())) fail_usage(too_much);
       changes_.push_back({id, message, words.size()});
-      drawing_.stop(), beside_.stop();
+      if (!drawing_.moves) drawing_.stop();
+      beside_.stop();
     } else {
       if (!has_room(id, words.size())) fail_usage(too_much);
       if (!questions_.push({id, message, words.size()})) fail_usage("there are more questions than can be answered");

@@ -25,14 +25,10 @@ void Session::draw_thread() {
       lock.unlock();
       for (const int v : left) renderer_->forget(v);
       lock.lock();
-    } else if (!changes_.empty()) {
-      const Change change = changes_.front();
-      changes_.pop_front();
-      make_change(change);
-    } else if (needs_load_) {
-      load(lock);
     } else if (const ClientView moving = next_view(Quality::moving); moving.second) {
       draw(lock, drawing_, moving);  // a picture at once, then what is told, then better pictures
+    } else if (!settled()) {
+      work_.wait(lock);
     } else if (dragged) {
       work_.wait_until(lock, rest_at_);
     } else if (needs_tell_ && !beside_.is(Work::Kind::state)) {
@@ -47,14 +43,24 @@ void Session::draw_thread() {
   }
 }
 
-// What has waited for longer than `patience` is done beside what moves, and nothing that moves interrupts it.
+// Steps run beside what moves. So does, in the end, what has waited for longer than `patience`: nothing that moves interrupts it then.
 void Session::patient_thread() {
   constexpr Moment never = Moment::max();
   std::unique_lock lock(mutex_);
   while (!stopping_) {
-    const bool settled = loaded_ && changes_.empty() && !needs_load_ && !drawing_.is(Work::Kind::pipeline);
-    const ClientView view = settled ? waiting_view() : ClientView();
-    const Moment tell_at = settled && needs_tell_ && !drawing_.is(Work::Kind::state) ? tell_since_ + patience : never;
+    if (!changes_.empty()) {
+      const Change change = changes_.front();
+      changes_.pop_front();
+      make_change(change);
+      work_.notify_all();
+      continue;
+    }
+    if (needs_load_) {
+      load(lock);
+      continue;
+    }
+    const ClientView view = waiting_view();
+    const Moment tell_at = loaded_ && needs_tell_ && !drawing_.is(Work::Kind::state) ? tell_since_ + patience : never;
     const Moment draw_at = view.second ? view.second->waits_since + patience : never, first = std::min(tell_at, draw_at);
     const Moment now = std::chrono::steady_clock::now();
     if (first == never) work_.wait(lock);
@@ -110,14 +116,18 @@ std::vector<int> Session::forgettable() {
   return gone;
 }
 
+// What was edited has run.
+bool Session::settled() const { return changes_.empty() && !needs_load_ && !beside_.is(Work::Kind::pipeline); }
+
 // The view that is to have a picture of that quality or a quicker one: quicker ones first, among them those that were served longest ago.
+// While steps run only those that move.
 Session::ClientView Session::next_view(Quality best) {
   ClientView next{nullptr, nullptr};
   if (!loaded_) return next;
   const auto rank = [](const WantedView& v) { return std::tuple(v.next, v.served); };
   for (auto& [id, client] : clients_)
     for (auto& [number, view] : client->views) {
-      if (!view.due || view.on_its_way || view.next > best) continue;
+      if (!view.due || view.on_its_way || view.next > best || !(view.moving || settled())) continue;
       if (view.next != Quality::moving && beside_.draws(view.request.view)) continue;
       if (!next.second || rank(view) < rank(*next.second)) next = {client.get(), &view};
     }
@@ -127,6 +137,7 @@ Session::ClientView Session::next_view(Quality best) {
 // Of the views that wait for a better picture, and that nobody draws, the one that has waited longest.
 Session::ClientView Session::waiting_view() {
   ClientView longest{nullptr, nullptr};
+  if (!loaded_) return longest;
   for (auto& [id, client] : clients_)
     for (auto& [number, view] : client->views) {
       if (!view.due || view.on_its_way || view.next == Quality::moving || drawing_.draws(view.request.view)) continue;

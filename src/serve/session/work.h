@@ -25,6 +25,7 @@ struct Work {
   int client = 0;  ///< for whom; 0: for all
   int view = -1;   ///< of the renderer: that of a picture
   Quality quality = Quality::moving;
+  bool moves = false;                            ///< that view moves: nothing but a newer picture of it stops it
   std::optional<Moment> until;                   ///< it may not take longer
   bool gave_way = false, took_too_long = false;  ///< why it was stopped
 
