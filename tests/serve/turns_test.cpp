@@ -5,7 +5,7 @@
 #include <future>
 
 #include "serve/session/limits.h"
-#include "serve/session/question_queue.h"
+#include "serve/session/questions/question_queue.h"
 #include "serve/support/staged.h"
 #include "support/test.h"
 

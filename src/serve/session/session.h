@@ -22,7 +22,7 @@
 #include "serve/session/client.h"
 #include "serve/session/edits/edits.h"
 #include "serve/session/history.h"
-#include "serve/session/question_queue.h"
+#include "serve/session/questions/question_queue.h"
 #include "serve/session/work.h"
 
 namespace sg::serve {

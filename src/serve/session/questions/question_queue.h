@@ -10,7 +10,7 @@
 
 #include "base/text/json.h"
 #include "serve/renderer/wish.h"
-#include "serve/session/time_curve.h"
+#include "serve/session/questions/time_curve.h"
 
 namespace sg::serve {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "serve/session/question_queue.h"
+#include "serve/session/questions/question_queue.h"
 
 #include <algorithm>
 
