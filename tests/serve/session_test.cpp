@@ -406,7 +406,8 @@ TEST_CASE("session: messages that make no sense are answered, not followed") {
   Window window(*session);
   window.next("state");
   for (const std::string bad : {"", "{", "7", "[]", "{'do':'dance','n':5}", "{'do':'draw','n':5,'view':99,'size':[10,10]}",
-                                "{'do':'draw','n':5,'view':0,'size':[1e9,10]}", "{'do':'draw','n':5,'view':0,'size':['a',10]}",
+                                "{'do':'draw','n':5,'view':1e300,'size':[10,10]}", "{'do':'draw','n':5,'view':0,'size':[1e9,10]}",
+                                "{'do':'draw','n':5,'view':0,'size':['a',10]}",
                                 "{'do':'draw','n':5,'view':0,'size':[64,64],'camera':{'position':[0,0,0],'target':[0,0,0],'up':[0,0,1]}}",
                                 "{'do':'draw','n':5,'view':0,'size':[64,64],'camera':7}"}) {
     INFO(bad);

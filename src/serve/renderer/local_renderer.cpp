@@ -245,13 +245,13 @@ Json::Members LocalRenderer::answer(const Json& question, Context& context) {
   }
   const auto now = loaded();
   if (wish == Wish::probe) {
-    const auto planes = planes_of(int(question["view"].number()));
+    const auto planes = planes_of(int(question["view"].whole()));
     if (!planes) return nothing_there();
     return probe_picture({planes->seen, planes->projection, planes->area, planes->width}, question["at"][0].number(),
                          question["at"][1].number(), now->file, now->prepared, cache_, context);
   }
   DrawnArea area;
-  const auto planes = planes_of(int(question["among"]["view"].number()));
+  const auto planes = planes_of(int(question["among"]["view"].whole()));
   if (planes) {
     const Shown& shown = now->prepared.shown[0];
     area = {planes->projection, planes->area.x, planes->area.y, shown.stretch, shown.box};

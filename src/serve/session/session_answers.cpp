@@ -14,6 +14,7 @@
 #include "serve/session/limits.h"
 #include "serve/session/problem.h"
 #include "serve/session/saved_picture.h"
+#include "serve/session/view_number.h"
 
 namespace sg::serve {
 
@@ -30,11 +31,7 @@ namespace {
 constexpr auto curve_pause = std::chrono::milliseconds(200);  // between two messages of how far it is
 
 // The number that the renderer gives a view, which knows those of all windows.
-Json renderer_view(int client, const Json& view) {
-  const double number = view.number();
-  if (!(number >= 0 && number < most_views)) fail_usage(fmt::format("a window has views 0 to {}", most_views - 1));
-  return Json(uint64_t(client * most_views + int(number)));
-}
+Json renderer_view(int client, const Json& view) { return Json(uint64_t(client * most_views + stated_view(view))); }
 
 // The question as the renderer understands it.
 Json for_renderer(Wish wish, int client, const Json& question) {

@@ -15,6 +15,7 @@
 #include "serve/renderer/wish.h"
 #include "serve/session/forbidden.h"
 #include "serve/session/limits.h"
+#include "serve/session/view_number.h"
 
 namespace sg::serve {
 
@@ -54,7 +55,7 @@ void Session::take_message(int id, std::string_view words) {
     if (*wish == Wish::draw) {
       take_draw(client, message);
     } else if (*wish == Wish::shown) {
-      const auto view = client.views.find(int(message["view"].number()));
+      const auto view = client.views.find(view_number(message["view"]).value_or(-1));
       if (view != client.views.end()) {
         view->second.on_its_way = false, view->second.base = message["base"].whole();
         view->second.wait();
@@ -91,8 +92,7 @@ bool Session::has_room(int client, size_t bytes) const {
 }
 
 void Session::take_draw(Client& client, const Json& message) {
-  const int number = int(message["view"].number());
-  if (number < 0 || number >= most_views) fail_usage(fmt::format("a window has views 0 to {}", most_views - 1));
+  const int number = stated_view(message["view"]);
   const double width = message["size"][0].number(), height = message["size"][1].number();
   if (!(width >= 1 && height >= 1 && width <= 32768 && height <= 32768 && width * height <= most_pixels))
     fail_usage("the size of a view is out of bounds", "size", "two numbers from 1 on, 4096 x 4096 pixels at most");
@@ -115,7 +115,7 @@ void Session::take_draw(Client& client, const Json& message) {
 
 void Session::take_cursor(Client& client, const Json& message) {
   Json::Members cursor{{"id", Json(int64_t(client.id))},
-                       {"view", Json(int64_t(message["view"].number()))},
+                       {"view", Json(int64_t(view_number(message["view"]).value_or(0)))},
                        {"at", numbers({message["at"][0].number(), message["at"][1].number()})}};
   if (const auto camera = stated_camera(message)) cursor.emplace_back("camera", camera_json(*camera));
   client.cursor = Json(std::move(cursor)).dump();

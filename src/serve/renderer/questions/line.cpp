@@ -47,7 +47,7 @@ Json::Members answer_line(const Json& q, const Data& data, Context& context) {
   const std::string name = bytes_of_text(q["field"].text());
   const std::vector<DatasetPtr> parts = parts_with(name, data, context);
   const Vec3 from = place_of(q["from"], "from"), to = place_of(q["to"], "to");
-  const int64_t count = std::clamp<int64_t>(int64_t(q["count"].number()), 2, most_points);
+  const int64_t count = int64_t(std::clamp<double>(q["count"].number(), 2, most_points));
   ProbeAtParams p;
   std::vector<Json> distances;
   for (int64_t i = 0; i < count; ++i) {
