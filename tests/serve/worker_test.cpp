@@ -158,6 +158,10 @@ TEST_CASE("workers: what needs more memory than a worker may take is told, and t
   INFO(told);
   CHECK(told.find("256.0 MiB") != std::string::npos);
   CHECK(told.find("--worker-memory") != std::string::npos);
+  window.say("{'do':'save','n':5,'size':[4096,4096]}");
+  const std::string of_save = window.next("refused")["errors"][0]["text"].text();
+  INFO(of_save);
+  CHECK((of_save.find("--worker-memory") != std::string::npos || of_save.find("has ended") != std::string::npos));
   window.say("{'do':'draw','n':3,'view':0,'size':[160,120]}");
   CHECK(window.frames().back().bytes == before);
   window.say("{'do':'edit','n':4,'edits':[{'at':'steps/ball','set':{'size':'20'}}]}");
