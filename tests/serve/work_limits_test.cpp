@@ -22,7 +22,7 @@ std::string refusal(Window& window, uint64_t n) {
 
 }  // namespace
 
-TEST_CASE("limits: a picture, a picture to save and an edit that take too long are ended and told, and the session goes on") {
+TEST_CASE("limits: a picture, a picture to save, a question and an edit that take too long are ended and told, and the session goes on") {
   Stage stage;
   const auto session = test::session_of(stage, std::chrono::milliseconds(100));
   Window window(*session);
@@ -34,6 +34,9 @@ TEST_CASE("limits: a picture, a picture to save and an edit that take too long a
   CHECK(contains(told, "--most-seconds"));
   window.say("{'do':'save','n':2,'size':[60,40]}");
   CHECK(refusal(window, 2) == told);
+  stage.slow_questions = true;
+  window.say("{'do':'measures','n':6,'step':'ball'}");
+  CHECK(refusal(window, 6) == told);
   stage.slow_steps = true;
   window.say("{'do':'edit','n':3,'edits':[{'at':'steps/ball','set':{'size':'7'}}]}");
   CHECK(refusal(window, 3) == told);

@@ -56,6 +56,10 @@ class Staged : public serve::LocalRenderer {
     if (request.view >= 0 && request.quality == serve::Quality::moving) stage_.moved.add();
     return drawn;
   }
+  Json::Members answer(const Json& question, Context& context) override {
+    if (stage_.slow_questions) stage_.be_slow(context);
+    return LocalRenderer::answer(question, context);
+  }
   std::string save(const serve::DrawRequest& request, const std::string& name, Context& context) override {
     stage_.be_slow(context);
     return LocalRenderer::save(request, name, context);

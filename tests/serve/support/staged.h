@@ -32,7 +32,7 @@ struct Stage {
   int until_moved = 1 << 30;          ///< it ends as well when so many moving pictures were drawn since it began
   // Which work is slow; saving always is.
   std::atomic<bool> slow_pictures{true};  ///< exact ones
-  std::atomic<bool> slow_state{false}, slow_steps{false};
+  std::atomic<bool> slow_state{false}, slow_steps{false}, slow_questions{false};
 
   void be_slow(Context& context);
 };
