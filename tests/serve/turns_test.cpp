@@ -7,6 +7,7 @@
 #include "serve/session/limits.h"
 #include "serve/session/questions/question_queue.h"
 #include "serve/support/staged.h"
+#include "serve/support/window.h"
 #include "support/test.h"
 
 using namespace sg;
