@@ -325,12 +325,11 @@ await test("a line is dragged in the picture, and its values are plotted", async
   await dragOn(page, [middle[0] - 60, middle[1]], [120, 30]);
   await page.waitForSelector(".panel .uplot canvas");
   // The handles get their places when the overlay is drawn next.
-  await page.waitForFunction(() => {
-    const all = [...document.querySelectorAll(".ruler-end")];
-    return all.length === 2 && all.every((e) => e.getBoundingClientRect().x > 0);
+  const placed = await page.waitForFunction(() => {
+    const all = [...document.querySelectorAll(".ruler-end")].map((e) => e.getBoundingClientRect());
+    return all.length === 2 && all.every((b) => b.x > 0) && all.map((b) => [b.x + b.width / 2, b.y + b.height / 2]);
   });
-  const ends = await page.locator(".ruler-end").evaluateAll((all) => all.map((e) => { const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; }));
-  assert.equal(ends.length, 2, "the line lies in the picture");
+  const ends = await placed.jsonValue();
   for (const [end, at] of [[ends[0], [middle[0] - 60, middle[1]]], [ends[1], [middle[0] + 60, middle[1] + 30]]])
     assert.ok(Math.hypot(end[0] - at[0], end[1] - at[1]) < 3, `${end} where it was dragged to ${at}`);
   await shot(o, page, "line");
