@@ -7,7 +7,11 @@ import { andSettle, dataFile, openPage, seen, serve, shot } from "./browser.mjs"
 export async function wiring(test, o, browser) {
   const server = await serve(o, dataFile(o));
   const page = await openPage(browser, server.url);
-  const tab = (name) => page.click(`#tab-${name}`);
+  /** Its panel is there when the tab says so: until then the one before it is. */
+  const tab = async (name) => {
+    await page.click(`#tab-${name}`);
+    await page.waitForSelector(`#tab-${name}[aria-selected="true"]`);
+  };
   const as = (what) => page.locator(`.segmented >> text=${what}`).click();
   const step = (name) => page.locator(`.item-name[aria-pressed]:has(span:text-is("${name}"))`).first();
   const input = (i) => page.locator(`[data-input="${i}"] select`);
