@@ -152,16 +152,21 @@ void GltfMaterialWriter::Document::put_factors(OrderedJson& pbr, OrderedJson& ex
                           {transmission, 0, clear, "transmissionTexture"},
                           {coat, 0, coated, "clearcoatTexture"},
                           {coat_roughness, 1, coated, "clearcoatRoughnessTexture"}};
+  const auto place_of = [&](const FactorChannel& c) {
+    return std::find_if(std::begin(places), std::end(places),
+                        [&](const Place& p) { return p.factor == c.factor && p.channel == c.channel; });
+  };
   for (const FactorPicture& f : l.factors) {
-    const bool whole = std::none_of(f.channels.begin(), f.channels.end(), [](const FactorChannel& c) { return c.factor == subsurface; });
-    const bool both = std::any_of(f.channels.begin(), f.channels.end(), [](const FactorChannel& c) { return c.factor == metalness; }) ==
-                      std::any_of(f.channels.begin(), f.channels.end(), [](const FactorChannel& c) { return c.factor == roughness; });
-    bool written = whole && both;
+    const auto has = [&](MaterialFactor factor) {
+      return std::any_of(f.channels.begin(), f.channels.end(), [&](const FactorChannel& c) { return c.factor == factor; });
+    };
+    const bool written = has(metalness) == has(roughness) && std::all_of(f.channels.begin(), f.channels.end(), [&](const FactorChannel& c) {
+                           return place_of(c) != std::end(places);
+                         });
     for (const FactorChannel& c : f.channels) {
-      const auto place = std::find_if(std::begin(places), std::end(places), [&](const Place& p) { return p.factor == c.factor; });
-      written = written && place != std::end(places) && place->channel == c.channel;
       if (!written) break;
-      if (OrderedJson info = texture(f.picture, coordinates); !info.is_null()) place->in[place->key] = std::move(info);
+      const Place& place = *place_of(c);
+      if (OrderedJson info = texture(f.picture, coordinates); !info.is_null()) place.in[place.key] = std::move(info);
     }
     if (!written) losses.also(fmt::format("leaves out the picture '{}' of numbers of a material", f.picture.file->name));
   }

@@ -96,8 +96,9 @@ bool is_data(const std::string& path) {
 void read_grid_textures(SurfaceShow& show, Context& context) {
   PictureShow& p = show.picture;
   const auto take = [&](const std::string& path, bool colors, TexelEncoding encoding) {
-    if (is_data(path))
-      p.grids[{path, colors ? encoding : TexelEncoding::linear}] = colors ? colors_of(path, encoding, context) : numbers_in(path, context);
+    if (!colors) encoding = TexelEncoding::linear;
+    if (p.grids.contains({path, encoding}) || !is_data(path)) return;
+    p.grids[{path, encoding}] = colors ? colors_of(path, encoding, context) : numbers_in(path, context);
   };
   take(p.picture, true, p.picture_encoding), take(p.normal_picture, false, {}), take(p.material_picture, false, {});
   const VaryingMaterial& v = show.varying;

@@ -20,7 +20,7 @@ class Environment {
   /// `pixels`: width * height linear RGB. Throws Error(usage) for numbers that are negative or not finite, and for no pixels.
   Environment(std::span<const Vec3f> pixels, size_t width, Vec3 up, Vec3 front, float factor);
 
-  /// Adds light from around the direction `towards` (unit): `radiance` there, less beside it, nothing where the cosine is below `least`.
+  /// Light from around the direction `towards` (unit): `radiance` there, less beside it, nothing where the cosine is below `least`.
   struct Side {
     Vec3f radiance, towards{0, 0, 1};
     float least = 0;
