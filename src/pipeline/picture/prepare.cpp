@@ -124,8 +124,10 @@ PreparedPicture prepare_picture(PipelineFile& file, const PictureOptions& option
   show_planes_as_measured(file);
   stated = stated_in(file);  // with what was chosen of it
   const std::vector<StatedShow> shows = stated_shows(file);
-  for (const StatedShow& s : shows)
-    if (s.kind->is<SurfaceShow>()) read_grid_textures(s.params.as<SurfaceShow>(), context);
+  for (const StatedShow& s : shows) {
+    if (s.kind->is<SurfaceShow>()) read_grid_textures(s.params.as<SurfaceShow>().picture, s.params.as<SurfaceShow>().varying, context);
+    if (s.kind->is<VolumeShow>()) read_grid_textures(s.params.as<VolumeShow>().picture, s.params.as<VolumeShow>().varying, context);
+  }
   if (const auto* of_file = stated.lighting.environment ? std::get_if<PictureEnvironmentParams>(&*stated.lighting.environment) : nullptr)
     stated.lighting.picture = read_environment(path_beside(file.origin, of_file->file), context);
 

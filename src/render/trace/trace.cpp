@@ -59,7 +59,7 @@ World world_of(const Scene& scene, const PreparedScenePtr& prepared, const Proje
     materials.push_back(made_of ? std::make_shared<const trace::Material>(*made_of, geometry.placement().scale, 1, varies) : of_data);
   };
   for (const raster::PreparedItem& item : prepared->items) add(item.made_of, item.pictures && !item.pictures->factors.empty());
-  for (const Isosurfaces::Look& look : isosurfaces.looks) add(look.made_of, false);
+  for (const Isosurfaces::Look& look : isosurfaces.looks) add(look.made_of, look.patches && !look.patches->all().pictures->factors.empty());
   Studio studio = studio_of(scene, projection, geometry.placement());
   backdrop = studio.backdrop;
   PictureLook look(*prepared, projection, size.pixel, texture_scene(*prepared, projection, context));

@@ -211,6 +211,8 @@ void cast_volumes(const Scene& scene, const Projection& projection, const Fragme
   for (size_t i = 0; i < scene.items.size(); ++i)
     if (const auto* item = std::get_if<VolumeItem>(&scene.items[i]); item && item->method == VolumeMethod::ray) {
       context.check();
+      if (item->pictures && item->pictures->color)
+        context.warn("pictures on isosurfaces are seen along paths of light alone: --integrator path shows this one");
       if (scatters_by_map(*item)) item = &scattering.emplace_back(with_scatter_colors(*item));
       std::shared_ptr<const Volume> lattice;
       CastVolume volume = prepare_volume(*item, uint32_t(i + 1), projection, knobs, context, lattice);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // VolumeItem: a scalar field that is seen through, and everything that decides how.
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "scene/items/material.h"
 #include "scene/items/ray_function.h"
 #include "scene/items/surface_material.h"
+#include "scene/items/surface_pictures.h"
 #include "scene/items/volume_scattering.h"
 
 namespace sg {
@@ -120,6 +122,7 @@ struct VolumeItem {
   std::vector<double> levels;  ///< of first_hit, distance, accumulate (one) and isosurface
   bool shaded = true;
   std::optional<SurfaceMaterial> made_of;  ///< of mode isosurface, for integrators; empty = plastic of its colours
+  std::shared_ptr<const SurfacePictures> pictures;  ///< of mode isosurface, for integrators; null: none
   VolumeSampling sampling;
   VolumeLight light;
   VolumeScattering scattering;

@@ -11,6 +11,7 @@
 #include "data/fields/field_component.h"
 #include "data/lattice.h"
 #include "data/ranks/over_all.h"
+#include "filter/field/sampling/point_cell.h"
 #include "image/image.h"
 #include "scene/choose/scale.h"
 #include "scene/choose/volume/boundaries.h"
@@ -144,6 +145,7 @@ void choose_level(const Field& field, VolumeItem& item, Context& context) {
 void choose_transfer(const VolumeShow& p, const Field& field, VolumeItem& item, Context& context) {
   if (item.mode == RayFunction::isosurface) {
     // The innermost surface hides, those around it are seen through.
+    if (item.levels.size() == 1) return item.opacity.points = {{item.color.lo, 1}}, void();
     const double last = *std::max_element(item.levels.begin(), item.levels.end());
     const Range r{item.color.lo, item.color.hi};
     const double before = std::nextafter(last, -HUGE_VAL);
@@ -175,6 +177,27 @@ void choose_transfer(const VolumeShow& p, const Field& field, VolumeItem& item, 
   if (info_of(item.mode).absorbs) context.info(why);
 }
 
+/// Fields that are constant in each cell have no level sets: they become fields of the points. (Grids are seen between the middles of their
+/// cells, and so are AMR grids.)
+DatasetPtr without_steps(const DatasetPtr& data, const Fields& fields, Context& context) {
+  if (is_lattice(data->mesh()) || data->as<AmrGrid>() || fields.opacity->association != Association::cell) return data;
+  CellToPointParams of;
+  of.fields = {fields.opacity->name};
+  if (fields.color != fields.opacity && fields.color->association == Association::cell) of.fields.push_back(fields.color->name);
+  context.info(fmt::format("the isosurface is that of '{}' averaged to the points, as it is constant in each cell", fields.opacity->name));
+  return cell_to_point(data, of, context);
+}
+
+/// What level sets are made of, and the pictures on them.
+void take_matter(const VolumeShow& p, double body, VolumeItem& item, Context& context) {
+  item.made_of = p.material.made(body);
+  item.pictures = pictures_of(*item.data, p.picture);
+  if (!p.varying.any() && p.picture.material_picture.empty()) return;
+  auto pictures = item.pictures ? std::make_shared<SurfacePictures>(*item.pictures) : std::make_shared<SurfacePictures>();
+  apply(p.varying, p.material, p.picture, *item.data, *item.made_of, *pictures, context);
+  item.pictures = std::move(pictures);
+}
+
 std::string title_of_second(const TransferDetail& detail) {
   switch (detail.second) {
     case SecondAxis::none: return "";
@@ -189,7 +212,9 @@ std::string title_of_second(const TransferDetail& detail) {
 // What the legend shows: what the ray collects, and for those that composite the opacity.
 Legend legend_of(const VolumeItem& item) {
   Legend legend(item.detail.color_by_second ? item.detail.second_color : item.color);
-  if (info_of(item.mode).shows_opacity) legend.volume = VolumeLegend{item.opacity, item.detail, item.color, title_of_second(item.detail)};
+  const auto opaque = [](Vec2 point) { return point.y == 1; };
+  const bool solid = item.mode == RayFunction::isosurface && std::all_of(item.opacity.points.begin(), item.opacity.points.end(), opaque);
+  if (info_of(item.mode).shows_opacity && !solid) legend.volume = VolumeLegend{item.opacity, item.detail, item.color, title_of_second(item.detail)};
   return legend;
 }
 
@@ -207,6 +232,7 @@ VolumeShow with_preset(const VolumeShow& p, const Schema& schema, const Dataset&
   std::string reason;
   VolumeShow look = volume_of_preset(p.preset, d, *fields.opacity, component, reason, context);
   context.info(reason);
+  look.picture.grids = p.picture.grids;
   if (states("map") || states("color")) look.colors.clear();
   if (states("widgets") || states("transfer")) look.opacity.reset();
   if (states("opacity_by") || states("color_by") || states("widgets") || states("second"))
@@ -230,14 +256,15 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const VolumeSho
   return add(scene, input, p, Schema(), context);
 }
 
-std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const VolumeShow& stated, const Schema& schema, Context& context) {
-  if (is_lattice(input->mesh())) {
-    const auto n = lattice_dims(input->mesh());
+std::optional<Legend> add(Scene& scene, const DatasetPtr& data, const VolumeShow& stated, const Schema& schema, Context& context) {
+  if (is_lattice(data->mesh())) {
+    const auto n = lattice_dims(data->mesh());
     if (std::min({n[0], n[1], n[2]}) < 2)
       fail_usage(fmt::format("a grid of {}x{}x{} points has no volume", n[0], n[1], n[2]), "volume",
                  "show it as a surface: --show surface");
   }
-  const VolumeShow p = stated.preset.empty() ? stated : with_preset(stated, schema, *input, context);
+  const VolumeShow p = stated.preset.empty() ? stated : with_preset(stated, schema, *data, context);
+  const DatasetPtr input = p.mode == RayFunction::isosurface ? without_steps(data, fields_of(*data, p), context) : data;
   const Fields fields = fields_of(*input, p);
   VolumeItem item;
   item.data = input;
@@ -275,15 +302,20 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const VolumeSho
   } else if (!p.opacity) choose_transfer(p, *fields.opacity, item, context);
   else item.opacity = parse_opacity(*p.opacity, item.color);
   bool own_colors = !p.colors.empty() || !p.coloring.color.empty();
-  if (p.material.any()) item.made_of = p.material.made(stated.body > 0 ? stated.body : input->bounds().diagonal());
-  if (p.material.has_color()) {
+  if (p.material.any() || p.varying.any() || p.picture.any() || p.picture.any_other())
+    take_matter(p, stated.body > 0 ? stated.body : input->bounds().diagonal(), item, context);
+  bool matter_alone = false;  // no colours of a field, which a legend could show
+  if (p.material.has_color() || p.picture.any()) {
     if (!p.opacity) item.opacity.points = {{item.color.lo, 1}};
-    if (!own_colors && !p.coloring.map && p.coloring.range.empty() && p.color_by.empty())
-      take_one_colour(colors, own_color(*item.made_of)), own_colors = true;
+    if (!own_colors && !p.coloring.map && p.coloring.range.empty() && p.color_by.empty()) {
+      take_one_colour(colors, p.material.has_color() ? own_color(*item.made_of) : Vec3f{1, 1, 1}), own_colors = true;
+      matter_alone = !p.opacity;
+    }
   }
   if (fields.color == fields.opacity && own_colors) item.color = colors;
   take_collected_range(item, p.coloring.range.empty() && p.colors.empty(), !p.coloring.map && !own_colors);
-  const Legend legend = legend_of(item);
+  std::optional<Legend> legend;
+  if (!matter_alone) legend = legend_of(item);
   scene.items.emplace_back(std::move(item));
   return legend;
 }

@@ -5,6 +5,8 @@
 #include "scene/choose/coloring.h"
 #include "scene/scene.h"
 #include "scene/show/material_words.h"
+#include "scene/show/picture.h"
+#include "scene/show/varying_material.h"
 
 namespace sg {
 
@@ -37,6 +39,8 @@ struct VolumeShow {
   std::vector<double> levels;
   bool shaded = true;
   MaterialShow material;
+  VaryingMaterial varying;
+  PictureShow picture;
   double body = 0;  ///< diagonal of all parts of a collection; 0: that of the data
   VolumeSampling sampling;
   VolumeLight light;

@@ -58,6 +58,8 @@ void describe(Schema& s, VolumeShow& p) {
       .unit("@field");
   s("shaded", p.shaded, "Light the volume by the gradient of the field.");
   describe(s, p.material);
+  describe(s, p.varying);
+  describe(s, p.picture);
   describe(s, p.sampling);
   describe(s, p.light);
   describe(s, p.scattering);
@@ -120,8 +122,16 @@ void check(const VolumeShow& p) {
     const bool second = value_of_word<SecondAxis>(p.second) != SecondAxis::none;
     if (by == 1 && second)
       fail_usage("the second field already is the second axis", "second", "leave out second=, or opacity_by and color_by");
-    if (p.material.any() && p.mode != RayFunction::isosurface)
-      fail_usage("materials are of surfaces", "material", "use mode=isosurface with material= and its parameters, or leave them out");
+    if (by == 1 && (info_of(p.mode).collects() || p.mode == RayFunction::average || p.mode == RayFunction::maximum_difference))
+      fail_usage(fmt::format("what mode={} collects has no colour of another field", info_of(p.mode).name), "color_by",
+                 "use mode=composite, maximum, minimum, first_hit or isosurface, or leave out color_by and opacity_by");
+    if (p.mode != RayFunction::isosurface) {
+      if (p.material.any() || p.varying.any())
+        fail_usage("materials are of surfaces", "material", "use mode=isosurface with material= and its parameters, or leave them out");
+      if (p.picture.any() || p.picture.any_other())
+        fail_usage("pictures are on surfaces", "picture", "use mode=isosurface with picture=, or leave it out");
+    }
+    check(p.picture);
     if (!second && p.second_opacity && p.widgets.empty() && by == 0)
       fail_usage("there is no second axis", "second_opacity", "give one, e.g. second=gradient");
   });

@@ -41,9 +41,10 @@ TEST_CASE("parameters: those that write a file say so, and so do those that read
   CHECK(std::erase_if(writing, [](const std::string& name) { return name.ends_with(" store"); }) > 10);  // the states of simulators
   CHECK(writing == std::set<std::string>{"volume save", "film layers", "film output"});
   // Of each number of a material.
-  CHECK(std::erase_if(reading, [](const std::string& name) { return name.starts_with("surface ") && name.ends_with("_picture"); }) == 17);
+  for (const std::string_view kind : {"surface ", "volume "})
+    CHECK(std::erase_if(reading, [&](const std::string& name) { return name.starts_with(kind) && name.ends_with("_picture"); }) == 17);
   CHECK(reading == std::set<std::string>{"gradient_images path", "panorama file", "read path", "surface picture", "tensor_fit bvals",
-                                         "tensor_fit bvecs"});
+                                         "tensor_fit bvecs", "volume picture"});
   // Every other one that speaks of files, each looked at: names or files to read (the fence around a recipe holds them), or no file at all.
   for (const std::string& name : talk) {
     INFO(name);

@@ -93,15 +93,13 @@ bool is_data(const std::string& path) {
 
 }  // namespace
 
-void read_grid_textures(SurfaceShow& show, Context& context) {
-  PictureShow& p = show.picture;
+void read_grid_textures(PictureShow& p, const VaryingMaterial& v, Context& context) {
   const auto take = [&](const std::string& path, bool colors, TexelEncoding encoding) {
     if (!colors) encoding = TexelEncoding::linear;
     if (p.grids.contains({path, encoding}) || !is_data(path)) return;
     p.grids[{path, encoding}] = colors ? colors_of(path, encoding, context) : numbers_in(path, context);
   };
   take(p.picture, true, p.picture_encoding), take(p.normal_picture, false, {}), take(p.material_picture, false, {});
-  const VaryingMaterial& v = show.varying;
   for (size_t f = 0; f < v.pictures.size(); ++f) {
     const auto factor = MaterialFactor(f);
     take(v.pictures[f], factor == MaterialFactor::coat_color || factor == MaterialFactor::transmission_color, TexelEncoding::srgb);

@@ -2,12 +2,11 @@
 #include "render/trace/integrators/world.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 
 #include "render/prepare/picture_set.h"
 #include "render/trace/integrators/surface_color.h"
+#include "render/trace/integrators/varied_matter.h"
 #include "render/trace/light/fade.h"
 #include "render/trace/light/luminance.h"
 
@@ -39,48 +38,6 @@ std::vector<AnyLight> with_emitters(const PreparedScene& scene, const std::vecto
   }
   return lights;
 }
-
-// Which of the numbers that materials are prepared for its pictures multiply.
-MaterialPalette::Varies varying_numbers(const raster::PreparedItem& item) {
-  MaterialPalette::Varies varies{};
-  if (item.pictures && item.made_of)
-    for (const raster::PlacedFactors& f : item.pictures->factors)
-      for (const FactorChannel& c : f.channels)
-        if (size_t(c.factor) < MaterialPalette::numbers) varies[size_t(c.factor)] = true;
-  return varies;
-}
-
-std::unique_ptr<const MaterialPalette> palette_of(const raster::PreparedItem& item, double length, double around) {
-  const MaterialPalette::Varies varies = varying_numbers(item);
-  if (std::none_of(varies.begin(), varies.end(), [](bool v) { return v; })) return nullptr;
-  return std::make_unique<const MaterialPalette>(*item.made_of, length, around, varies);
-}
-
-// What pictures multiply numbers of a material with at a point.
-class Factors {
- public:
-  Factors() { of_.fill({1, 1, 1}); }
-  void multiply(MaterialFactor f, Vec3f by) { of_[size_t(f)] = of_[size_t(f)] * by; }
-  const Vec3f& color(MaterialFactor f) const { return of_[size_t(f)]; }
-  float operator[](MaterialFactor f) const { return of_[size_t(f)].x; }
-  MaterialPalette::Shares prepared() const {
-    MaterialPalette::Shares shares;
-    for (size_t i = 0; i < shares.size(); ++i) shares[i] = of_[i].x;
-    return shares;
-  }
-
- private:
-  std::array<Vec3f, material_factors> of_;
-};
-
-// A number for a point, as good as random.
-uint32_t spot_of(const Hit& hit) {
-  uint32_t n = hit.primitive;
-  for (const float x : {hit.u, hit.v, hit.t}) n = (n ^ std::bit_cast<uint32_t>(x)) * 0x85ebca6bu, n ^= n >> 15;
-  return n;
-}
-
-Vec3f root_of(Vec3f c) { return {std::sqrt(c.x), std::sqrt(c.y), std::sqrt(c.z)}; }
 
 Box3f bounds_of(const Geometry& geometry, const Media* media) {
   Box3f all = geometry.bounds();
@@ -121,14 +78,18 @@ World::World(PreparedScenePtr scene, Geometry geometry, std::vector<std::shared_
     const raster::PreparedItem& item = scene_->items[i];
     translucent_ = translucent_ || item.translucent || item.opacity < 1 || item.color.translucent || look_.fades(i);
   }
-  for (const Isosurfaces::Look& look : isosurfaces_)
+  for (const Isosurfaces::Look& look : isosurfaces_) {
     for (const Vec4f& c : look.colors) translucent_ = translucent_ || c.w < 1;
-  for (const raster::PreparedItem& item : scene_->items) {
-    pictures_ = pictures_ || item.pictures;
-    palettes_.push_back(palette_of(item, geometry_.placement().scale, 1));
-    translucent_ = translucent_ || (palettes_.back() && item.made_of->transmission_weight > 0);
+    translucent_ = translucent_ || (look.patches && look.patches->all().pictures->translucent());
   }
   palettes_.resize(materials_.size());
+  for (size_t i = 0; i < materials_.size(); ++i) {
+    const raster::PreparedItem* item = matter_of(i);
+    if (!item) continue;
+    pictures_ = pictures_ || item->pictures;
+    palettes_[i] = palette_of(*item, geometry_.placement().scale, 1);
+    translucent_ = translucent_ || (palettes_[i] && item->made_of->transmission_weight > 0);
+  }
   for (const auto& m : materials_) translucent_ = translucent_ || m->passes_straight();
   find_boundaries();
 }
@@ -138,6 +99,13 @@ bool World::walks_below() const {
 }
 
 Box3f World::bounds() const { return bounds_of(geometry_, media_.get()); }
+
+const raster::PreparedItem* World::matter_of(size_t object) const {
+  const size_t items = scene_->items.size();
+  if (object < items) return &scene_->items[object];
+  const auto& patches = isosurfaces_[object - items].patches;
+  return patches ? &patches->all() : nullptr;
+}
 
 void World::find_boundaries() {
   const auto orders = [](const Material& m) { return m.priority() > 0 && m.has_inside(); };
@@ -153,7 +121,7 @@ void World::find_boundaries() {
       if (in.get() == &of || !orders(*in) || in->priority() > of.priority() || matter(uint32_t(i), in.get()).material != &of) continue;
       const double scale = geometry_.placement().scale, around = double(in->ior());
       boundaries_.push_back({uint32_t(i), in->ior(), std::make_unique<const Material>(*made_of, scale, around),
-                             i < items ? palette_of(scene_->items[i], scale, around) : nullptr});
+                             matter_of(i) ? palette_of(*matter_of(i), scale, around) : nullptr});
     }
   }
 }
@@ -195,14 +163,34 @@ Insides Vertex::onward(const Insides& around, Vec3f from, Vec3f to) const {
   return next;
 }
 
-Vec4f World::color(const Ray& ray, const Hit& hit, const RayFootprint& footprint) const {
+World::Seen World::seen(const Ray& ray, const Hit& hit, const SurfacePoint* point) const {
   const size_t items = scene_->items.size();
-  if (hit.object >= items) return isosurfaces_[hit.object - items].colors[hit.primitive];
-  const raster::PreparedItem& item = scene_->items[hit.object];
-  Vec4f color = surface_color(item, ray, hit, footprint, geometry_.placement().scale);
-  if (look_.changes(hit.object))
-    look_.apply(item, hit.object, hit.primitive, geometry_.placement().world(ray.origin + ray.direction * hit.t), color);
+  Seen s;
+  s.hit = hit;
+  if (hit.object < items) {
+    s.item = &scene_->items[hit.object];
+    return s;
+  }
+  const Isosurfaces::Look& look = isosurfaces_[hit.object - items];
+  const Vec3 place = geometry_.placement().world(point ? point->position : ray.origin + ray.direction * hit.t);
+  s.color = look.color_at ? look.color_at(hit.primitive, place) : look.colors[hit.primitive];
+  if (!look.patches || (!point && !look.patches->all().pictures->color)) return s;
+  const Vec3f normal = point ? point->face_normal : geometry_.at(ray, hit).face_normal;
+  s.patch = look.patches->at(place, Vec3(normal), s.color);
+  if (s.patch) s.item = s.patch.get(), s.hit.primitive = 0, s.hit.u = s.hit.v = 0;
+  return s;
+}
+
+Vec4f World::color(const Seen& s, const Ray& ray, const RayFootprint& footprint) const {
+  if (!s.item) return s.color;
+  Vec4f color = surface_color(*s.item, ray, s.hit, footprint, geometry_.placement().scale);
+  if (look_.changes(s.hit.object))
+    look_.apply(*s.item, s.hit.object, s.hit.primitive, geometry_.placement().world(ray.origin + ray.direction * s.hit.t), color);
   return color;
+}
+
+Vec4f World::color(const Ray& ray, const Hit& hit, const RayFootprint& footprint) const {
+  return color(seen(ray, hit, nullptr), ray, footprint);
 }
 
 uint32_t World::id(const Hit& hit) const {
@@ -220,43 +208,6 @@ bool World::same_surface(const SurfacePoint& point, const Hit& hit) const {
   return a < shows_.size() && b < shows_.size() && shows_[a] == shows_[b] && !is_line(point.object) && !is_line(hit.object);
 }
 
-// What pictures make of the material and of the normal there.
-MaterialShares World::take_pictures(const raster::PreparedItem& item, const Ray& ray, const Hit& hit, const RayFootprint& footprint,
-                                    const MaterialPalette* palette, Vertex& v) const {
-  const raster::PictureSet& pictures = *item.pictures;
-  const double scale = geometry_.placement().scale;
-  Factors factors;
-  for (const raster::PlacedFactors& f : pictures.factors) {
-    const Vec4f t = surface_picture(f.picture, item, ray, hit, footprint, scale);
-    if (!(t.w > 0)) continue;
-    const auto share = [&](int channel) { return std::clamp(t[channel] / t.w, 0.f, 1.f); };
-    for (const FactorChannel& c : f.channels)
-      factors.multiply(c.factor, c.factor < MaterialFactor::transmission_color ? Vec3f(1, 1, 1) * share(c.channel)
-                                                                               : Vec3f(share(0), share(1), share(2)));
-  }
-  if (palette) v.material = &palette->at(factors.prepared(), spot_of(hit));
-  v.below_radius = v.below_radius * factors.color(MaterialFactor::subsurface_radius);
-  v.below_anisotropy *= factors[MaterialFactor::subsurface_anisotropy];
-  if (pictures.emission) {
-    const Vec4f t = surface_picture(*pictures.emission, item, ray, hit, {}, scale);  // as the lights know it
-    v.emission = v.emission * Vec3f{t.x, t.y, t.z};
-  }
-  if (pictures.normal) {
-    const Vec3f bent = surface_normal(item, ray, hit, footprint, scale, v.point.shading_normal);
-    // What looks away from a viewer who sees the face could not be seen.
-    if ((dot(ray.direction, bent) < 0) == (dot(ray.direction, v.point.face_normal) < 0)) v.point.shading_normal = bent;
-  }
-  if (!pictures.stretched_along.empty())
-    if (const Vec3f along = surface_direction(pictures, item, hit); dot(along, along) > 0) v.point.tangent = normalize(along);
-  MaterialShares shares = v.material->shares;
-  shares.coat *= factors[MaterialFactor::coat], shares.retro *= factors[MaterialFactor::retro];
-  shares.metalness *= factors[MaterialFactor::metalness], shares.clear *= factors[MaterialFactor::transmission];
-  shares.subsurface *= factors[MaterialFactor::subsurface];
-  shares.coat_filter = shares.coat_filter * root_of(factors.color(MaterialFactor::coat_color));  // of one passage of two
-  shares.clear_filter = shares.clear_filter * factors.color(MaterialFactor::transmission_color);
-  return shares;
-}
-
 Vertex World::at(const Ray& ray, const Hit& hit, const RayFootprint& footprint, bool walks, const Insides& around) const {
   Vertex v;
   v.point = geometry_.at(ray, hit);
@@ -266,9 +217,12 @@ Vertex World::at(const Ray& ray, const Hit& hit, const RayFootprint& footprint, 
   const Matter matter = this->matter(hit.object, in);
   v.material = matter.material, v.emission = body.emission();
   v.below_radius = body.subsurface_radius(), v.below_anisotropy = body.subsurface_anisotropy();
-  const Vec4f color = this->color(ray, hit, footprint);
-  const raster::PreparedItem* item = hit.object < scene_->items.size() ? &scene_->items[hit.object] : nullptr;
-  const MaterialShares shares = item && item->pictures ? take_pictures(*item, ray, hit, footprint, matter.palette, v) : v.material->shares;
+  const Seen seen = this->seen(ray, hit, &v.point);
+  const Vec4f color = this->color(seen, ray, footprint);
+  const MaterialShares shares =
+      seen.item && seen.item->pictures
+          ? take_pictures(*seen.item, ray, seen.hit, footprint, geometry_.placement().scale, matter.palette, v)
+          : v.material->shares;
   // At a silhouette the shading normal may look away from a viewer who sees the face.
   const bool above = dot(ray.direction, v.point.face_normal) < 0, shaded_above = dot(ray.direction, v.point.shading_normal) < 0;
   v.frame = LocalFrame::about(above == shaded_above ? v.point.shading_normal : v.point.face_normal, v.point.tangent);

@@ -90,8 +90,18 @@ class World {
   };
   void find_boundaries();
   Matter matter(uint32_t object, const Material* in) const;
-  MaterialShares take_pictures(const raster::PreparedItem& item, const Ray& ray, const Hit& hit, const RayFootprint& footprint,
-                               const MaterialPalette* palette, Vertex& v) const;
+  // An item of which something was met, and where; of a level set a patch of it, or none where it has one colour and material.
+  struct Seen {
+    std::shared_ptr<const raster::PreparedItem> patch;
+    const raster::PreparedItem* item = nullptr;
+    Hit hit;
+    Vec4f color;  // without an item
+  };
+  // `point`: null where colours alone are wanted.
+  Seen seen(const Ray& ray, const Hit& hit, const SurfacePoint* point) const;
+  Vec4f color(const Seen& seen, const Ray& ray, const RayFootprint& footprint) const;
+  // The item with the material and the pictures of an object of the geometry; null: a level set without pictures.
+  const raster::PreparedItem* matter_of(size_t object) const;
 
   PreparedScenePtr scene_;
   Geometry geometry_;

@@ -17,6 +17,9 @@ namespace {
 using volume::RayField;
 using volume::Stretch;
 
+/// Of the smallest edge that matters: fields are straight enough on it.
+constexpr double reach_share = 0.05;
+
 /// The derivative of a stretch's cubic at t.
 double slope(const Stretch& s, double t) {
   const double f = (t - s.from) / (s.to - s.from), g = 1 - f;
@@ -107,7 +110,7 @@ class IsosurfaceObject : public Geometry::Object {
     const Vec3 direction = normalize(Vec3(ray.direction)), place = local.world(ray.origin) * length_ + direction * t;
 
     // The gradient of the field itself, by its derivatives along the axes: that of the surface that rays meet.
-    const double reach = 0.05 * volume_.source->edge;
+    const double reach = reach_share * volume_.source->edge;
     Vec3 gradient;
     double largest = std::abs((*volume_.levels)[hit.primitive]);
     for (int a = 0; a < 3; ++a) {
@@ -134,6 +137,21 @@ class IsosurfaceObject : public Geometry::Object {
     const double error = (place_error_ + value_error) / per_local_;
     p.error = {error, error, error};
     return p;
+  }
+
+  /// Colour at a place of the world, where it follows another field.
+  Vec3f color_at(uint32_t level, Vec3 world) const {
+    const auto field = fields_.borrow();
+    const Vec3 place = world * length_;
+    const double reach = reach_share * volume_.source->edge;
+    float second = NAN;
+    // Stretches without the level are passed over: one of the axes crosses it.
+    for (int a = 0; a < 3 && second != second; ++a) {
+      Vec3 axis;
+      axis[a] = 1;
+      if (const auto s = around(*field, place - axis * reach, axis, 2 * reach)) second = field->second(*s, std::clamp(reach, s->from, s->to));
+    }
+    return volume_.color_at(float((*volume_.levels)[level]), second);
   }
 
   Box3f bounds() const override { return bounds_; }
@@ -191,8 +209,18 @@ Isosurfaces isosurfaces_of(const Scene& scene, const Projection& projection, Con
     std::shared_ptr<const volume::Volume> lattice;
     volume::CastVolume v = volume::prepare_volume(std::get<VolumeItem>(own->items[i]), uint32_t(i + 1), inner, knobs, context, lattice);
     if (!v.source) continue;
-    out.looks.push_back(look_of(v));
-    out.objects.push_back(std::make_shared<IsosurfaceObject>(own, std::move(v), length));
+    Isosurfaces::Look look = look_of(v);
+    const auto& item = std::get<VolumeItem>(scene.items[i]);
+    if (item.pictures && item.made_of)
+      look.patches = std::make_shared<const LevelPatches>(*item.pictures, *item.made_of, item.data, reach_share * v.source->edge / length, context);
+    const auto object = std::make_shared<IsosurfaceObject>(own, std::move(v), length);
+    if (item.detail.color_by_second)
+      look.color_at = [object, colors = look.colors](uint32_t level, Vec3 place) {
+        const Vec3f c = object->color_at(level, place);
+        return Vec4f{c.x, c.y, c.z, colors[level].w};
+      };
+    out.looks.push_back(std::move(look));
+    out.objects.push_back(object);
   }
   return out;
 }

@@ -11,6 +11,12 @@
 
 namespace sg::volume {
 
+Vec3f CastVolume::color_at(float stored, float second) const {
+  if (!item->detail.color_by_second) return medium->at(stored).color;
+  const TransferFunction::Sample s = transfer->at(stored, second);
+  return {s.r, s.g, s.b};
+}
+
 /// Fixed steps over whatever stretches come: each step has one sample, taken in its middle (or its two ends, pre-integrated), and counts
 /// with the length on which there is a volume. Of a step that is cut short the sample lies in the middle of what there is.
 struct Caster::Steps {
@@ -168,14 +174,15 @@ void Caster::collect(Active& active, const CastRay& ray) {
   RayField& walker = *active.walker;
   const float base = v.source->base;
   // A scalar is drawn in the full colour of its value, unless its opacity there is zero.
-  const auto put_value = [&](double value, double t) {
-    const Optics o = v.medium->at(float(value));
-    if (!(o.tau > 0)) return;
+  const auto put_value = [&](double value, double t, float second = NAN) {
+    if (!(v.medium->tau(float(value)) > 0)) return;
+    const Vec3f c = v.color_at(float(value), second);
     const float fade = v.effects && active.look.lit ? v.effects->fade(ray.origin + ray.direction * t) : 0;
-    put(float(t), fade > 0 ? o.color * (1 - fade) + active.lights.background * fade : o.color, 1, v.id);
+    put(float(t), fade > 0 ? c * (1 - fade) + active.lights.background * fade : c, 1, v.id);
   };
-  const auto put_surface = [&](float stored, double t, Vec3f gradient, float alpha) {
-    Vec3f c = v.medium->at(stored).color;
+  const auto at = [](const Found& f) { return Stretch{f.t, f.t + 1e-6, {}, f.cell}; };
+  const auto put_surface = [&](float stored, float second, double t, Vec3f gradient, float alpha) {
+    Vec3f c = v.color_at(stored, second);
     if (active.look.lit) {  // a surface by definition
       const Lit l = v.effects ? light_at(active.lights, t, gradient, HUGE_VALF, 1) : light_at(active.lights, gradient, HUGE_VALF, 1);
       c = l.color(c);
@@ -187,7 +194,7 @@ void Caster::collect(Active& active, const CastRay& ray) {
     case RayFunction::maximum:
     case RayFunction::minimum: {
       const Found f = v.item->mode == RayFunction::maximum ? largest(walker) : smallest(walker);
-      if (f.found) put_value(f.value, f.t);
+      if (f.found) put_value(f.value, f.t, walker.second(at(f), f.t));
       break;
     }
     case RayFunction::average:
@@ -206,8 +213,7 @@ void Caster::collect(Active& active, const CastRay& ray) {
         put_value(f.t - f.first, f.t);
         break;
       }
-      Stretch there{f.t, f.t + 1e-6, {}, f.cell};
-      put_surface(float(f.value), f.t, walker.gradient(there, f.t), 1);
+      put_surface(float(f.value), walker.second(at(f), f.t), f.t, walker.gradient(at(f), f.t), 1);
       break;
     }
     case RayFunction::accumulate: {
@@ -219,7 +225,7 @@ void Caster::collect(Active& active, const CastRay& ray) {
       all_crossings(walker, *v.levels, crossings_);
       for (const Crossing& c : crossings_) {
         const double value = (*v.levels)[c.level] + double(base);
-        put_surface(float((*v.levels)[c.level]), c.t, c.gradient, float(std::clamp(v.item->opacity.at(value), 0.0, 1.0)));
+        put_surface(float((*v.levels)[c.level]), c.second, c.t, c.gradient, float(std::clamp(v.item->opacity.at(value), 0.0, 1.0)));
       }
       break;
     }

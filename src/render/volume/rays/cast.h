@@ -32,6 +32,9 @@ struct CastVolume {
   std::shared_ptr<const LightEffects> effects;  ///< null = none
   bool averaged = false;                        ///< the source is that of means of cells (antialias), not the lattice's own
 
+  /// Linear colour of a surface, or of whatever is drawn at one place, with this (stored) value. `second`: of the second field there, which
+  /// counts where colours follow it.
+  Vec3f color_at(float stored, float second) const;
   /// What takes light away.
   Extinction extinction() const { return {*medium, item->detail.plain() ? nullptr : detail.get()}; }
 };

@@ -105,11 +105,11 @@ void each_crossing(RayField& ray, std::span<const double> levels, F&& f) {
         const float level = float(levels[l]);
         // A jump over the level between neighbours; and a crossing exactly between them counts once, with the nearer one.
         const bool jump = joined && ((last_value < level && p.b[0] > level) || (last_value > level && p.b[0] < level));
-        if (jump) here.push_back({p.from, l, {}});
+        if (jump) here.push_back({p.from, l, {}, NAN});
         double at[3];
         const int count = crossings(p.b, level, at);
         for (int k = 0; k < count; ++k)
-          if (!(at[k] == 0 && joined && last_value == level)) here.push_back({p.from + at[k] * (p.to - p.from), l, {}});
+          if (!(at[k] == 0 && joined && last_value == level)) here.push_back({p.from + at[k] * (p.to - p.from), l, {}, NAN});
       }
       std::stable_sort(here.begin(), here.end(), [](const Crossing& a, const Crossing& b) { return a.t < b.t; });
       for (const Crossing& c : here)
@@ -123,7 +123,7 @@ void each_crossing(RayField& ray, std::span<const double> levels, F&& f) {
 void all_crossings(RayField& ray, std::span<const double> levels, std::vector<Crossing>& out) {
   out.clear();
   each_crossing(ray, levels, [&](const Crossing& c, const Stretch& s) {
-    out.push_back({c.t, c.level, ray.gradient(s, c.t)});
+    out.push_back({c.t, c.level, ray.gradient(s, c.t), ray.second(s, c.t)});
     return true;
   });
 }

@@ -36,10 +36,11 @@ struct Crossing {
   double t;
   uint32_t level;  ///< number in the list
   Vec3f gradient;  ///< world
+  float second;    ///< value of the second field (RayField::second)
 };
 /// All crossings of the levels, from near to far; where the value jumps over a level between two stretches without a gap there is one too.
 void all_crossings(RayField& ray, std::span<const double> levels, std::vector<Crossing>& out);
-/// The nearest of them with `after` < t; its gradient is left out.
+/// The nearest of them with `after` < t; its gradient and second value are left out.
 std::optional<Crossing> first_crossing(RayField& ray, std::span<const double> levels, double after);
 
 }  // namespace sg::volume

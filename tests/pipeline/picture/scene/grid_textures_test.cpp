@@ -9,6 +9,7 @@
 #include "image/image.h"
 #include "io/io.h"
 #include "scene/show/show.h"
+#include "scene/show/surface.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -42,7 +43,7 @@ TEST_CASE("grid textures: values are coloured as the grid itself would be, point
   const GridFile file({3, 2, 1}, heights());
   SurfaceShow show;
   show.picture.picture = file.path;
-  read_grid_textures(show, context);
+  read_grid_textures(show.picture, show.varying, context);
   REQUIRE(show.picture.grids.size() == 1);
   const Texture& t = *show.picture.grids.at({file.path, TexelEncoding::srgb});
   CHECK(t.width() == 3);
@@ -57,7 +58,7 @@ TEST_CASE("grid textures: values are coloured as the grid itself would be, point
   // The parts of a collection have it, too.
   const ShowKind& kind = show_kind<SurfaceShow>();
   const ParamSet stated = show_params(kind, {"picture=" + file.path, "opacity=0.5"});
-  read_grid_textures(stated.as<SurfaceShow>(), context);
+  read_grid_textures(stated.as<SurfaceShow>().picture, stated.as<SurfaceShow>().varying, context);
   const ParamSet copy = kind.copy(stated);
   CHECK(copy.as<SurfaceShow>().picture.grids.size() == 1);
   CHECK(copy.as<SurfaceShow>().opacity == 0.5);
@@ -72,7 +73,7 @@ TEST_CASE("grid textures: colours are those of the grid, numbers what they are, 
   SurfaceShow show;
   show.picture.picture = rgb.path;
   show.varying.pictures[size_t(MaterialFactor::coat)] = rgb.path;
-  read_grid_textures(show, context);
+  read_grid_textures(show.picture, show.varying, context);
   const Texture& colors = *show.picture.grids.at({rgb.path, TexelEncoding::srgb});
   CHECK(colors.levels()[0].at(0, 0).x == 1);
   CHECK(colors.levels()[0].at(1, 0).y == Approx(srgb_decode(128 / 255.f)));
@@ -86,13 +87,13 @@ TEST_CASE("grid textures: pictures stay pictures, and what is neither says what 
   write_image(png, Image(2, 2, 3));
   SurfaceShow show;
   show.picture.picture = png;
-  read_grid_textures(show, context);
+  read_grid_textures(show.picture, show.varying, context);
   CHECK(show.picture.grids.empty());
   std::filesystem::remove(png);
   const GridFile cube({2, 2, 2}, {"v", Association::point, Array::from_vector(std::vector<float>(8, 1.f)), "", Role::scalars},
                       "sg_grid_cube.vti");
   show.picture.picture = cube.path;
-  CHECK(test::contains(test::error_of([&] { read_grid_textures(show, context); }), "one layer"));
+  CHECK(test::contains(test::error_of([&] { read_grid_textures(show.picture, show.varying, context); }), "one layer"));
   show.picture.picture = "/no/such/picture.vti";
-  CHECK(test::contains(test::error_of([&] { read_grid_textures(show, context); }), "picture.vti"));
+  CHECK(test::contains(test::error_of([&] { read_grid_textures(show.picture, show.varying, context); }), "picture.vti"));
 }

@@ -75,6 +75,23 @@ TEST_CASE("ray functions: isosurfaces lie where a sphere is, nearest first, each
     CHECK(double(look(scene_of({v}), b, 0).depth[0]) == Approx(100 - std::sqrt(0.81 - b * b)).epsilon(2e-5));
 }
 
+TEST_CASE("ray functions: surfaces and extremes have the colour of another field, where they are") {
+  // f = -|z - 0.2| is largest, and reaches -0.3, at places known; g = z.
+  DatasetParts parts = grid(cube(21, -1, 1), [](Vec3 p) { return -std::abs(p.z - 0.2); })->parts();
+  parts.fields.add({"g", Association::point, grid(cube(21, -1, 1), [](Vec3 p) { return p.z; })->fields()[0].array, "", Role::none});
+  const DatasetPtr d = make_dataset(parts);
+  const auto seen = [&](RayFunction mode) {
+    VolumeItem v = scalar_item(d, mode, -2, 1);
+    v.field = d->fields()[0].name, v.levels = {-0.3};
+    v.detail.second = SecondAxis::field, v.detail.second_field = "g", v.detail.color_by_second = true, v.detail.second_color = grey(-1, 1);
+    return value_of(look(scene_of({v}), 0.05, 0.03), -1, 1);
+  };
+  CHECK(seen(RayFunction::maximum) == Approx(0.2).epsilon(0.01));
+  CHECK(seen(RayFunction::minimum) == Approx(-1).epsilon(0.01));
+  CHECK(seen(RayFunction::first_hit) == Approx(0.5).epsilon(0.01));
+  CHECK(seen(RayFunction::isosurface) == Approx(0.5).epsilon(0.01));
+}
+
 TEST_CASE("ray functions: the largest difference does not depend on where its rise is seen, and a later maximum shines through") {
   const auto at = [](double first, double second) {
     const DatasetPtr d = grid(cube(65, -1, 1), [=](Vec3 p) {

@@ -68,7 +68,9 @@ class CellField : public RayField {
   float second(const Stretch& stretch, double t) override {
     if (volume_.seconds.empty()) return 0;
     double w[4], sum = 0;
-    const auto& v = volume_.mesh->corners[place(stretch, t, w)];
+    const size_t tet = place(stretch, t, w);
+    if (volume_.second_by_cell) return volume_.seconds[volume_.mesh->cell(tet)];
+    const auto& v = volume_.mesh->corners[tet];
     for (size_t k = 0; k < 4; ++k) sum += w[k] * double(volume_.seconds[v[k]]);
     return float(sum);
   }

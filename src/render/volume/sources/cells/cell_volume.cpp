@@ -337,6 +337,24 @@ void take_curved(CellVolume& v, const VolumeItem& item, Context& context) {
   v.part_of = {parts.data, parts.count};
 }
 
+/// As the first field: of points, of cells, or of cells at the corners of an AMR grid's leaves.
+void take_second(CellVolume& v, const VolumeItem& item, Context& context) {
+  const std::string& name = item.detail.second_field;
+  const Field* second = v.by_cell ? nullptr : v.data->fields().find(name, Association::point);
+  DatasetPtr leaves;
+  if (const Field* of_cells = item.data->fields().find(name, Association::cell); !second && v.leaves && of_cells) {
+    int component = -1;
+    leaves = straightened(item.data, of_cells, component, context);
+    if (leaves->point_count() == v.data->point_count()) second = of_cells;  // else each leaves out other cells
+  }
+  v.second_by_cell = !second;
+  if (!second) second = v.data->fields().find(name, Association::cell);
+  if (!second) return;
+  float none = 0;
+  v.seconds = stored_values(*second, -1, false, none);
+  if (!v.second_by_cell) add_middles(v, v.seconds);
+}
+
 }  // namespace
 
 CellVolume make_cell_volume(const VolumeItem& item, Context& context) {
@@ -353,12 +371,7 @@ CellVolume make_cell_volume(const VolumeItem& item, Context& context) {
   v.key = fmt::format("{}/{}/{}", field->name, association_name(field->association), component);
   take_field(v, *field, component, item.color.kind == ScaleKind::linear && item.color.labels.empty(), context);
   if (v.data != item.data && !v.leaves && !v.by_cell) take_curved(v, item, context);
-  if (item.detail.second == SecondAxis::field)
-    if (const Field* second = v.data->fields().find(item.detail.second_field, Association::point)) {
-      float none = 0;
-      v.seconds = stored_values(*second, -1, false, none);
-      add_middles(v, v.seconds);
-    }
+  if (item.detail.second == SecondAxis::field) take_second(v, item, context);
   return v;
 }
 

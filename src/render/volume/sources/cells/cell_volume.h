@@ -22,7 +22,8 @@ struct CellVolume {
   bool by_cell = false;                  ///< the field is constant in each cell
   std::string key;                       ///< names the field in the dataset's memo
   Plane<float> values;                   ///< stored: of the mesh's vertices, or of the cells of `data`
-  Plane<float> seconds;                  ///< the second field at the mesh's vertices; may be empty
+  Plane<float> seconds;                  ///< the second field at the mesh's vertices, or of its cells; may be empty
+  bool second_by_cell = false;
   float base = 0;                        ///< value = stored + base
   Range range;                           ///< of the stored values that are drawn; empty when none are
   float fit_error = 0;                   ///< largest departure of a stretch from the field in cells that are not tetrahedra or boxes

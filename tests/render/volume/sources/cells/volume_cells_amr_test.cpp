@@ -54,6 +54,30 @@ TEST_CASE("volume cells: AMR leaves fill their box once, linear fields are exact
   }
 }
 
+TEST_CASE("volume cells: a second field of AMR cells is interpolated as the first is") {
+  for (const DatasetPtr& grid : {amr(), amr_small()}) {
+    DatasetParts parts = with_amr_field(grid, linear, Association::cell)->parts();
+    parts.fields.add({"g", Association::cell, parts.fields.require("f").array, "", Role::none});
+    VolumeItem item = item_of(make_dataset(std::move(parts)), Association::cell);
+    item.detail.second = SecondAxis::field, item.detail.second_field = "g";
+    Context context;
+    const auto source = volume::cell_source(item, context);
+    const auto walker = source->walker();
+    size_t seen = 0;
+    for (const TestRay& ray : some_rays(10)) {
+      walker->start(ray.o, ray.d, -100, 100);
+      volume::Stretch s[64];
+      while (const size_t n = walker->next(s))
+        for (size_t i = 0; i < n; ++i, ++seen)
+          for (const double share : {0.2, 0.7}) {
+            const double t = s[i].from + share * (s[i].to - s[i].from);
+            CHECK(double(walker->second(s[i], t)) == doctest::Approx(linear(ray.o + ray.d * t)).epsilon(2e-4));
+          }
+    }
+    CHECK(seen > 20);
+  }
+}
+
 TEST_CASE("volume cells: a flat AMR grid has no volume") {
   const VolumeItem item = item_of(with_amr_field(amr(2), linear, Association::cell), Association::cell);
   CHECK(error_of([&] { gather(item, {}, {0, 0, 1}); }).find("two dimensions") != std::string::npos);

@@ -326,6 +326,34 @@ TEST_CASE("volume cells: a curvilinear grid is its hexahedra") {
   }
 }
 
+TEST_CASE("volume cells: a second field of cells is that of the cell that the ray is in") {
+  DatasetParts parts = with_field(cube(CellType::tetra, 3), linear)->parts();
+  const size_t cells = make_dataset(parts)->cell_count();
+  std::vector<float> first(cells), second(cells);
+  for (size_t i = 0; i < cells; ++i) first[i] = float(i), second[i] = float(2 * i + 1);
+  parts.fields.add({"f", Association::cell, Array::from_vector(first), "", Role::none});
+  parts.fields.add({"g", Association::cell, Array::from_vector(second), "", Role::none});
+  VolumeItem item = item_of(make_dataset(parts));
+  item.field = "f", item.association = Association::cell;
+  item.detail.second = SecondAxis::field, item.detail.second_field = "g";
+  Context context;
+  const auto source = volume::cell_source(item, context);
+  const auto walker = source->walker();
+  size_t seen = 0;
+  for (const TestRay& ray : some_rays(20)) {
+    walker->start(ray.o, ray.d, -100, 100);
+    volume::Stretch s[64];
+    while (const size_t n = walker->next(s))
+      for (size_t i = 0; i < n; ++i) {
+        const double t = 0.5 * (s[i].from + s[i].to);
+        if (s[i].to - s[i].from < 1e-6) continue;
+        CHECK(walker->second(s[i], t) == 2 * (s[i].value(t) + source->base) + 1);
+        ++seen;
+      }
+  }
+  CHECK(seen > 40);
+}
+
 TEST_CASE("volume cells: gradients and a second field of linear fields are exact") {
   for (CellType kind : all_kinds()) {
     CAPTURE(name_of(kind));
