@@ -103,9 +103,10 @@ struct Binning {
 
 struct Split {
   int axis = -1, bin = 0;  // cells with bin <= `bin` go left
-  float cost = HUGE_VALF;  // sum of half area times count
+  float cost = HUGE_VALF;  // sum of half area times tests
 };
-Split best_split(const Bins& bins, const Binning& b) {
+Split best_split(const Bins& bins, const Binning& b, uint32_t at_once) {
+  const auto tests = [&](uint32_t n) { return float((n + at_once - 1) / at_once); };
   Split best;
   for (int a = b.first_axis; a <= b.last_axis; ++a) {
     if (!(b.scale[a] > 0)) continue;
@@ -115,14 +116,14 @@ Split best_split(const Bins& bins, const Binning& b) {
     for (int i = b.bins - 1; i > 0; --i) {
       box.add(bins.at[a][i].box);
       n += bins.at[a][i].count;
-      right_cost[i] = n ? box.half_area() * float(n) : HUGE_VALF;
+      right_cost[i] = n ? box.half_area() * tests(n) : HUGE_VALF;
     }
     box = Bounds(), n = 0;
     for (int i = 0; i + 1 < b.bins; ++i) {
       box.add(bins.at[a][i].box);
       n += bins.at[a][i].count;
       if (n == 0) continue;
-      const float cost = box.half_area() * float(n) + right_cost[i + 1];
+      const float cost = box.half_area() * tests(n) + right_cost[i + 1];
       if (cost < best.cost) best = {a, i, cost};
     }
   }
@@ -170,7 +171,7 @@ void build_subtree(TreeRecord* records, NodeRange root, const TreeLimits& limits
         const Binning binning(e.centers, n);
         Bins bins;
         binning.fill(first, n, bins);
-        const Split s = best_split(bins, binning);
+        const Split s = best_split(bins, binning, limits.at_once);
         if (s.axis >= 0 && worth_splitting(limits, s, e.box.half_area(), n))
           left = size_t(std::partition(first, first + n, [&](const TreeRecord& t) { return binning.bin(t)[s.axis] <= s.bin; }) - first);
       }
@@ -232,7 +233,8 @@ size_t partition_parallel(TreeRecord* r, size_t n, Left&& is_left) {
 }
 
 // Nodes of many cells, breadth first; ranges that are small enough go to `tasks`, in the order of their nodes.
-void build_top(TreeRecord* records, uint32_t count, std::vector<TreeNode>& nodes, std::vector<NodeRange>& tasks, Context& context) {
+void build_top(TreeRecord* records, uint32_t count, std::vector<TreeNode>& nodes, std::vector<NodeRange>& tasks, const TreeLimits& limits,
+               Context& context) {
   nodes.assign(2, TreeNode{});
   std::vector<NodeRange> queue{{0, count, 0, 0}};
   for (size_t q = 0; q < queue.size(); ++q) {
@@ -267,7 +269,7 @@ void build_top(TreeRecord* records, uint32_t count, std::vector<TreeNode>& nodes
             }
           return a;
         });
-    const Split s = best_split(bins, binning);
+    const Split s = best_split(bins, binning, limits.at_once);
     size_t left = 0;
     if (s.axis >= 0) left = partition_parallel(first, n, [&](const TreeRecord& t) { return binning.bin(t)[s.axis] <= s.bin; });
     if (left == 0 || left == n) left = halve(first, n, e.centers);
@@ -286,7 +288,7 @@ BoxTree build_box_tree(Plane<TreeRecord> records, const TreeLimits& limits, Cont
   if (records.empty()) return tree;
   std::vector<TreeNode> top;
   std::vector<NodeRange> tasks;
-  build_top(records.data(), uint32_t(records.size()), top, tasks, context);
+  build_top(records.data(), uint32_t(records.size()), top, tasks, limits, context);
   std::vector<std::vector<TreeNode>> parts(tasks.size());
   parallel_for(
       tasks.size(), 1,

@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t triangles_per_chunk = 1 << 14;
 /// A block is tested at once for little more than a node: what fits into one is never split, so that few places stay free.
-constexpr TreeLimits block_limits{.most = wide, .least = wide};
+constexpr TreeLimits block_limits{.most = wide, .least = wide, .at_once = wide};
 
 bool box_of(const TriangleInput& in, size_t triangle, TreeRecord& r) {
   const Vec3f a = in.corner(triangle, 0), b = in.corner(triangle, 1), c = in.corner(triangle, 2);

@@ -21,12 +21,11 @@ bool nearest_triangle(const Triangles& in, const Ray& ray, Hit& hit) {
   const TriangleBlock* blocks = in.blocks().data();
   bool found = false;
   walk(
-      in.tree().nodes().data(), NodeRay<false>(BoxRay(ray)), hit.t,
+      in.tree().nodes().data(), NodeRay<false>(BoxRay(ray)), hit.t, Children(in.tree().nodes().data(), blocks),
       [&](uint32_t leaf) {
         if (nearest_in(r, blocks[leaf], hit, found)) in.fetch(hit.primitive);
         return false;
-      },
-      [&](uint32_t leaf) { prefetch_lines(blocks + leaf, 5); });
+      });
   return found;
 }
 
@@ -36,8 +35,8 @@ bool any_triangle(const Triangles& in, const Ray& ray) {
   const TriangleBlock* blocks = in.blocks().data();
   bool found = false;
   walk_any(
-      in.tree().nodes().data(), NodeRay<false>(BoxRay(ray)), ray.t_max,
-      [&](uint32_t leaf) { return found = any_in(r, blocks[leaf], ray.t_max); }, [&](uint32_t leaf) { prefetch_lines(blocks + leaf, 5); });
+      in.tree().nodes().data(), NodeRay<false>(BoxRay(ray)), ray.t_max, Children(in.tree().nodes().data(), blocks),
+      [&](uint32_t leaf) { return found = any_in(r, blocks[leaf], ray.t_max); });
   return found;
 }
 

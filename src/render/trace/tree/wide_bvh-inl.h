@@ -7,6 +7,7 @@
 #else
 #define SG_TRACE_WIDE_BVH_INL
 #endif
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -35,7 +36,22 @@ HWY_INLINE uint32_t bits_of(D8 d, M m) {
 HWY_INLINE void prefetch_lines(const void* p, int lines) {
   for (int i = 0; i < lines; ++i) __builtin_prefetch(static_cast<const char*>(p) + 64 * i);
 }
-HWY_INLINE void prefetch_node(const WideNode* n) { prefetch_lines(n, 4); }
+
+/// Where children lie in memory: nodes, and what is looked at of a leaf. One way for both, as a branch would often be foretold wrong.
+class Children {
+ public:
+  template <class Leaf>
+  HWY_INLINE Children(const WideNode* nodes, const Leaf* leaves)
+      : from_{reinterpret_cast<const char*>(nodes), reinterpret_cast<const char*>(leaves)}, bytes_{sizeof(WideNode), sizeof(Leaf)} {}
+  HWY_INLINE void prefetch(uint32_t child) const {
+    const size_t kind = child >> 31;
+    prefetch_lines(from_[kind] + bytes_[kind] * (child & ~leaf_bit), 5);
+  }
+
+ private:
+  const char* from_[2];
+  size_t bytes_[2];
+};
 
 /// The boxes of a node against rays that start and point within some bounds (BoxRay; of one ray the bounds are one number): one bit for
 /// each that some ray may meet by t_max, and where, at the least.
@@ -87,9 +103,8 @@ struct NodeRay {
 };
 
 /// Calls leaf(number), near ones first, for each leaf that may be met by t_max (read again after each call); it returns true to stop.
-/// fetch(number) tells that a leaf will be needed soon.
-template <class Bounds, class Leaf, class Fetch>
-HWY_INLINE void walk(const WideNode* nodes, const Bounds& ray, const float& t_max, Leaf&& leaf, Fetch&& fetch) {
+template <class Bounds, class Leaf>
+HWY_INLINE void walk(const WideNode* nodes, const Bounds& ray, const float& t_max, const Children& children, Leaf&& leaf) {
   // Where the box is entered in the upper half: t >= 0, whose bits are ordered like the numbers.
   uint64_t stack[WideBvh::stack_size];
   HWY_ALIGN float near[wide];
@@ -103,19 +118,18 @@ HWY_INLINE void walk(const WideNode* nodes, const Bounds& ray, const float& t_ma
         const int i = std::countr_zero(bits);
         bits &= bits - 1;
         const uint32_t child = n.child[i];
-        if (child & leaf_bit) fetch(child & ~leaf_bit);
-        else prefetch_node(nodes + child);
+        children.prefetch(child);
         return uint64_t(std::bit_cast<uint32_t>(near[i])) << 32 | child;
       };
       if (bits == 0) goto next;
       uint64_t nearest = entry();
       // The nearest is gone on with, the others wait, the nearer the higher.
       for (const size_t base = top; bits; ++top) {
-        uint64_t e = entry();
-        if (e < nearest) std::swap(e, nearest);
+        const uint64_t e = entry(), farther = std::max(e, nearest);
+        nearest = std::min(e, nearest);
         size_t k = top;
-        for (; k > base && stack[k - 1] < e; --k) stack[k] = stack[k - 1];
-        stack[k] = e;
+        for (; k > base && stack[k - 1] < farther; --k) stack[k] = stack[k - 1];
+        stack[k] = farther;
       }
       at = uint32_t(nearest);
     }
@@ -130,8 +144,8 @@ HWY_INLINE void walk(const WideNode* nodes, const Bounds& ray, const float& t_ma
 }
 
 /// The same in any order, for a limit that stays.
-template <class Bounds, class Leaf, class Fetch>
-HWY_INLINE void walk_any(const WideNode* nodes, const Bounds& ray, float t_max, Leaf&& leaf, Fetch&& fetch) {
+template <class Bounds, class Leaf>
+HWY_INLINE void walk_any(const WideNode* nodes, const Bounds& ray, float t_max, const Children& children, Leaf&& leaf) {
   uint32_t stack[WideBvh::stack_size];
   size_t top = 0;
   for (uint32_t at = 0;;) {
@@ -141,8 +155,7 @@ HWY_INLINE void walk_any(const WideNode* nodes, const Bounds& ray, float t_max, 
       const WideNode& n = nodes[at];
       for (uint32_t bits = ray.meet(n, t_max); bits; bits &= bits - 1) {
         const uint32_t child = n.child[std::countr_zero(bits)];
-        if (child & leaf_bit) fetch(child & ~leaf_bit);
-        else prefetch_node(nodes + child);
+        children.prefetch(child);
         stack[top++] = child;
       }
     }
@@ -179,8 +192,8 @@ class RayBoxes {
 
 /// Up to 64 rays, bit i of `going` for each: meet(node, i) tells which boxes ray i meets, leaf(number, rays) which rays have been stopped
 /// so far, of all. Leaves wait until there are some, so that they have come from memory when they are looked at.
-template <class Meet, class Leaf, class Fetch>
-HWY_INLINE void walk_together(const WideNode* nodes, uint64_t going, Meet&& meet, Leaf&& leaf, Fetch&& fetch) {
+template <class Meet, class Leaf>
+HWY_INLINE void walk_together(const WideNode* nodes, uint64_t going, const Children& children, Meet&& meet, Leaf&& leaf) {
   struct Visit {
     uint64_t rays;
     uint32_t at;
@@ -196,11 +209,10 @@ HWY_INLINE void walk_together(const WideNode* nodes, uint64_t going, Meet&& meet
       const uint32_t child = n.child[box];
       if (child & leaf_bit) {
         waiting[leaves++] = {rays, child & ~leaf_bit};
-        fetch(child & ~leaf_bit);
       } else {
         stack[top++] = {rays, child};
-        prefetch_node(nodes + child);
       }
+      children.prefetch(child);
     };
     if (std::has_single_bit(v.rays)) {
       for (uint32_t bits = meet(n, std::countr_zero(v.rays)); bits; bits &= bits - 1) put(std::countr_zero(bits), v.rays);

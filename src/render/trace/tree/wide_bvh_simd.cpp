@@ -15,10 +15,10 @@ namespace sg::trace::HWY_NAMESPACE {
 void walk_tree(const WideBvh& tree, const Ray& ray, const float& t_max, bool ordered, detail::LeafFn leaf, void* caller) {
   const WideLeaf* leaves = tree.leaves().data();
   const auto look = [&](uint32_t i) { return leaf(caller, leaves[i].first, leaves[i].count); };
-  const auto nothing = [](uint32_t) {};
+  const Children children(tree.nodes().data(), leaves);
   const NodeRay<false> r{BoxRay(ray)};
-  if (ordered) walk(tree.nodes().data(), r, t_max, look, nothing);
-  else walk_any(tree.nodes().data(), r, t_max, look, nothing);
+  if (ordered) walk(tree.nodes().data(), r, t_max, children, look);
+  else walk_any(tree.nodes().data(), r, t_max, children, look);
 }
 
 }  // namespace sg::trace::HWY_NAMESPACE
