@@ -25,10 +25,10 @@ struct TreeRecord {
 
 /// When a node stays a leaf.
 struct TreeLimits {
-  uint32_t most = 8;    ///< a node of more boxes is always split
-  uint32_t least = 2;   ///< one of so many or fewer never
+  uint32_t most = 8;     ///< a node of more boxes is always split
+  uint32_t least = 2;    ///< one of so many or fewer never
   uint32_t at_once = 1;  ///< owners that one test looks at
-  float of_node = 1.5;  ///< cost of a node in units of one box's owner's test
+  float of_node = 1.5;   ///< cost of a node in units of one box's owner's test
 };
 
 struct BoxTree {

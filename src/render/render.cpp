@@ -20,12 +20,25 @@ namespace sg {
 
 namespace {
 
-int chosen_samples(const Scene& scene, int asked) {
-  if (asked > 0) return asked;
-  for (const Item& item : scene.items)
-    if (std::holds_alternative<SurfaceItem>(item) || std::holds_alternative<GlyphsItem>(item))
-      return 2;  // lines, dots and volumes have soft edges of their own
-  return 1;
+/// Volumes in which rays meet surfaces, whose silhouettes are sharp.
+bool has_silhouettes(const Item& item) {
+  const auto* v = std::get_if<VolumeItem>(&item);
+  return v && (v->mode == RayFunction::isosurface || v->mode == RayFunction::first_hit);
+}
+
+struct Samples {
+  int across = 1;       ///< of a pixel
+  double adaptive = 0;  ///< RenderOptions::adaptive
+};
+Samples chosen_samples(const Scene& scene, const RenderOptions& options) {
+  if (options.samples > 0) return {options.samples, options.adaptive};
+  const auto any = [&](auto&& of) { return std::any_of(scene.items.begin(), scene.items.end(), of); };
+  // Lines, dots and volumes have soft edges of their own.
+  if (any([](const Item& i) { return std::holds_alternative<SurfaceItem>(i) || std::holds_alternative<GlyphsItem>(i); }))
+    return {2, options.adaptive};
+  if (!any(has_silhouettes)) return {};
+  constexpr double seen = 1.0 / 32;  // rays are dear, and most of a surface is smooth
+  return {2, options.adaptive > 0 ? options.adaptive : seen};
 }
 
 /// Box filter of n x n pixels in linear light; depth and id of the nearest of them. Fills the rows from `first` on.
@@ -145,9 +158,9 @@ Frame render(const Scene& scene, const Camera& camera, const RenderOptions& opti
     TraceReport own;
     return render_light(scene, camera, options, report ? *report : own, context);
   }
-  const int n = chosen_samples(scene, options.samples);
+  const auto [n, threshold] = chosen_samples(scene, options);
   const Projection whole = make_projection(camera, options.width * n, options.height * n);
-  const bool adaptive = options.adaptive > 0 && n > 1;
+  const bool adaptive = threshold > 0 && n > 1;
   check_picture_memory(options.width, options.height, adaptive ? 2 : 1);
   const auto prepared = prepare_scene(scene, context);
   const auto textures = n > 1 ? texture_scene(*prepared, make_projection(camera, options.width, options.height), context) : nullptr;
@@ -168,7 +181,7 @@ Frame render(const Scene& scene, const Camera& camera, const RenderOptions& opti
     if (adaptive) {
       Context part(context, 0, 0.2);
       draw(make_projection(camera, options.width, options.height), 1, nullptr, single, part);
-      uneven = uneven_squares(single, side, options.adaptive);
+      uneven = uneven_squares(single, side, threshold);
     }
     const size_t across = size_t(options.width + side - 1) / size_t(side);
     int rows = std::clamp(int(band_pixels / (size_t(whole.width) * size_t(n))), 1, options.height);

@@ -14,7 +14,8 @@ namespace sg {
 
 struct RenderOptions {
   int width = 1280, height = 720;
-  int samples = 0;  ///< per pixel and axis (1, 2, 3, 4); 0 = 2 for surfaces, 1 for volumes alone
+  int samples = 0;  ///< per pixel and axis (1, 2, 3, 4); 0 = 2 for surfaces (for level sets that rays meet only where they differ, as
+                    ///< below), 1 for volumes alone
   /// Above 0: take all samples only where neighbouring pixels, at one sample each, differ by more than this share of full scale in a
   /// channel (as displayed) or show different items; decided for squares of 16/samples pixels.
   double adaptive = 0;

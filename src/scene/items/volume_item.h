@@ -121,7 +121,7 @@ struct VolumeItem {
   RayFunction mode = RayFunction::composite;
   std::vector<double> levels;  ///< of first_hit, distance, accumulate (one) and isosurface
   bool shaded = true;
-  std::optional<SurfaceMaterial> made_of;  ///< of mode isosurface, for integrators; empty = plastic of its colours
+  std::optional<SurfaceMaterial> made_of;           ///< of mode isosurface, for integrators; empty = plastic of its colours
   std::shared_ptr<const SurfacePictures> pictures;  ///< of mode isosurface, for integrators; null: none
   VolumeSampling sampling;
   VolumeLight light;

@@ -36,6 +36,11 @@ void take_one_colour(ColorScale& scale, Vec3f c) {
   scale.labels.clear(), scale.label_names.clear();
 }
 
+// Whether it is said how a field is coloured, or which.
+bool states_colors(const VolumeShow& p) {
+  return p.coloring.states_map() || !p.coloring.range.empty() || !p.color_by.empty() || !p.opacity_by.empty();
+}
+
 struct Fields {
   const Field* color;    // through the colour scale
   const Field* opacity;  // the value axis
@@ -214,7 +219,8 @@ Legend legend_of(const VolumeItem& item) {
   Legend legend(item.detail.color_by_second ? item.detail.second_color : item.color);
   const auto opaque = [](Vec2 point) { return point.y == 1; };
   const bool solid = item.mode == RayFunction::isosurface && std::all_of(item.opacity.points.begin(), item.opacity.points.end(), opaque);
-  if (info_of(item.mode).shows_opacity && !solid) legend.volume = VolumeLegend{item.opacity, item.detail, item.color, title_of_second(item.detail)};
+  if (info_of(item.mode).shows_opacity && !solid)
+    legend.volume = VolumeLegend{item.opacity, item.detail, item.color, title_of_second(item.detail)};
   return legend;
 }
 
@@ -304,18 +310,19 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& data, const VolumeShow
   bool own_colors = !p.colors.empty() || !p.coloring.color.empty();
   if (p.material.any() || p.varying.any() || p.picture.any() || p.picture.any_other())
     take_matter(p, stated.body > 0 ? stated.body : input->bounds().diagonal(), item, context);
-  bool matter_alone = false;  // no colours of a field, which a legend could show
-  if (p.material.has_color() || p.picture.any()) {
-    if (!p.opacity) item.opacity.points = {{item.color.lo, 1}};
-    if (!own_colors && !p.coloring.map && p.coloring.range.empty() && p.color_by.empty()) {
-      take_one_colour(colors, p.material.has_color() ? own_color(*item.made_of) : Vec3f{1, 1, 1}), own_colors = true;
-      matter_alone = !p.opacity;
-    }
+  const bool surfaces = item.mode == RayFunction::isosurface, matter = p.material.has_color() || p.picture.any();
+  if (matter && !p.opacity) item.opacity.points = {{item.color.lo, 1}};
+  // Surfaces of one colour: a legend could show nothing of the field.
+  bool one_color = surfaces && !p.coloring.color.empty();
+  if (surfaces && (matter || item.levels.size() == 1) && !own_colors && !states_colors(p)) {
+    const Vec3f c = p.material.has_color() ? own_color(*item.made_of) : p.picture.any() ? Vec3f{1, 1, 1} : SurfaceItem().color;
+    take_one_colour(colors, c);
+    own_colors = one_color = true;
   }
   if (fields.color == fields.opacity && own_colors) item.color = colors;
   take_collected_range(item, p.coloring.range.empty() && p.colors.empty(), !p.coloring.map && !own_colors);
   std::optional<Legend> legend;
-  if (!matter_alone) legend = legend_of(item);
+  if (!one_color) legend = legend_of(item);
   scene.items.emplace_back(std::move(item));
   return legend;
 }

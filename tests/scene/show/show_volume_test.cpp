@@ -122,9 +122,32 @@ TEST_CASE("volume words: everything about sampling, light and method reaches the
   CHECK(v.detail.plain());
   REQUIRE(m.legend.volume);
   CHECK(m.legend.volume->opacity.at(0.5) == 0.4);
-  for (const auto& [word, mode] : enum_words(RayFunction())) CHECK(show(d, {"field=r", fmt::format("mode={}", word)}).item.mode == mode);
+  for (const auto& [word, mode] : enum_words(RayFunction()))
+    CHECK(show(d, {"field=r", "map=gray", fmt::format("mode={}", word)}).item.mode == mode);
   for (const auto& [word, method] : enum_words(VolumeMethod()))
     CHECK(show(d, {"field=r", fmt::format("method={}", word)}).item.method == method);
+}
+
+TEST_CASE("volume words: one level set has the colour of surfaces and no legend, unless colours are stated or there are several") {
+  const DatasetPtr d = two_fields();
+  const auto shown = [&](std::vector<std::string> words) {
+    words.insert(words.end(), {"field=r", "mode=isosurface"});
+    Context context;
+    Scene scene;
+    const bool legend = add_show(scene, "volume", d, words, context).has_value();
+    return std::pair(legend, std::get<VolumeItem>(scene.items[0]));
+  };
+  const auto [legend, item] = shown({"levels=0.5"});
+  CHECK_FALSE(legend);
+  const Vec4f c = item.color.color(0.5), same = item.color.color(0.9);
+  CHECK(Vec3f(c.x, c.y, c.z) == SurfaceItem().color);
+  CHECK(c == same);
+  CHECK(item.opacity.at(0.5) == 1);
+  CHECK_FALSE(shown({"levels=0.5", "color=red"}).first);
+  CHECK_FALSE(shown({"levels=0.5", "material=gold"}).first);
+  for (const char* stated : {"map=viridis", "range=0,1", "colors=0:red,1:blue", "color_by=T"})
+    CHECK_MESSAGE(shown({"levels=0.5", stated}).first, stated);
+  CHECK(shown({"levels=0.5,0.8"}).first);
 }
 
 TEST_CASE("volume words: what cannot be is refused before any data is read, all mistakes at once") {

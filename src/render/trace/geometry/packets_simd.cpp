@@ -98,14 +98,12 @@ uint32_t packet_triangles(const Triangles& in, const Ray* rays, int count, const
     if (i < count) bounds.widen(BoxRay(rays[k]));
   }
   const TriangleBlock* blocks = in.blocks().data();
-  walk(
-      in.tree().nodes().data(), bounds, p.farthest, Children(in.tree().nodes().data(), blocks),
-      [&](uint32_t leaf) {
-        const TriangleBlock& b = blocks[leaf];
-        for (int k = 0; k < wide && b.triangle[k] != UINT32_MAX; ++k)
-          if (meet_packet(p, b, k)) in.fetch(b.triangle[k]);
-        return false;
-      });
+  walk(in.tree().nodes().data(), bounds, p.farthest, Children(in.tree().nodes().data(), blocks), [&](uint32_t leaf) {
+    const TriangleBlock& b = blocks[leaf];
+    for (int k = 0; k < wide && b.triangle[k] != UINT32_MAX; ++k)
+      if (meet_packet(p, b, k)) in.fetch(b.triangle[k]);
+    return false;
+  });
   const uint32_t found = p.found & ((2u << (count - 1)) - 1);
   for (uint32_t bits = found; bits; bits &= bits - 1) {
     const int i = std::countr_zero(bits);

@@ -33,7 +33,8 @@ uint64_t blocked_rays(const Triangles& in, const Ray* rays, int count) {
     if (can_trace(rays[i])) stream[i].emplace(rays[i]), going |= uint64_t(1) << i;
   const TriangleBlock* blocks = in.blocks().data();
   walk_together(
-      in.tree().nodes().data(), going, Children(in.tree().nodes().data(), blocks), [&](const WideNode& n, int i) { return stream[i]->nodes.meet(n, stream[i]->t_max); },
+      in.tree().nodes().data(), going, Children(in.tree().nodes().data(), blocks),
+      [&](const WideNode& n, int i) { return stream[i]->nodes.meet(n, stream[i]->t_max); },
       [&](uint32_t leaf, uint64_t here) {
         for (; here; here &= here - 1) {
           const int i = std::countr_zero(here);

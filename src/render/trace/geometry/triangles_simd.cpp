@@ -20,12 +20,10 @@ bool nearest_triangle(const Triangles& in, const Ray& ray, Hit& hit) {
   const LeafRay r(sheared);
   const TriangleBlock* blocks = in.blocks().data();
   bool found = false;
-  walk(
-      in.tree().nodes().data(), NodeRay<false>(BoxRay(ray)), hit.t, Children(in.tree().nodes().data(), blocks),
-      [&](uint32_t leaf) {
-        if (nearest_in(r, blocks[leaf], hit, found)) in.fetch(hit.primitive);
-        return false;
-      });
+  walk(in.tree().nodes().data(), NodeRay<false>(BoxRay(ray)), hit.t, Children(in.tree().nodes().data(), blocks), [&](uint32_t leaf) {
+    if (nearest_in(r, blocks[leaf], hit, found)) in.fetch(hit.primitive);
+    return false;
+  });
   return found;
 }
 
@@ -34,9 +32,8 @@ bool any_triangle(const Triangles& in, const Ray& ray) {
   const LeafRay r(sheared);
   const TriangleBlock* blocks = in.blocks().data();
   bool found = false;
-  walk_any(
-      in.tree().nodes().data(), NodeRay<false>(BoxRay(ray)), ray.t_max, Children(in.tree().nodes().data(), blocks),
-      [&](uint32_t leaf) { return found = any_in(r, blocks[leaf], ray.t_max); });
+  walk_any(in.tree().nodes().data(), NodeRay<false>(BoxRay(ray)), ray.t_max, Children(in.tree().nodes().data(), blocks),
+           [&](uint32_t leaf) { return found = any_in(r, blocks[leaf], ray.t_max); });
   return found;
 }
 

@@ -219,10 +219,9 @@ Vertex World::at(const Ray& ray, const Hit& hit, const RayFootprint& footprint, 
   v.below_radius = body.subsurface_radius(), v.below_anisotropy = body.subsurface_anisotropy();
   const Seen seen = this->seen(ray, hit, &v.point);
   const Vec4f color = this->color(seen, ray, footprint);
-  const MaterialShares shares =
-      seen.item && seen.item->pictures
-          ? take_pictures(*seen.item, ray, seen.hit, footprint, geometry_.placement().scale, matter.palette, v)
-          : v.material->shares;
+  const MaterialShares shares = seen.item && seen.item->pictures
+                                    ? take_pictures(*seen.item, ray, seen.hit, footprint, geometry_.placement().scale, matter.palette, v)
+                                    : v.material->shares;
   // At a silhouette the shading normal may look away from a viewer who sees the face.
   const bool above = dot(ray.direction, v.point.face_normal) < 0, shaded_above = dot(ray.direction, v.point.shading_normal) < 0;
   v.frame = LocalFrame::about(above == shaded_above ? v.point.shading_normal : v.point.face_normal, v.point.tangent);

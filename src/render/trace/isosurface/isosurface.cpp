@@ -149,7 +149,8 @@ class IsosurfaceObject : public Geometry::Object {
     for (int a = 0; a < 3 && second != second; ++a) {
       Vec3 axis;
       axis[a] = 1;
-      if (const auto s = around(*field, place - axis * reach, axis, 2 * reach)) second = field->second(*s, std::clamp(reach, s->from, s->to));
+      if (const auto s = around(*field, place - axis * reach, axis, 2 * reach))
+        second = field->second(*s, std::clamp(reach, s->from, s->to));
     }
     return volume_.color_at(float((*volume_.levels)[level]), second);
   }
@@ -212,7 +213,8 @@ Isosurfaces isosurfaces_of(const Scene& scene, const Projection& projection, Con
     Isosurfaces::Look look = look_of(v);
     const auto& item = std::get<VolumeItem>(scene.items[i]);
     if (item.pictures && item.made_of)
-      look.patches = std::make_shared<const LevelPatches>(*item.pictures, *item.made_of, item.data, reach_share * v.source->edge / length, context);
+      look.patches =
+          std::make_shared<const LevelPatches>(*item.pictures, *item.made_of, item.data, reach_share * v.source->edge / length, context);
     const auto object = std::make_shared<IsosurfaceObject>(own, std::move(v), length);
     if (item.detail.color_by_second)
       look.color_at = [object, colors = look.colors](uint32_t level, Vec3 place) {

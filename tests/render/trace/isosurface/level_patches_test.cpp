@@ -85,15 +85,20 @@ TEST_CASE("isosurface: colours follow another field, with paths and without, on 
     VolumeItem v = item(data, one_color({1, 1, 1}), {{{-100, 1}, {100, 1}}});
     v.field = data->fields()[0].name, v.shaded = false;
     v.mode = RayFunction::isosurface, v.levels = {0.2};
-    v.detail.second = SecondAxis::field, v.detail.second_field = "rise", v.detail.color_by_second = true, v.detail.second_color = grey(0, 1);
+    v.detail.second = SecondAxis::field, v.detail.second_field = "rise", v.detail.color_by_second = true,
+    v.detail.second_color = grey(0, 1);
     const Scene scene = scene_of({v});
     Context context;
     const PreparedScenePtr prepared = prepare_scene(scene, context);
     Isosurfaces isosurfaces = isosurfaces_of(scene, parallel_view(8, 8, 1), context);
     GeometryOptions options;
     options.more = isosurfaces.objects;
-    const World world{prepared, Geometry::make(*prepared, options, context), {std::make_shared<const trace::Material>(data_material())},
-                      {},       {},                                          nullptr,
+    const World world{prepared,
+                      Geometry::make(*prepared, options, context),
+                      {std::make_shared<const trace::Material>(data_material())},
+                      {},
+                      {},
+                      nullptr,
                       isosurfaces.looks};
     const Frame seen = look(scene, 0.3, 0.2);
     CHECK(double(seen.rgba[0]) == Approx(0.65).epsilon(2e-3));
@@ -222,6 +227,7 @@ TEST_CASE("isosurface: fields and pictures that it cannot have are refused by na
   CHECK(contains(error([](VolumeShow& p) { p.picture.pattern = TexturePattern::checker; }), "texture coordinates"));
   CHECK(contains(error([](VolumeShow& p) { p.varying.emission_by = {"nothing"}; }), "nothing"));
   CHECK(contains(error([](VolumeShow& p) { p.varying.emission_by = {"rise"}, p.mode = RayFunction::composite; }), "mode=isosurface"));
-  CHECK(contains(error([](VolumeShow& p) { p.picture.pattern = TexturePattern::noise, p.mode = RayFunction::maximum; }), "mode=isosurface"));
+  CHECK(
+      contains(error([](VolumeShow& p) { p.picture.pattern = TexturePattern::noise, p.mode = RayFunction::maximum; }), "mode=isosurface"));
   CHECK(contains(error([](VolumeShow& p) { p.color_by = {"rise"}, p.mode = RayFunction::average; }), "color_by"));
 }

@@ -24,9 +24,9 @@ struct CellVolume {
   Plane<float> values;                   ///< stored: of the mesh's vertices, or of the cells of `data`
   Plane<float> seconds;                  ///< the second field at the mesh's vertices, or of its cells; may be empty
   bool second_by_cell = false;
-  float base = 0;                        ///< value = stored + base
-  Range range;                           ///< of the stored values that are drawn; empty when none are
-  float fit_error = 0;                   ///< largest departure of a stretch from the field in cells that are not tetrahedra or boxes
+  float base = 0;       ///< value = stored + base
+  Range range;          ///< of the stored values that are drawn; empty when none are
+  float fit_error = 0;  ///< largest departure of a stretch from the field in cells that are not tetrahedra or boxes
 
   /// The cell of a tetrahedron, in `curved` or else `data`; is the field linear in the tetrahedron?
   uint32_t whole(size_t tet) const { return part_of.empty() ? mesh->cell(tet) : uint32_t(part_of[mesh->cell(tet)]); }
