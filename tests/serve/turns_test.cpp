@@ -125,6 +125,26 @@ TEST_CASE("turns: a quick question does not wait for a picture that another wind
   CHECK(saves.next("saved")["n"].whole() == 1);
 }
 
+TEST_CASE("turns: statistics do not wait for a picture that another window saves, nor for its statistics") {
+  Stage stage;
+  const auto session = test::session_of(stage);
+  Window slow(*session), asks(*session);
+  slow.next("state"), asks.next("state");
+  slow.say("{'do':'save','n':1,'size':[60,40]}");
+  stage.begun.wait_for(1);
+  asks.say("{'do':'measures','n':2,'step':'ball'}");
+  CHECK(asks.next("measures")["n"].whole() == 2);
+  stage.slow_questions = true;
+  slow.say("{'do':'measures','n':3,'step':'ball'}");
+  slow.say("{'do':'measures','n':4,'step':'ball'}");  // waits for the one before it, whatever is free
+  stage.begun.wait_for(2);
+  stage.slow_questions = false;
+  asks.say("{'do':'measures','n':5,'step':'ball'}");
+  CHECK(asks.next("measures")["n"].whole() == 5);
+  stage.released = true;
+  for (const uint64_t n : {3, 4}) CHECK(slow.next("measures")["n"].whole() == n);
+}
+
 TEST_CASE("turns: questions go round among windows, each of which has a few that wait") {
   const auto question = [](int client, const std::string& what, uint64_t n) {
     return Question{client, parse_json("{\"do\":\"" + what + "\",\"n\":" + std::to_string(n) + "}", "question")};
@@ -134,16 +154,26 @@ TEST_CASE("turns: questions go round among windows, each of which has a few that
   CHECK(queue.push(question(2, "rows", 4)));
   CHECK(queue.push(question(2, "measures", 5)));
   CHECK(queue.push(question(3, "save", 6)));
+  const auto take = [&](Lane lane) {  // and answer it at once
+    const auto next = queue.pop(lane);
+    if (next) queue.done(*next);
+    return next ? next->message["n"].whole() : 0;
+  };
   std::vector<uint64_t> order;
-  while (const auto next = queue.pop(true)) order.push_back(next->message["n"].whole());
-  CHECK(order == std::vector<uint64_t>{1, 5, 6, 2, 3});
-  CHECK(queue.pop(false)->message["n"].whole() == 4);
-  CHECK_FALSE(queue.pop(false));
+  while (const uint64_t n = take(Lane::save)) order.push_back(n);
+  CHECK(order == std::vector<uint64_t>{1, 6, 2, 3});
+  CHECK(take(Lane::lengthy) == 5);
+  CHECK(take(Lane::quick) == 4);
+  CHECK_FALSE(queue.pop(Lane::quick));
   for (size_t i = 0; i < most_questions; ++i) CHECK(queue.push(question(1, "rows", i)));
   CHECK_FALSE(queue.push(question(1, "rows", 99)));
   CHECK(queue.push(question(2, "rows", 100)));
-  CHECK(queue.pop(false)->client == 1);  // whose turn in this row was longest ago: it has had none
-  CHECK(queue.pop(false)->client == 2);
+  const auto first = queue.pop(Lane::quick);
+  CHECK(first->client == 1);  // whose turn in this row was longest ago: it has had none
+  CHECK(queue.pop(Lane::quick)->client == 2);
+  CHECK_FALSE(queue.pop(Lane::quick));  // one of the first window is being answered
+  queue.done(*first);
+  CHECK(queue.pop(Lane::quick)->client == 1);
   queue.leave(1);
-  CHECK_FALSE(queue.pop(false));
+  CHECK_FALSE(queue.pop(Lane::quick));
 }

@@ -47,10 +47,12 @@ struct DrawnView {
 using OnFiner = std::function<void(const DrawnView&)>;
 
 /// A pipeline, and what becomes of it. load() is called by one thread; forget() and pictures of what moves by another one meanwhile, of
-/// what was loaded before; tell() and other pictures by either, never two of the same view at a time; answer() and save() by two more. All
-/// stop with Error(cancelled) when the context is cancelled, and stay usable then and after any other error.
+/// what was loaded before; tell() and other pictures by either, never two of the same view at a time; answer() and save() by any number
+/// of others. All stop with Error(cancelled) when the context is cancelled, and stay usable then and after any other error.
 class Renderer {
  public:
+  static constexpr int most_callers = 6;  ///< threads that ask one at the same time
+
   virtual ~Renderer() = default;
   /// Runs the pipeline and returns it with what was chosen from the data. What was loaded before stays where this throws.
   virtual PipelineFile load(const PipelineFile& pipeline, Context& context) = 0;

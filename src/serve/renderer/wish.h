@@ -43,8 +43,6 @@ constexpr auto enum_words(Wish) {
 }
 inline bool changes(Wish w) { return w >= Wish::edit && w <= Wish::time; }
 inline bool asks(Wish w) { return w >= Wish::probe; }
-/// Questions that look at all the data, or draw.
-inline bool is_lengthy(Wish w) { return asks(w) && w != Wish::probe && w != Wish::rows && w != Wish::line; }
 
 /// Nothing for other words.
 inline std::optional<Wish> wish_of(const Json& message) { return value_of_word<Wish>(message["do"].text()); }

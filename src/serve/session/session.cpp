@@ -7,12 +7,14 @@
 
 namespace sg::serve {
 
+static_assert(answering.size() + 2 == Renderer::most_callers);  // two draw
+
 std::shared_ptr<Session> Session::open(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title, std::string pictures_in,
                                        std::chrono::milliseconds longest) {
   std::shared_ptr<Session> s(new Session(std::move(renderer), std::move(file), std::move(title), std::move(pictures_in), longest));
   s->threads_.emplace_back([p = s.get()] { p->draw_thread(); });
   s->threads_.emplace_back([p = s.get()] { p->patient_thread(); });
-  for (const bool lengthy : {false, true}) s->threads_.emplace_back([p = s.get(), lengthy] { p->ask_thread(lengthy); });
+  for (size_t i = 0; i < answering.size(); ++i) s->threads_.emplace_back([p = s.get(), i] { p->ask_thread(i); });
   if (longest.count() > 0) s->threads_.emplace_back([p = s.get()] { p->clock_thread(); });
   return s;
 }

@@ -27,8 +27,8 @@
 
 namespace sg::serve {
 
-/// One thread draws; another runs what was edited, and does what has waited too long while the first one had to draw what moves; two
-/// answer questions, quick and lengthy ones. Messages are taken in by whichever thread has them. Ends with its last owner.
+/// One thread draws; another runs what was edited, and does what has waited too long while the first one had to draw what moves; others
+/// answer questions (questions/lane.h). Messages are taken in by whichever thread has them. Ends with its last owner.
 class Session : public std::enable_shared_from_this<Session> {
  public:
   /// `title`: of the window, and of pictures that are saved. `pictures_in`: the folder from which recipes in those name files; "": they
@@ -66,7 +66,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void leave(int client);
   void draw_thread();
   void patient_thread();
-  void ask_thread(bool lengthy);
+  void ask_thread(size_t which);
   void clock_thread();
 
   // With the mutex held; those that take the lock let go of it while they work.
@@ -95,7 +95,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void take_together(Client& client, const Json& message);
   Context& begin(Work& work, Work::Kind kind, int client = 0, std::chrono::steady_clock::duration spent = {});
   void end(Work& work);
-  std::array<Work*, 4> works() { return {&drawing_, &beside_, &asking_[0], &asking_[1]}; }
+  std::vector<Work*> works();
   bool has_room(int client, size_t bytes) const;
 
   std::unique_ptr<Renderer> renderer_;
@@ -120,11 +120,11 @@ class Session : public std::enable_shared_from_this<Session> {
   Moment tell_since_;  ///< when what is to be told was there
   uint64_t revision_ = 0;
   std::optional<FilmTimes> film_;
-  std::optional<size_t> time_;        ///< index of the step that is shown; none: what the reader gives
-  std::optional<size_t> shown_time_;  ///< that of the revision
-  std::string state_;                 ///< the last message "state", without what depends on the window
-  Work drawing_, beside_;             ///< of the thread that draws, and of the patient one beside it
-  std::array<Work, 2> asking_;        ///< of those that answer: quick questions, lengthy ones
+  std::optional<size_t> time_;                 ///< index of the step that is shown; none: what the reader gives
+  std::optional<size_t> shown_time_;           ///< that of the revision
+  std::string state_;                          ///< the last message "state", without what depends on the window
+  Work drawing_, beside_;                      ///< of the thread that draws, and of the patient one beside it
+  std::array<Work, answering.size()> asking_;  ///< of those that answer
   std::deque<std::pair<std::string, Saved>> saved_;
   bool together_ = false;             ///< all windows look from where the last one of them went
   std::optional<ViewCamera> common_;  ///< that camera, once one of them has told it

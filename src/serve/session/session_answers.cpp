@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The threads that answer: one quick questions, one lengthy ones.
+// The threads that answer questions.
 #include "serve/session/session.h"
 
 #include <fmt/core.h>
@@ -18,11 +18,16 @@
 
 namespace sg::serve {
 
-void Session::ask_thread(bool lengthy) {
+void Session::ask_thread(size_t which) {
   std::unique_lock lock(mutex_);
   while (!stopping_) {
-    if (const auto question = questions_.pop(lengthy)) answer(lock, asking_[lengthy], *question);
-    else questions_wait_.wait(lock);
+    if (const auto question = questions_.pop(answering[which])) {
+      answer(lock, asking_[which], *question);
+      questions_.done(*question);
+      questions_wait_.notify_all();  // another one of this window may be answered now, by any thread
+    } else {
+      questions_wait_.wait(lock);
+    }
   }
 }
 

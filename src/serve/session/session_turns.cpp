@@ -70,6 +70,12 @@ void Session::patient_thread() {
   }
 }
 
+std::vector<Work*> Session::works() {
+  std::vector<Work*> all{&drawing_, &beside_};
+  for (Work& asking : asking_) all.push_back(&asking);
+  return all;
+}
+
 // Ends what takes too long.
 void Session::clock_thread() {
   std::unique_lock lock(mutex_);

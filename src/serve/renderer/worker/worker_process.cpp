@@ -35,7 +35,8 @@ class Worker {
 
   void run() {
     std::vector<std::thread> threads;
-    for (int i = 0; i < callers; ++i) threads.emplace_back([this] { work(); });
+    // Each caller waits for its answer: no call waits behind another one.
+    for (int i = 0; i < Renderer::most_callers; ++i) threads.emplace_back([this] { work(); });
     while (auto message = channel_.receive()) {
       const std::lock_guard lock(mutex_);
       const Json& head = message->head;
@@ -58,9 +59,6 @@ class Worker {
   }
 
  private:
-  // As many threads of the server as ask a renderer (renderer.h): each waits for its answer, so that no call waits behind another one.
-  static constexpr int callers = 4;
-
   void work() {
     std::unique_lock lock(mutex_);
     while (!over_) {

@@ -18,24 +18,29 @@ bool QuestionQueue::push(Question question) {
   return true;
 }
 
-std::optional<Question> QuestionQueue::pop(bool lengthy) {
+std::optional<Question> QuestionQueue::pop(Lane lane) {
   auto best = waiting_.end();
   const auto turn = [&](const Question& q) {
-    const auto had = turns_.find(q.client);
-    return had == turns_.end() ? 0 : had->second[lengthy];
+    const auto had = turns_.find({q.client, lane});
+    return had == turns_.end() ? 0 : had->second;
   };
-  for (auto it = waiting_.begin(); it != waiting_.end(); ++it)
-    if (is_lengthy(it->wish()) == lengthy && (best == waiting_.end() || turn(*it) < turn(*best))) best = it;
+  for (auto it = waiting_.begin(); it != waiting_.end(); ++it) {
+    if (it->lane() != lane || answered_.contains({it->client, lane})) continue;
+    if (best == waiting_.end() || turn(*it) < turn(*best)) best = it;
+  }
   if (best == waiting_.end()) return std::nullopt;
   std::optional<Question> next = std::move(*best);
   waiting_.erase(best);
-  turns_[next->client][lengthy] = ++turn_;
+  turns_[{next->client, lane}] = ++turn_;
+  answered_.insert({next->client, lane});
   return next;
 }
 
+void QuestionQueue::done(const Question& question) { answered_.erase({question.client, question.lane()}); }
+
 void QuestionQueue::leave(int client) {
   std::erase_if(waiting_, [&](const Question& q) { return q.client == client; });
-  turns_.erase(client);
+  std::erase_if(turns_, [&](const auto& turn) { return turn.first.first == client; });
 }
 
 size_t QuestionQueue::bytes(int client) const {
