@@ -78,7 +78,8 @@ void describe(Schema& s, ServeParams& p) {
   s("worker_memory", p.worker_memory,
     "Memory that each worker may take, e.g. 4G: what needs more is told in the window, and ended. Default: what the machine has.");
   s("most_seconds", p.most_seconds,
-    "Seconds that one picture, question, picture to save or edit of a window may take before it is ended; 0: any time.")
+    "Seconds that reading what is opened, and one picture, question, picture to save or edit of a window may take before it is ended; 0: "
+    "any time.")
       .at_least(0);
   s("origin", p.origin, "Address by which browsers reach this server through a proxy, e.g. https://view.example.org.");
 }

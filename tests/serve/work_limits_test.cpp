@@ -47,6 +47,44 @@ TEST_CASE("limits: a picture, a picture to save, a question and an edit that tak
   CHECK(window.frames().back().header["n"].whole() == 5);
 }
 
+TEST_CASE("limits: the first reading of what is opened ends when it takes too long, names it, and is tried again for who comes later") {
+  Stage stage;
+  stage.slow_steps = true;
+  const auto session = test::session_of(stage, std::chrono::milliseconds(100));
+  {
+    Window window(*session);
+    const std::string told = refusal(window, 0);
+    for (const char* part : {"'ball'", "0.1 s", "--most-seconds"}) CHECK(contains(told, part));
+    CHECK(window.next("state")["notes"][0].text() == told);
+    Window other(*session);  // that did not wait for it
+    CHECK(refusal(other, 0) == told);
+  }
+  stage.slow_steps = false, stage.released = true;
+  Window later(*session);
+  later.say("{'do':'draw','n':1,'view':0,'size':[64,48]}");
+  CHECK(later.frames().back().header["n"].whole() == 1);
+}
+
+TEST_CASE("limits: reading ends when the last window goes, and begins anew when one comes") {
+  Stage stage;
+  stage.slow_steps = true;
+  const auto session = test::session_of(stage);
+  {
+    Window window(*session);
+    {
+      Window other(*session);
+      stage.begun.wait_for(1);
+    }
+    CHECK(stage.stopped.now() == 0);
+  }
+  stage.stopped.wait_for(1);
+  CHECK(stage.begun.now() == 1);
+  Window later(*session);
+  stage.begun.wait_for(2);
+  stage.released = true;
+  CHECK(later.next("state")["revision"].whole() == 1);
+}
+
 TEST_CASE("limits: what waits of one window is bounded in bytes") {
   Stage stage;
   const auto session = test::session_of(stage);

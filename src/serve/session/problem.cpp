@@ -5,6 +5,8 @@
 
 #include <new>
 
+#include "base/text/utf8.h"
+
 namespace sg::serve {
 
 std::string problem_of(const std::exception& e) {
@@ -16,6 +18,11 @@ std::string took_too_long(std::chrono::milliseconds longest) {
       "this took longer than {:g} s, the most that one picture, question or edit may take here; ask for less, or start the server with a "
       "larger --most-seconds",
       std::chrono::duration<double>(longest).count());
+}
+
+std::string reading_took_too_long(const std::string& what, std::chrono::milliseconds longest) {
+  return fmt::format("reading '{}' took longer than {:g} s, the most that it may take here; start the server with a larger --most-seconds",
+                     printable(what), std::chrono::duration<double>(longest).count());
 }
 
 }  // namespace sg::serve

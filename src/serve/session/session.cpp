@@ -55,12 +55,15 @@ SocketHandler Session::join(Rights rights, const std::string& user, std::shared_
   const int id = next_client_++;
   auto client = std::make_unique<Client>();
   client->id = id, client->rights = rights, client->user = user, client->socket = std::move(socket);
+  abandoned_ = false;
+  if (!failed_.empty() && clients_.empty()) failed_.clear(), needs_load_ = true;  // the file may be another one by now
   clients_[id] = std::move(client);
   if (!state_.empty()) {
     Json::Members own = parse_json(state_, "state").members();
     own.emplace_back("may_edit", Json(rights == Rights::edit));
     send(id, own);
   }
+  if (!failed_.empty()) refuse(id, 0, {{"", "", failed_}});
   tell_people();
   work_.notify_all();
   const std::weak_ptr<Session> self = weak_from_this();
@@ -80,6 +83,7 @@ void Session::leave(int id) {
   work_.notify_all();
   clients_.erase(it);
   questions_.leave(id);
+  if (clients_.empty() && !loaded_) abandoned_ = true, beside_.stop();
   for (Work& asking : asking_)
     if (asking.client == id) asking.stop();
   tell_people();
@@ -95,11 +99,14 @@ void Session::send_all(const Json::Members& message) {
   for (const auto& [id, client] : clients_) client->socket->send_text(words);
 }
 
+// 0: all windows.
 void Session::refuse(int id, uint64_t n, const std::vector<EditMistake>& mistakes) {
   std::vector<Json> errors;
   for (const EditMistake& m : mistakes)
     errors.emplace_back(Json::Members{{"at", text(m.at)}, {"word", text(m.word)}, {"text", text(m.text)}});
-  send(id, {{"is", text("refused")}, {"n", Json(n)}, {"errors", Json(std::move(errors))}});
+  const Json::Members message{{"is", text("refused")}, {"n", Json(n)}, {"errors", Json(std::move(errors))}};
+  if (id == 0) send_all(message);
+  else send(id, message);
 }
 
 void Session::tell_people() {

@@ -32,7 +32,7 @@ namespace sg::serve {
 class Session : public std::enable_shared_from_this<Session> {
  public:
   /// `title`: of the window, and of pictures that are saved. `pictures_in`: the folder from which recipes in those name files; "": they
-  /// name them absolutely. `longest`: that a picture, question, picture to save or edit may take; 0: any time.
+  /// name them absolutely. `longest`: that reading what is opened, a picture, question, picture to save or edit may take; 0: any time.
   static std::shared_ptr<Session> open(std::unique_ptr<Renderer> renderer, PipelineFile file, std::string title,
                                        std::string pictures_in = "", std::chrono::milliseconds longest = {});
   ~Session();
@@ -114,8 +114,10 @@ class Session : public std::enable_shared_from_this<Session> {
   History history_;
   PipelineFile good_;  ///< the last one that could be loaded
   Change last_change_{0, Json(), 0};
-  bool live_ = false;  ///< the last edit was one of a drag that may go on
-  Moment rest_at_;     ///< when that drag counts as over
+  bool live_ = false;       ///< the last edit was one of a drag that may go on
+  Moment rest_at_;          ///< when that drag counts as over
+  std::string failed_;      ///< why what was opened could not be read; "": it was, or may be yet
+  bool abandoned_ = false;  ///< whoever waited for it has gone
   bool loaded_ = false, needs_load_ = true, needs_tell_ = false, cold_ = true;
   Moment tell_since_;  ///< when what is to be told was there
   uint64_t revision_ = 0;

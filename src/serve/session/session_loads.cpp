@@ -66,17 +66,19 @@ void Session::load(std::unique_lock<std::mutex>& lock) {
   }
   lock.lock();
   end(beside_);
-  if (cancelled && beside_.took_too_long) cancelled = false, problem = took_too_long(longest_);
+  if (cancelled && beside_.took_too_long)
+    cancelled = false, problem = loaded_ ? took_too_long(longest_) : reading_took_too_long(title_, longest_);
   if (cancelled) {
     needs_load_ = !stopping_;
     return;
   }
   if (!problem.empty()) {
     refuse(change.client, change.message["n"].whole(), {mistake_of(change.message, problem)});
-    if (loaded_) history_.complete(good_);  // the picture before it is left standing
-    else needs_tell_ = true;                // so that the mistake can be mended
+    if (loaded_) history_.complete(good_);       // the picture before it is left standing
+    else failed_ = problem, needs_tell_ = true;  // so that the mistake can be mended
     return;
   }
+  failed_.clear();
   history_.complete(completed);
   good_ = std::move(completed), film_ = std::move(film), loaded_ = true, needs_tell_ = true, tell_since_ = std::chrono::steady_clock::now();
   if (looks_same) return;  // what is drawn stays
@@ -118,12 +120,14 @@ void Session::tell(std::unique_lock<std::mutex>& lock, Work& work) {
   needs_tell_ = false;
   const uint64_t revision = revision_, by = last_change_.message["n"].whole();
   const PipelineFile file = good_;
+  const std::string failed = failed_;
   Context& context = begin(work, Work::Kind::state);
   lock.unlock();
   Json::Members told;
   bool cancelled = false;
   try {
     told = loaded_ ? renderer_->tell(context) : tell_pipeline(file);
+    if (!failed.empty()) told.emplace_back("notes", list({failed}));
   } catch (const Error& e) {
     cancelled = e.kind() == ErrorKind::cancelled;
     told.emplace_back("notes", list({e.what()}));

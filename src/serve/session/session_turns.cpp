@@ -55,7 +55,7 @@ void Session::patient_thread() {
       work_.notify_all();
       continue;
     }
-    if (needs_load_) {
+    if (needs_load_ && !abandoned_) {
       load(lock);
       continue;
     }
@@ -91,7 +91,7 @@ void Session::clock_thread() {
 
 Context& Session::begin(Work& work, Work::Kind kind, int client, std::chrono::steady_clock::duration spent) {
   work = {std::make_unique<Context>(), kind, client};
-  const bool asked_for = kind == Work::Kind::picture || kind == Work::Kind::question || (kind == Work::Kind::pipeline && loaded_);
+  const bool asked_for = kind == Work::Kind::picture || kind == Work::Kind::question || kind == Work::Kind::pipeline;
   if (asked_for && longest_.count() > 0) {
     work.until = std::chrono::steady_clock::now() + longest_ - spent;
     clock_.notify_all();
