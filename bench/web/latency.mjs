@@ -27,17 +27,32 @@ if (words.length === 0) {
 
 const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox"] });
 const page = await browser.newPage({ viewport: { width: size[0], height: size[1] } });
-// When the first picture has been painted is told by the page: looking at its pixels again and again would slow it down.
+// When what happens on the way to the first painted picture is told by the page: looking at its pixels again and again would slow it down.
 await page.addInitScript(() => {
+  window.when = { page: performance.timeOrigin };
+  const note = (what) => (window.when[what] ??= Date.now());
+  window.WebSocket = class extends WebSocket {
+    constructor(...words) {
+      note("script");
+      super(...words);
+      this.addEventListener("open", () => note("socket"));
+      this.addEventListener("message", ({ data }) => note(typeof data === "string" ? JSON.parse(data).is : "frame"));
+    }
+    send(words) {
+      note(JSON.parse(words).do);
+      super.send(words);
+    }
+  };
   const drawImage = CanvasRenderingContext2D.prototype.drawImage;
   CanvasRenderingContext2D.prototype.drawImage = function (...words) {
     drawImage.apply(this, words);
     if (!(words[0] instanceof ImageBitmap)) return; // the canvas itself, enlarged
     CanvasRenderingContext2D.prototype.drawImage = drawImage;
-    requestAnimationFrame(() => setTimeout(() => (window.painted = Date.now())));
+    requestAnimationFrame(() => setTimeout(() => note("painted")));
   };
 });
 const began = Date.now();
+let listening;
 const server = spawn(program, ["view", "--no-browser", ...words], { stdio: ["ignore", "pipe", "inherit"] });
 process.on("exit", () => server.kill());
 const address = await new Promise((found, lost) => {
@@ -45,7 +60,7 @@ const address = await new Promise((found, lost) => {
   server.stdout.on("data", (text) => {
     said += text;
     const at = said.match(/http:\S+/);
-    if (at) found(at[0]);
+    if (at) (listening ??= Date.now() - began), found(at[0]);
   });
   server.on("exit", (code) => lost(new Error(`sightglass view ended with ${code}`)));
 });
@@ -53,7 +68,18 @@ const memory = () => Number(readFileSync(`/proc/${server.pid}/status`, "utf8").m
 
 // The token's page leads to the window; what is measured there is a client of its own, drawn as the window draws.
 await page.goto(address);
-const first = (await (await page.waitForFunction(() => window.painted, null, { polling: 50 })).jsonValue()) - began;
+await page.waitForFunction(() => window.when.painted, null, { polling: 50 });
+const when = await page.evaluate(() => window.when);
+const first = when.painted - began;
+const parts = [["the server listens", listening], ...[
+  ["page", "the browser has the token's page asked for"],
+  ["script", "the window's script runs"],
+  ["socket", "its socket is open"],
+  ["draw", "it asks for a picture"],
+  ["frame", "the picture has come"],
+  ["painted", "and is on the screen"],
+  ["state", "the state has come"],
+].map(([key, words]) => [words, when[key] - began])];
 const blank = await page.evaluate(() => {
   const c = document.querySelector("canvas");
   return !c.getContext("2d").getImageData(0, 0, c.width, c.height).data.some((v, i) => i % 4 < 3 && v > 0 && v < 250);
@@ -98,11 +124,13 @@ const client = async ({ size, frames }) => {
   };
   const drags = [], coarse = [];
   for (let i = 1; i <= frames; ++i) {
+    if (i % 1000 === 1) await window.noteMemory(i - 1);
     const begin = performance.now();
     draw({ camera: turned(3 * i), moving: true });
     const frame = await until((f) => f.n === n);
     if (i > 5) drags.push(performance.now() - begin), coarse.push(frame.coarse); // the first ones learn the pace
   }
+  await window.noteMemory(frames);
   const rest = performance.now();
   draw({ camera: turned(3 * frames), moving: false });
   await until((f) => f.n === n && f.coarse === 1);
@@ -130,14 +158,22 @@ const client = async ({ size, frames }) => {
   };
 };
 const before = memory();
+const curve = []; // of frames and of what the server then has
+await page.exposeFunction("noteMemory", (frame) => void curve.push([frame, memory()]));
 const r = await page.evaluate(client, { size, frames });
 const after = memory();
 const ms = (v) => `${v.toFixed(0)} ms`;
+const mib = (v) => `${v.toFixed(1)} MiB`;
+const settled = curve.find(([frame]) => frame >= 2000), last = curve[curve.length - 1];
+const growth = settled && settled[0] < last[0] ? `\n  grown from frame ${settled[0]} to ${last[0]}`.padEnd(43) + mib(last[1] - settled[1]) : "";
 console.log(`${words[0].split("/").pop()}, ${size.join("x")}, ${frames} frames
 first picture, from the program's start   ${ms(first)}
+${parts.map(([words, at]) => `  ${words.padEnd(40)}${Number.isFinite(at) ? ms(at) : "later"}`).join("\n")}
 drag to picture, median and 95 %          ${ms(r.drag[0])}, ${ms(r.drag[1])} (one sample for ${r.coarse} x ${r.coarse} pixels)
 edit to picture, median and 95 %          ${ms(r.edit[0])}, ${ms(r.edit[1])}
 rest to all pixels, and to the exact one  ${ms(r.all)}, ${ms(r.exact)}
-memory of the server, before and after    ${before.toFixed(0)} MiB, ${after.toFixed(0)} MiB`);
+memory of the server, at the beginning    ${mib(before)}
+${curve.map(([frame, v]) => `  after ${`${frame} frames`.padEnd(34)}${mib(v)}`).join("\n")}${growth}
+  after 30 edits and an exact picture     ${mib(after)}`);
 await browser.close();
 server.kill("SIGINT");
