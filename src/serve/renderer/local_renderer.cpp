@@ -121,14 +121,22 @@ bool has_volume(const Scene& scene) {
   return std::any_of(scene.items.begin(), scene.items.end(), [](const Item& i) { return std::holds_alternative<VolumeItem>(i); });
 }
 
-// Title and legends, with nothing beside them.
-Image draw_around(const Panel& panel, const StatedPicture& stated, Context& context) {
+// Title and legends, with nothing beside them. One column of the background is drawn: frames of all pixels, new with the first picture,
+// would take longer than that picture.
+Image draw_around(const Panel& panel, const StatedPicture& stated, const Rect& area, Context& context) {
   Scene empty;
   empty.background = panel.scene.background, empty.background_top = panel.scene.background_top;
   empty.transparent = panel.scene.transparent;
+  RenderOptions column;
+  column.width = 1, column.height = stated.height, column.samples = 1;
+  const Image rows = to_image(render(empty, panel.camera, column, context), empty.transparent);
+  Image image(stated.width, stated.height, rows.channels);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) std::copy_n(rows.at(0, y), rows.channels, image.at(x, y));
   Annotation texts = panel.annotation;
-  texts.box.reset(), texts.axes = texts.triad = texts.scale_bar = false;
-  return draw_picture(empty, panel.camera, stated, texts, {}, context).image;
+  texts.box.reset(), texts.texts.clear(), texts.axes = texts.triad = texts.scale_bar = false;
+  annotate(image, texts, make_projection(panel.camera, int(area.width), int(area.height)), int(area.x), int(area.y));
+  return image;
 }
 
 }  // namespace
@@ -156,7 +164,7 @@ DrawnView LocalRenderer::draw_moving(const PreparedPicture& prepared, const Stat
   set_area(area, drawn);
   drawn.part = request.part == drawn.area;
   if (!drawn.part) {
-    Image around = draw_around(panel, stated, context);
+    Image around = draw_around(panel, stated, area, context);
     paste_enlarged(image, int(area.x), int(area.y), int(area.width), int(area.height), around);
     image = std::move(around);
   }

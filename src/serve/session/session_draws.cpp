@@ -58,6 +58,7 @@ void Session::draw(std::unique_lock<std::mutex>& lock, Work& work, ClientView wh
   const int id = which.first->id, renderer_view = which.second->request.view;
   WantedView view = *which.second;
   const uint64_t revision = revision_;
+  cold_ = false;
   view.request.quality = view.next;
   // While something is dragged legends may be those of before.
   const bool has_legends = view.base > 0 && view.base == view.whole && (view.base == revision || live_);

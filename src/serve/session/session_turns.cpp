@@ -31,12 +31,12 @@ void Session::draw_thread() {
       work_.wait(lock);
     } else if (dragged) {
       work_.wait_until(lock, rest_at_);
+    } else if (cold_ && loaded_ && clients_.empty()) {
+      warm_up(lock);  // before what is told: histograms would keep the first picture waiting
     } else if (needs_tell_ && !beside_.is(Work::Kind::state)) {
       tell(lock, drawing_);
     } else if (const ClientView finer = next_view(Quality::exact); finer.second) {
       draw(lock, drawing_, finer);
-    } else if (cold_ && loaded_) {
-      warm_up(lock);
     } else {
       work_.wait(lock);
     }
