@@ -295,6 +295,20 @@ TEST_CASE("door: a server of named files opens no others") {
   CHECK(server.host.joined()[0].file.empty());
 }
 
+TEST_CASE("door: a window's first message may come with the address of its socket") {
+  RunningServer server;
+  const std::string cookie = server.enter(), say = "/socket?say=%7B%22do%22%3A%22draw%22%2C%22n%22%3A1%7D";
+  CHECK(upgraded(server, say, "", server.origin()) == 403);
+  CHECK(upgraded(server, say, cookie, "http://evil.example.org") == 403);
+  CHECK(server.host.messages == 0);
+  Wire wire = server.socket(cookie, say);
+  const auto told = wire.message();
+  REQUIRE(told);
+  CHECK(told->payload == "{\"do\":\"draw\",\"n\":1}");
+  wire.send_frame(test::text_frame, "second");
+  CHECK(wire.message()->payload == "second");
+}
+
 TEST_CASE("door: each user comes in by a token of its own, with its rights, any number of times") {
   const std::string anna = new_token(), ben = new_token();
   DoorOptions options;

@@ -79,6 +79,11 @@ export class App {
     document.addEventListener("fullscreenchange", () => this.changed());
   }
 
+  /** Connects, once the window stands on the page: what the first view is to show is asked for with the address. */
+  connect(): void {
+    this.session.connection.open(this.views[0].first());
+  }
+
   /** Draws the panels anew, at most once per frame of the screen. */
   changed(): void {
     if (this.drawn) return;

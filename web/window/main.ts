@@ -28,6 +28,7 @@ async function start(): Promise<void> {
     });
     followSystem(() => app.changed());
     draw(app, root); // at once: the size of the view is part of what is asked first
+    app.connect();
     await app.session.met; // the first picture is asked for before it
     app.catalog = await catalogue();
     app.changed();

@@ -171,7 +171,10 @@ struct Door::Inside {
       return refuse(told(404, "This server shows what was named when it was started, no other files."));
     }
     refusal = told(503, "There are too many sessions at this server; close one of them.");
-    return host.join(file, visitor->rights, visitor->user, std::move(socket));
+    auto handler = host.join(file, visitor->rights, visitor->user, std::move(socket));
+    // What the window says first need not wait until the browser has opened the socket.
+    if (const std::string* first = request.word("say"); handler && first) handler->on_text(*first);
+    return handler;
   }
 
   SessionHost& host;

@@ -52,12 +52,14 @@ const everyone = (message) => [...clients.keys()].forEach((s) => text(s, typeof 
 const tellPeople = () =>
   everyone((s) => ({ is: "people", count: clients.size, cursors: [...clients].filter(([o, c]) => o !== s && c.cursor).map(([, c]) => ({ id: c.id, ...c.cursor })) }));
 
-sockets.on("connection", (socket) => {
+sockets.on("connection", (socket, request) => {
   const client = { id: ++ids, views: new Map(), cursor: null };
   clients.set(socket, client);
   text(socket, pipeline.state(0));
   tellPeople();
   socket.on("message", (data) => receive(socket, client, JSON.parse(data)));
+  const first = new URL(request.url, "http://x").searchParams.get("say");
+  if (first) void receive(socket, client, JSON.parse(first));
   socket.on("close", () => {
     for (const v of client.views.values()) v.process?.kill();
     clients.delete(socket);

@@ -48,7 +48,6 @@ export class Session {
       frame: (h, p) => this.on.frame(h, p),
       connected: (how) => this.connectedAs(how),
     });
-    this.connection.open();
   }
 
   /** Applies edits, all or none; `live` while something is dragged. */
@@ -197,7 +196,7 @@ export class Session {
       this.progress = null;
       this.people = nobody;
     }
-    if (how === "open" && before !== "open") this.on.restart();
+    if (how === "open" && before !== "open" && !this.connection.asksAtOnce) this.on.restart();
     this.changed();
   }
 }

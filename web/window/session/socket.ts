@@ -10,6 +10,8 @@ export interface Handlers {
   connected: (how: Connected) => void;
 }
 
+export type Request = { do: string } & Record<string, unknown>;
+
 /** An answer that says no, with what the server objects to. */
 export class Refused extends Error {}
 
@@ -23,6 +25,8 @@ export class Connection {
   private socket: WebSocket | null = null;
   private last = 0;
   private tries = 0;
+  /** The socket that is open, or being opened, has asked for a picture with its address. */
+  asksAtOnce = false;
   private waiting = new Map<number, Waiting>();
   private closed = false;
 
@@ -32,9 +36,13 @@ export class Connection {
     private readonly make: (url: string) => WebSocket = (u) => new WebSocket(u),
   ) {}
 
-  open(): void {
+  /** `first`: goes with the address as request 1, so that the server need not wait for the socket to be open. */
+  open(first?: Request): void {
     this.handlers.connected("connecting");
-    const socket = this.make(this.url);
+    this.asksAtOnce = first !== undefined;
+    let url = this.url;
+    if (first) url += `${url.includes("?") ? "&" : "?"}say=${encodeURIComponent(JSON.stringify({ ...first, n: (this.last = 1) }))}`;
+    const socket = this.make(url);
     socket.binaryType = "arraybuffer";
     this.socket = socket;
     socket.onopen = () => {
@@ -68,7 +76,7 @@ export class Connection {
   }
 
   /** Sends a request and returns its number, or 0 while there is no connection. */
-  send(request: { do: string } & Record<string, unknown>): number {
+  send(request: Request): number {
     if (!this.isOpen) return 0;
     const n = ++this.last;
     this.socket!.send(JSON.stringify({ ...request, n }));
@@ -76,11 +84,11 @@ export class Connection {
   }
 
   /** Acknowledgements and cursors carry no number of their own. */
-  tell(message: { do: string } & Record<string, unknown>): void {
+  tell(message: Request): void {
     if (this.isOpen) this.socket!.send(JSON.stringify(message));
   }
 
-  ask<T extends ServerMessage>(request: { do: string } & Record<string, unknown>, seconds = 20): Promise<T> {
+  ask<T extends ServerMessage>(request: Request, seconds = 20): Promise<T> {
     const n = this.send(request);
     if (n === 0) return Promise.reject(new Error("Not connected"));
     return new Promise<T>((resolve, reject) => {

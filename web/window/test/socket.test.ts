@@ -47,6 +47,22 @@ describe("connection", () => {
   });
   afterEach(() => vi.useRealTimers());
 
+  it("gives the first request with the address, once", () => {
+    const urls: string[] = [];
+    c = new Connection("ws://x/socket?open=a", { message: () => undefined, frame: () => undefined, connected: () => undefined }, (u) => (urls.push(u), new Fake() as unknown as WebSocket));
+    c.open({ do: "draw", size: [4, 3] });
+    expect(JSON.parse(new URL(urls[0]).searchParams.get("say")!)).toEqual({ do: "draw", size: [4, 3], n: 1 });
+    expect(new URL(urls[0]).searchParams.get("open")).toBe("a");
+    expect(c.asksAtOnce).toBe(true);
+    last().accept();
+    expect(c.send({ do: "probe" })).toBe(2);
+    last().close();
+    vi.advanceTimersByTime(600);
+    expect(urls[1]).toBe("ws://x/socket?open=a");
+    expect(c.asksAtOnce).toBe(false);
+    c.close();
+  });
+
   it("counts requests and gives answers to those who asked", async () => {
     const a = c.ask({ do: "probe" });
     const b = c.ask({ do: "rows" });

@@ -5,7 +5,7 @@ import { pan, zoom } from "../camera/camera";
 import type { Size } from "../camera/projection";
 import { listen, type Drag, type PointerHandlers } from "../input/pointer";
 import type { Camera, FrameHeader } from "../protocol";
-import type { Connection } from "../session/socket";
+import type { Connection, Request } from "../session/socket";
 import { Canvas } from "./canvas";
 import { Drawing } from "./drawing";
 
@@ -63,6 +63,27 @@ export class View {
     this.drawing.want(performance.now(), moving);
     if (before && tell) this.host.moved(this, before, camera);
     this.schedule();
+  }
+
+  /** The request for the first picture, which counts as sent, as number 1; undefined where the view has no size yet. */
+  first(): Request | undefined {
+    this.measure();
+    if (this.size.width === 0) return undefined;
+    this.drawing.asked(1, performance.now(), "still");
+    return this.request(false);
+  }
+
+  private request(moving: boolean): Request {
+    const c = this.canvas.element;
+    return {
+      do: "draw",
+      view: this.index,
+      size: [c.width, c.height],
+      scale: window.devicePixelRatio || 1,
+      ...(this.camera ? { camera: this.camera } : {}),
+      moving,
+      base: this.drawing.base(c.width, c.height),
+    };
   }
 
   /** Draws the same view again, as after a change of its size. */
@@ -125,16 +146,7 @@ export class View {
     if (!this.element.isConnected || this.size.width === 0 || !this.host.connection.isOpen) return;
     const how = this.drawing.due(now);
     if (how) {
-      const c = this.canvas.element;
-      const n = this.host.connection.send({
-        do: "draw",
-        view: this.index,
-        size: [c.width, c.height],
-        scale: window.devicePixelRatio || 1,
-        ...(this.camera ? { camera: this.camera } : {}),
-        moving: how === "moving",
-        base: this.drawing.base(c.width, c.height),
-      });
+      const n = this.host.connection.send(this.request(how === "moving"));
       if (n > 0) this.drawing.asked(n, now, how);
       this.host.asked();
     }
