@@ -79,6 +79,49 @@ export async function wiring(test, o, browser) {
     await shot(o, page, "circle");
   });
 
+  await test("an edge is drawn in the graph by hand, to a free input and in place of another; one that closes a circle is refused", async () => {
+    await as("graph");
+    await page.waitForSelector(".port.out");
+    const before = (await seen(page)).sum;
+    const middle = async (locator) => {
+      const box = await locator.boundingBox();
+      return [box.x + box.width / 2, box.y + box.height / 2];
+    };
+    /** From below a step to somewhere on the box of another, `across` as a share of it. */
+    const draw = async (from, to, across, look) => {
+      const at = await middle(page.locator(`.port.out[data-from="${from}"]`));
+      const box = await page.locator(`.node[aria-label^="${to}:"] rect`).boundingBox();
+      await page.mouse.move(...at);
+      await page.mouse.down();
+      await page.mouse.move(at[0] + 5, at[1] + 12);
+      await page.mouse.move(box.x + across * box.width, box.y + box.height / 2, { steps: 4 });
+      await page.waitForSelector(".port.over");
+      await look?.();
+      await page.mouse.up();
+      await page.waitForSelector(".edge.drawn", { state: "detached" });
+    };
+    await andSettle(page, () => draw(source, "append1", 0.95, () => shot(o, page, "drawing_edge")));
+    await file(new RegExp(`append1:.*from: \\[contour1, slice1, ${source}\\]`, "s"));
+    await andSettle(page, () => draw("slice1", "append1", 0.05));
+    await file(new RegExp(`append1:.*from: \\[slice1, slice1, ${source}\\]`, "s"));
+    await draw("append1", "slice1", 0.5);
+    await page.waitForSelector(".panel .problem:has-text('in a circle')");
+    await shot(o, page, "drawn_circle");
+    for (let i = 0; i < 2; i++) await andSettle(page, () => page.click("button[aria-label=Undo]"));
+    await file(/append1:.*from: \[contour1, slice1\]/s);
+    assert.equal((await seen(page)).sum, before, "two steps back");
+    // Let go beside all boxes, it goes nowhere.
+    const at = await middle(page.locator(`.port.out[data-from="${source}"]`));
+    await page.mouse.move(...at);
+    await page.mouse.down();
+    await page.mouse.move(at[0] - 200, at[1], { steps: 3 });
+    await page.waitForSelector(".edge.drawn");
+    await page.mouse.up();
+    await page.waitForSelector(".edge.drawn", { state: "detached" });
+    assert.equal(await page.locator(".edge").count(), 4);
+    await noSeriousFindings(page, "ports");
+  });
+
   await test("a step is put between two in the graph, by keys, and taken back", async () => {
     const before = (await seen(page)).sum;
     await as("graph");

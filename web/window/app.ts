@@ -5,6 +5,7 @@ import { noCatalog, type Catalog } from "./catalog";
 import type { Drag } from "./input/pointer";
 import { Commands } from "./input/commands";
 import type { Camera, State } from "./protocol";
+import type { Connecting } from "./panels/ports";
 import { Rulers } from "./measure/rulers";
 import { Lines } from "./questions/lines";
 import { OverTime } from "./questions/over_time";
@@ -47,6 +48,8 @@ export class App {
   dialog: Dialog = null;
   /** Places that take the selected step, and what is added next in its place. */
   inFront: string[] = [];
+  /** The edge that is being drawn in the graph. */
+  connecting: Connecting | null = null;
   message = "";
   /** The pipeline as it was when the window opened. */
   beginning = "";

@@ -18,6 +18,9 @@ export interface Drawing {
   edges: Edge[];
 }
 
+/** How far from the middle of a box an input is: they come in side by side, the first one on the left. */
+export const inputShift = (index: number, count: number): number => (index - (count - 1) / 2) * Math.min(18, cell.box / count);
+
 export function drawingOf(steps: Pick<Step, "name" | "from">[]): Drawing {
   const placed = place(steps);
   const at = new Map(placed.map((p) => [p.name, p]));
@@ -26,9 +29,7 @@ export function drawingOf(steps: Pick<Step, "name" | "from">[]): Drawing {
   for (const s of steps) {
     const inputs = s.from.filter((f) => at.has(f) && f !== s.name);
     inputs.forEach((f, i) => {
-      // Inputs come in side by side, the first one on the left.
-      const shift = (i - (inputs.length - 1) / 2) * Math.min(18, cell.box / inputs.length);
-      edges.push(edge(at.get(f)!, at.get(s.name)!, corners, shift, placed, edges));
+      edges.push(edge(at.get(f)!, at.get(s.name)!, corners, inputShift(i, inputs.length), placed, edges));
     });
   }
   const most = (of: (p: Placed) => number): number => Math.max(...placed.map(of), 0) + 1;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pipeline as a graph, from top to bottom: steps that are chosen, and edges into which a step is put.
+// The pipeline as a graph, from top to bottom: steps that are chosen, edges into which a step is put, and ports between which
+// edges are drawn.
 import { html, svg, type TemplateResult } from "lit";
 import type { App } from "../app";
 import type { Step } from "../protocol";
 import { cell, drawingOf, type Edge } from "./edges";
+import { ports } from "./ports";
 
 export function graph(app: App): TemplateResult {
   const steps = app.state?.steps ?? [];
@@ -11,7 +13,7 @@ export function graph(app: App): TemplateResult {
   return html`<div class="graph"><svg width=${size[0]} height=${size[1]} viewBox="0 0 ${size[0]} ${size[1]}" role="group" aria-label="The pipeline as a graph">
     ${edges.map((e) => svg`<path class="edge" d=${e.path} />`)}
     ${steps.map((s) => node(app, s, corners.get(s.name)!))}
-    ${app.state?.may_edit ? edges.map((e) => between(app, e)) : []}</svg></div>`;
+    ${app.state?.may_edit ? [...edges.map((e) => between(app, e)), ...ports(app, steps, corners)] : []}</svg></div>`;
 }
 
 function node(app: App, s: Step, [x, y]: [number, number]): TemplateResult {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from "vitest";
+import type { Catalog } from "../catalog";
 import { cell, drawingOf } from "../panels/edges";
+import { portAt, portsOf, type Port } from "../panels/ports";
 import type { State, Step } from "../protocol";
 import { canGo, hangingOn, mayTake, removal, slotsOf, takersOf, withInput } from "../session/wiring";
 
@@ -30,6 +32,28 @@ describe("what a step may take", () => {
     expect(withInput(["a", "b"], 1, "c")).toEqual(["a", "c"]);
     expect(withInput(["a"], 1, "c")).toEqual(["a", "c"]);
     expect(withInput(["a", "b"], 0, "")).toEqual(["b"]);
+  });
+});
+
+describe("ports of the graph", () => {
+  const catalog = { operations: [{ name: "both", inputs: [2, -1] }, { name: "cut", inputs: [1, 1] }], sources: [{ name: "ball", inputs: [0, 0] }] } as unknown as Catalog;
+  const { corners, edges } = drawingOf(forked);
+  const ports = forked.flatMap((s) => portsOf({ catalog }, s, corners.get(s.name)!));
+  const of = (name: string): Port[] => ports.filter((p) => p.step === name);
+  const inside = (name: string, x: number): [number, number] => [corners.get(name)![0] + x, corners.get(name)![1] + cell.tall / 2];
+  it("stand where edges arrive, free ones beside them; a source has none", () => {
+    expect(of("ball")).toEqual([]);
+    expect(of("cut")).toHaveLength(1);
+    expect(of("both").map((p) => p.index)).toEqual([0, 1, 2]);
+    for (const e of edges) expect(of(e.to).some((p) => e.path.endsWith(`${p.at[0]} ${p.at[1]}`)), `${e.from} to ${e.to}`).toBe(true);
+    expect(of("both")[2].at[0]).toBeGreaterThan(of("both")[1].at[0]);
+  });
+  it("are found from all of a box, the nearest one, but not from the step itself", () => {
+    expect(portAt(ports, corners, "ball", inside("both", 0))?.index).toBe(0);
+    expect(portAt(ports, corners, "ball", inside("both", cell.box))?.index).toBe(2);
+    expect(portAt(ports, corners, "both", inside("both", 40))).toBe(null);
+    expect(portAt(ports, corners, "cut", inside("ball", 40))).toBe(null);
+    expect(portAt(ports, corners, "cut", [-100, -100])).toBe(null);
   });
 });
 
