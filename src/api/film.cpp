@@ -93,15 +93,19 @@ std::vector<double> Scene::frames(const std::function<void(const Frame&)>& take,
   }
 }
 
+PageWords page_words(const Params& params) {
+  PageWords words;
+  Params of_page, of_film;
+  for (const Param& p : params) (p.name == "times" ? of_film : of_page).push_back(p);
+  sg::Schema schema = sg::schema_of(words.page);
+  set_values(schema, of_page, "page");
+  words.film = film_params("", of_film, {"times"});
+  return words;
+}
+
 std::string Scene::page(const Params& params, int width, int height, const Context& context) const {
   return guarded([&] {
-    const auto is_time = [](const Param& p) { return p.name == "times"; };
-    Params of_page, of_film;
-    for (const Param& p : params) (is_time(p) ? of_film : of_page).push_back(p);
-    sg::PageParams page;
-    sg::Schema schema = sg::schema_of(page);
-    set_values(schema, of_page, "page");
-    const sg::FilmParams film = film_params("", of_film, {"times"});
+    const auto [page, film] = page_words(params);
     sg::Context& core = context.state().core;
     sg::PictureOptions options;
     const auto at_hand = [&](const std::string& step, const Data::Held& held, StepsOf&) {

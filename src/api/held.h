@@ -13,6 +13,8 @@
 #include "image/image.h"
 #include "io/lent_series.h"
 #include "pipeline/file/pipeline_file.h"
+#include "pipeline/film/film_params.h"
+#include "pipeline/offline/page_params.h"
 #include "pipeline/picture/picture.h"
 
 namespace sightglass {
@@ -69,6 +71,12 @@ struct Image::Held {
 
 /// Has pictures on the way told to the context, if that wants any; `file` and `context` must outlive the work.
 void watch(sg::PictureOptions& options, const sg::PipelineFile& file, const Context& context);
+/// What is stated of a page. Throws Error(usage) for unknown words.
+struct PageWords {
+  sg::PageParams page;
+  sg::FilmParams film;  ///< times
+};
+PageWords page_words(const Params& params);
 /// Of those of a picture, what the library tells.
 std::vector<Legend> told_legends(const std::vector<sg::Legend>& legends);
 

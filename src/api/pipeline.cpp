@@ -8,6 +8,7 @@
 #include "base/file/file.h"
 #include "image/codec.h"
 #include "io/options.h"
+#include "pipeline/offline/page.h"
 #include "pipeline/operation/operation.h"
 #include "pipeline/picture/picture.h"
 
@@ -24,6 +25,12 @@ struct Pipeline::State {
     sg::GraphOptions options;
     options.cache = cache;
     return sg::build_graph(file, options, results);
+  }
+  // 0: as it states.
+  sg::PipelineFile sized(int width, int height) const {
+    sg::PipelineFile sized = file;
+    if (width > 0 && height > 0) sized.picture.push_back(fmt::format("size={}x{}", width, height));
+    return sized;
   }
   sg::PipelineFile::Step& step(std::string_view name) {
     std::vector<std::string> names;
@@ -163,12 +170,20 @@ Image Pipeline::render(int width, int height, const Context& context) const {
     sg::PictureOptions options;
     options.cache = state_->cache;
     options.results = state_->results;
-    sg::PipelineFile file = state_->file;
-    if (width > 0 && height > 0) file.picture.push_back(fmt::format("size={}x{}", width, height));
+    sg::PipelineFile file = state_->sized(width, height);
     watch(options, file, context);
     sg::Picture picture = sg::make_picture(file, options, context.state().core);
     return Image(std::make_shared<const Image::Held>(Image::Held{std::move(picture.image), std::move(file), std::move(picture.notes),
                                                                  std::move(picture.seen), told_legends(picture.legends)}));
+  });
+}
+
+std::string Pipeline::page(const Params& params, int width, int height, const Context& context) const {
+  return guarded([&] {
+    const auto [page, film] = page_words(params);
+    sg::PictureOptions options;
+    options.cache = state_->cache, options.results = state_->results;
+    return sg::make_page(state_->sized(width, height), page, film, options, context.state().core, sg::UnstatedTimes::one).html;
   });
 }
 

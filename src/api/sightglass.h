@@ -470,6 +470,8 @@ class SIGHTGLASS_API Pipeline {
   Data result(std::string_view step = {}, const Context& context = {}) const;
   /// What the pipeline shows; where it shows nothing, what suits its last results.
   Image render(int width = 0, int height = 0, const Context& context = {}) const;  ///< 0: as it states, else 1280x720
+  /// That picture as a page, as Scene::page().
+  std::string page(const Params& params = {}, int width = 0, int height = 0, const Context& context = {}) const;
   /// The plan of the last result as a table: what runs, what is cached, with sizes and times expected.
   std::string explain() const;
   /// As YAML. Numbers from memory are named only.

@@ -113,6 +113,42 @@ def test_a_picture_turns_as_a_page(tmp_path):
         picture.interactive(maxi="1M")
 
 
+def test_a_picture_of_a_pipeline_turns_as_a_page(tmp_path):
+    p = sg.pipeline(sg.sphere(size=12).contour(values=[0]))
+    picture = p.render(size=(120, 90))
+    page = picture.interactive()
+    scene = sg.sphere(size=12).contour(values=[0]).plot(size=(120, 90)).interactive()
+    assert "aspect-ratio: 120 / 90" in page._repr_html_()
+
+    def arrays(page):
+        return [line for line in page.html.splitlines() if line.startswith('<script type="text/plain"')]
+
+    assert arrays(page) == arrays(scene) != []
+    p.set("contour", values=[0.2])
+    assert picture.interactive().html == page.html  # as it was drawn
+    assert arrays(p.render(size=(120, 90)).interactive()) != arrays(page)
+    with pytest.raises(sg.UsageError, match="maxi"):
+        picture.interactive(maxi="1M")
+    # Numbers from memory, and pictures that were saved.
+    x = np.linspace(-1, 1, 9)
+    ball = (x[:, None, None] ** 2 + x[None, :, None] ** 2 + x[None, None, :] ** 2).astype(np.float32)
+    assert arrays(sg.pipeline(sg.uniform(ball, name="v").contour(values=[0.5])).render(size=(120, 90)).interactive())
+    picture.save(tmp_path / "a.png")
+    assert arrays(sg.open(tmp_path / "a.png").render().interactive()) == arrays(page)
+    moves = sg.pipeline(sg.double_gyre(dims=[21, 11, 1])).render(size=(120, 90))
+    assert moves.interactive(times=[0, 0.5, 1]).html.count('"time":') == 3
+    assert moves.interactive().html.count('"time":') <= 1
+
+
 def test_a_page_has_the_steps_of_what_moves():
     page = sg.scene().add(sg.double_gyre(dims=[21, 11, 1]), "surface", field="velocity").interactive(size=(120, 90), times=[0, 0.5, 1])
     assert page.html.count('"time":') == 3
+
+
+def test_a_page_of_a_series_in_a_pipeline_is_of_the_picture_s_time(tmp_path):
+    for n in range(3):
+        sg.sphere(size=8 + n).save(tmp_path / f"a_{n}.vti")
+    p = sg.pipeline(f"sightglass: 1\nsteps:\n  a: {{read: '{tmp_path}/a_{{n}}.vti'}}\n")
+    picture = p.render(size=(120, 90))
+    assert picture.interactive().html.count('"time":') <= 1
+    assert picture.interactive(times=[0, 1, 2]).html.count('"time":') == 3

@@ -99,7 +99,8 @@ bool is_page(const std::string& output) {
   return extension == "html" || extension == "htm";
 }
 
-Page make_page(PipelineFile file, const PageParams& params, const FilmParams& film, PictureOptions options, Context& context) {
+Page make_page(PipelineFile file, const PageParams& params, const FilmParams& film, PictureOptions options, Context& context,
+               UnstatedTimes unstated) {
   const uint64_t budget = page_budget(params);
   if (film.turntable > 0) fail_usage("a page is turned by hand", "--turntable", "leave it out, or make a film: -o film.webm");
   Page page;
@@ -111,7 +112,8 @@ Page make_page(PipelineFile file, const PageParams& params, const FilmParams& fi
   std::string recipe;
   FilmParams moments = film;
   // What is at hand has one time.
-  if (film.times.empty() && options.results.empty()) moments.times = times_of(file, film, page.notes, context);
+  if (film.times.empty() && options.results.empty() && unstated == UnstatedTimes::spread)
+    moments.times = times_of(file, film, page.notes, context);
   Context computing(context, 0, 0.6), packing(context, 0.6, 1);
   if (moments.times.empty()) {
     Picture picture = make_picture(file, options, computing);

@@ -19,9 +19,16 @@ struct Page {
   std::vector<std::string> notes;  ///< what was chosen, and what is coarser than the picture's data
 };
 
-/// The picture of `file`, or where it is a series, one for each of film.times (default: at most 24 spread over all). options.on_panel is
-/// taken. Throws Error(usage) for a budget that is too small.
-Page make_page(PipelineFile file, const PageParams& params, const FilmParams& film, PictureOptions options, Context& context);
+/// What a page of a series has where no times are stated.
+enum class UnstatedTimes {
+  spread,  ///< at most 24, spread over all
+  one,     ///< that of the picture
+};
+
+/// The picture of `file`, or where it is a series, one for each of film.times. options.on_panel is taken. Throws Error(usage) for a budget
+/// that is too small.
+Page make_page(PipelineFile file, const PageParams& params, const FilmParams& film, PictureOptions options, Context& context,
+               UnstatedTimes unstated = UnstatedTimes::spread);
 
 /// make_page() into film.output, at once or not at all.
 Page write_page(PipelineFile file, const PageParams& params, const FilmParams& film, const PictureOptions& options, Context& context);

@@ -37,6 +37,13 @@ py::array plane_of(const Image& image, std::span<const T> (Image::*plane)() cons
   return r;
 }
 
+// Of a scene or a pipeline.
+template <class T>
+std::string page_of(const T& of, const py::dict& params, int width, int height) {
+  const Params stated = params_of(params);
+  return call([&](const Context& context) { return of.page(stated, width, height, context); });
+}
+
 // f(context), while pictures on the way go to a Python function. What that raises ends the work.
 template <class F>
 Image watched(const py::object& on_picture, F&& f) {
@@ -121,15 +128,13 @@ void declare_scene(py::module_& m) {
              const Params stated = params_of(params);
              return call([&](const Context& context) { return scene.film(output, stated, width, height, context); });
            })
-      .def("page", [](const Scene& scene, const py::dict& params, int width, int height) {
-        const Params stated = params_of(params);
-        return call([&](const Context& context) { return scene.page(stated, width, height, context); });
-      });
+      .def("page", &page_of<Scene>);
 }
 
 void declare_pipeline(py::module_& m) {
   py::class_<Pipeline>(m, "Pipeline")
       .def(py::init<const Data&>())
+      .def(py::init<const Pipeline&>())
       .def_static("parse", [](const std::string& yaml) { return Pipeline::parse(yaml); })
       .def_static("read", &Pipeline::read)
       .def_static("open",
@@ -158,6 +163,7 @@ void declare_pipeline(py::module_& m) {
             return watched(on_picture, [&](const Context& context) { return p.render(width, height, context); });
           },
           py::arg("width"), py::arg("height"), py::arg("on_picture") = py::none())
+      .def("page", &page_of<Pipeline>)
       .def("explain", &Pipeline::explain)
       .def("text", &Pipeline::text)
       .def("write", &Pipeline::write)

@@ -49,7 +49,8 @@ class Pipeline:
 
         ``on_picture``: as of :meth:`Scene.render`.
         """
-        return Picture(self._core.render(*(int(n) for n in size or (0, 0)), wrapped(on_picture)))
+        of = _core.Pipeline(self._core)
+        return Picture(self._core.render(*(int(n) for n in size or (0, 0)), wrapped(on_picture, of)), of)
 
     def explain(self) -> str:
         """The plan as a table: what runs, what is cached, with sizes and times expected."""

@@ -24,19 +24,19 @@ def _at_values(value: Any) -> Any:
     return ",".join(f"@{float(at)!r}:{what}" for at, what in value.items()) if isinstance(value, Mapping) else value
 
 
-def wrapped(on_picture: Callable[[Picture], Any] | None) -> Any:
+def wrapped(on_picture: Callable[[Picture], Any] | None, of: _core.Scene | _core.Pipeline) -> Any:
     """The same for pictures of the core."""
-    return None if on_picture is None else lambda core: on_picture(Picture(core))
+    return None if on_picture is None else lambda core: on_picture(Picture(core, of))
 
 
 class Picture:
     """Pixels, with the pipeline that makes them again and what was chosen. A notebook shows it."""
 
-    __slots__ = ("_core", "_scene", "__weakref__")
+    __slots__ = ("_core", "_of", "__weakref__")
 
-    def __init__(self, core: _core.Image, scene: _core.Scene | None = None):
+    def __init__(self, core: _core.Image, of: _core.Scene | _core.Pipeline):
         self._core = core
-        self._scene = scene
+        self._of = of  # as it was when the picture was drawn
 
     @property
     def array(self) -> np.ndarray:
@@ -94,9 +94,7 @@ class Picture:
         """
         from ._page import Page
 
-        if self._scene is None:
-            raise usage("the picture of a pipeline", "interactive", "scenes have pages; of a pipeline's file: sightglass run FILE -o scene.html")
-        return Page(self._scene.page(params, *self.size), self.size)
+        return Page(self._of.page(params, *self.size), self.size)
 
     def _repr_png_(self) -> bytes:
         return self._core.png()
@@ -136,7 +134,8 @@ class Scene:
 
         ``on_picture`` is called with pictures by paths of light (``integrator``) while they grow: one at once, then better ones.
         """
-        return Picture(self._core.render(int(size[0]), int(size[1]), wrapped(on_picture)), _core.Scene(self._core))
+        of = _core.Scene(self._core)
+        return Picture(self._core.render(int(size[0]), int(size[1]), wrapped(on_picture, of)), of)
 
     def interactive(self, size: tuple[int, int] = (1280, 720), **params: Any) -> Page:
         """A page that turns, as :meth:`Picture.interactive`."""
