@@ -117,7 +117,7 @@ Frame render_light(const Scene& whole, const Camera& camera, const RenderOptions
     marks = render(beside, camera, lines, silent);
   }
   LightWatch watch;
-  watch.every = options.watch.every;
+  watch.every = options.watch.every, watch.so_far = options.watch.so_far;
   if (options.watch.on_frame)
     watch.on_frame = [&](const Frame& light, const TraceReport& so_far) {
       Frame frame = light;

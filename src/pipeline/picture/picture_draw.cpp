@@ -168,7 +168,8 @@ DrawnPicture draw_picture(const Scene& stated, const Camera& camera, const State
     return DrawnPicture{std::move(image), std::move(seen), std::move(light), measured ? measured->text() : ""};
   };
   if (how.on_finer)
-    options.watch = {[&](const Frame& frame, const TraceReport& light) { return how.on_finer(finish(frame, light)); }, how.every};
+    options.watch = {[&](const Frame& frame, const TraceReport& light) { return how.on_finer(finish(frame, light)); }, how.every,
+                     how.so_far};
   Frame frame;
   TraceReport light;
   const StopWatch drawing;

@@ -78,6 +78,7 @@ struct DrawHow {
   std::optional<std::chrono::steady_clock::time_point> until;  ///< by paths: then it stops
   std::function<bool(DrawnPicture)> on_finer;                  ///< by paths: gets pictures on the way; false: no more of them
   double every = 1;                                            ///< as in LightWatch
+  LightSoFar* so_far = nullptr;                                ///< as there; with on_finer
   bool layers = false;                                         ///< as in PictureOptions
   std::function<void(Frame&)> on_light;                        ///< as there
 };

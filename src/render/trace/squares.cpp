@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "data/memory/memory_budget.h"
 #include "render/composite/marks.h"
@@ -30,6 +31,22 @@ struct Square {
   double variance = 0;  ///< as displayed, mean of its pixels
   bool reached = false;
 };
+using Sums = std::vector<PixelSum, HugeAllocator<PixelSum>>;
+
+}  // namespace
+
+struct SquaresSoFar {
+  std::vector<Square> squares;
+  Sums sums;
+  Frame frame;
+  Plane<float> behind, variance, error;
+  size_t bytes() const {
+    return squares.size() * sizeof(Square) + sums.size() * sizeof(PixelSum) + frame.pixels() * 24 +
+           4 * (behind.size() + variance.size() + error.size());
+  }
+};
+
+namespace {
 
 class Drawing {
  public:
@@ -92,6 +109,16 @@ class Drawing {
   void look(size_t square, MediaWalk* media) {
     const PixelBox at = place(square);
     if (at.overlaps(filled_)) see_first_met(picture_.world, picture_.camera, media, at, frame_);
+  }
+
+  /// What was drawn so far leaves, or comes back.
+  void give(SquaresSoFar& so_far) {
+    so_far.squares = std::move(squares_), so_far.frame = std::move(frame_);
+    so_far.behind = std::move(behind_), so_far.variance = std::move(variance_), so_far.error = std::move(error_);
+  }
+  void take(SquaresSoFar& so_far) {
+    squares_ = std::move(so_far.squares), frame_ = std::move(so_far.frame);
+    behind_ = std::move(so_far.behind), variance_ = std::move(so_far.variance), error_ = std::move(so_far.error);
   }
 
   void report(TraceReport& r) const {
@@ -173,33 +200,16 @@ void add_behind(const Plane<float>& behind, Frame& frame) {
   }
 }
 
-void draw_squares(const LitPicture& picture, const Integrator& integrator, Sweeps& sweeps, Frame& frame, Plane<float>& behind,
-                  Plane<float>& variance, TraceReport& report, Context& context) {
-  Drawing drawing(picture, integrator, frame, behind, variance, report.planes.error);
-  // In one go, pixels need no memory for their sums.
-  if (!sweeps.any()) {
-    SharedProgress progress(context, drawing.size(), "following light");
-    parallel_for(
-        drawing.size(), 1,
-        [&](size_t square, size_t) {
-          const Media::Borrowed media = picture.world.borrow_media();
-          PixelSum sums[most_pixels];
-          drawing.draw(square, drawing.most(), sums);
-          drawing.develop(square, sums);
-          drawing.look(square, media.get());
-          progress.step();
-        },
-        &context);
-    return drawing.report(report);
-  }
+namespace {
 
-  need_memory(double(drawing.size()) * double(most_pixels * sizeof(PixelSum)),
-              fmt::format("{}x{} pixels lit in sweeps", frame.width, frame.height), "render", "make a smaller picture: --size");
-  std::vector<PixelSum, HugeAllocator<PixelSum>> sums;
-  sums.assign(drawing.size() * most_pixels, PixelSum());
-  std::vector<size_t> left(drawing.size());
-  for (size_t i = 0; i < left.size(); ++i) left[i] = i;
-  for (uint32_t n = 0; !left.empty();) {
+// The picture swept over until nothing is left or enough is seen.
+void draw_sweeps(Drawing& drawing, const LitPicture& picture, Sweeps& sweeps, Sums& sums, Frame& frame, const Plane<float>& behind,
+                 TraceReport& report, Context& context) {
+  std::vector<size_t> left;
+  uint32_t n = drawing.most();  // of what is left all squares have so many at least: some of a sweep that was cut short have more
+  for (size_t i = 0; i < drawing.size(); ++i)
+    if (!drawing.finished(i)) left.push_back(i), n = std::min(n, drawing.paths(i));
+  while (!left.empty()) {
     double pixels = 0;
     for (const size_t square : left) pixels += drawing.pixels(square);
     const uint32_t paths = sweeps.next(n, n == 0 ? 2 : 1, pixels);
@@ -229,6 +239,51 @@ void draw_squares(const LitPicture& picture, const Integrator& integrator, Sweep
   }
   drawing.report(report);
   if (!left.empty()) report.stopped = int(drawing.paths(left[0]));
+}
+
+}  // namespace
+
+void draw_squares(const LitPicture& picture, const Integrator& integrator, Sweeps& sweeps, Frame& frame, Plane<float>& behind,
+                  Plane<float>& variance, TraceReport& report, Context& context) {
+  Drawing drawing(picture, integrator, frame, behind, variance, report.planes.error);
+  // In one go, pixels need no memory for their sums.
+  if (!sweeps.any()) {
+    SharedProgress progress(context, drawing.size(), "following light");
+    parallel_for(
+        drawing.size(), 1,
+        [&](size_t square, size_t) {
+          const Media::Borrowed media = picture.world.borrow_media();
+          PixelSum sums[most_pixels];
+          drawing.draw(square, drawing.most(), sums);
+          drawing.develop(square, sums);
+          drawing.look(square, media.get());
+          progress.step();
+        },
+        &context);
+    return drawing.report(report);
+  }
+
+  need_memory(double(drawing.size()) * double(most_pixels * sizeof(PixelSum)),
+              fmt::format("{}x{} pixels lit in sweeps", frame.width, frame.height), "render", "make a smaller picture: --size");
+  Sums sums;
+  LightSoFar* const kept = sweeps.so_far();
+  if (kept && kept->squares && kept->squares->frame.width == frame.width && kept->squares->frame.height == frame.height) {
+    sums = std::move(kept->squares->sums);
+    drawing.take(*kept->squares);
+    *kept = {};
+  } else {
+    sums.assign(drawing.size() * most_pixels, PixelSum());
+  }
+  try {
+    draw_sweeps(drawing, picture, sweeps, sums, frame, behind, report, context);
+  } catch (const Error& e) {
+    if (!kept || e.kind() != ErrorKind::cancelled) throw;
+    kept->squares = std::make_shared<SquaresSoFar>();
+    drawing.give(*kept->squares);
+    kept->squares->sums = std::move(sums);
+    kept->bytes = kept->squares->bytes();
+    throw;
+  }
 }
 
 }  // namespace sg::trace

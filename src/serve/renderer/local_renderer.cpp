@@ -62,7 +62,8 @@ StatedPicture stated_for(const DrawRequest& request, const PreparedPicture& prep
 LocalRenderer::LocalRenderer(uint64_t cache_bytes, std::vector<std::string> coloring)
     : cache_(std::make_shared<Cache>(cache_bytes)),
       other_times_(std::make_shared<Cache>(cache_bytes / 8)),
-      coloring_(std::move(coloring)) {}
+      coloring_(std::move(coloring)),
+      unfinished_(cache_bytes / 4) {}
 
 std::shared_ptr<const LocalRenderer::Loaded> LocalRenderer::loaded() const {
   const std::lock_guard lock(mutex_);
@@ -82,7 +83,9 @@ PipelineFile LocalRenderer::load(const PipelineFile& pipeline, Context& context)
   next->prepared = prepare_picture(next->file, options, context);
   coloring_.clear();
   const std::lock_guard lock(mutex_);
-  if (!loaded_ || !make_same_picture(loaded_->file, next->file)) planes_.clear();
+  const bool same = loaded_ && make_same_picture(loaded_->file, next->file);
+  next->picture = (loaded_ ? loaded_->picture : 0) + !same;
+  if (!same) planes_.clear(), unfinished_.clear();
   loaded_ = next;
   return next->file;
 }
@@ -98,7 +101,7 @@ Json::Members LocalRenderer::tell(Context& context) {
 }
 
 void LocalRenderer::forget(int view) {
-  coarse_.erase(view);
+  coarse_.erase(view), unfinished_.forget(view);
   const std::lock_guard lock(mutex_);
   planes_.erase(view);
 }
@@ -174,10 +177,10 @@ DrawnView LocalRenderer::draw_moving(const PreparedPicture& prepared, const Stat
 }
 
 // All pixels. Pictures by paths come as drafts with one path a pixel, then better and better to the exact one.
-DrawnView LocalRenderer::draw_whole(const PreparedPicture& prepared, const StatedPicture& stated, const DrawRequest& request,
-                                    const OnFiner& on_finer, Context& context) {
+DrawnView LocalRenderer::draw_whole(const Loaded& now, const StatedPicture& stated, const DrawRequest& request, const OnFiner& on_finer,
+                                    Context& context) {
   const auto begin = std::chrono::steady_clock::now();
-  const Panel panel = panel_of(prepared, stated);
+  const Panel panel = panel_of(now.prepared, stated);
   StatedPicture how = stated;
   const bool exact = request.quality == Quality::exact, light = follows_light(panel.scene, stated);
   if (!exact) how.picture.samples = 1, how.picture.light.stop = 1, how.picture.light.denoise = false;
@@ -191,19 +194,28 @@ DrawnView LocalRenderer::draw_whole(const PreparedPicture& prepared, const State
     return drawn;
   };
   DrawHow drawing;
-  if (exact && light && on_finer)
+  LightSoFar so_far;
+  if (exact && light && on_finer) {
+    so_far = unfinished_.take(request, now.picture), drawing.so_far = &so_far;
     drawing.on_finer = [&](DrawnPicture picture) {
       context.check();
       on_finer(view_of(picture, false));
       return true;
     };
-  DrawnPicture picture = draw_picture(rough(panel.scene, request.quality), panel.camera, how, panel.annotation, drawing, context);
+  }
+  DrawnPicture picture;
+  try {
+    picture = draw_picture(rough(panel.scene, request.quality), panel.camera, how, panel.annotation, drawing, context);
+  } catch (const Error&) {
+    if (so_far.squares) unfinished_.keep(request, now.picture, std::move(so_far));
+    throw;
+  }
   DrawnView drawn = view_of(picture, exact);
   auto planes = std::make_shared<Planes>();
   planes->seen = std::move(picture.seen), planes->width = stated.width, planes->area = area;
   planes->projection = make_projection(panel.camera, int(area.width), int(area.height));
   const std::lock_guard lock(mutex_);
-  if (&loaded_->prepared == &prepared) planes_[request.view] = planes;  // else something else was loaded meanwhile
+  if (loaded_.get() == &now) planes_[request.view] = planes;  // else something else was loaded meanwhile
   return drawn;
 }
 
@@ -221,7 +233,7 @@ DrawnView LocalRenderer::draw(const DrawRequest& request, const OnFiner& on_fine
   } else if (request.quality == Quality::moving) {
     drawn = draw_moving(now->prepared, stated, request, coarse_[request.view], context);
   } else {
-    drawn = draw_whole(now->prepared, stated, request, on_finer, context);
+    drawn = draw_whole(*now, stated, request, on_finer, context);
   }
   drawn.seconds = seconds_since(begin);
   return drawn;

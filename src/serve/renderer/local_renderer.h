@@ -8,6 +8,7 @@
 #include "pipeline/picture/prepare.h"
 #include "serve/renderer/renderer.h"
 #include "serve/renderer/tell.h"
+#include "serve/renderer/unfinished.h"
 
 namespace sg::serve {
 
@@ -27,6 +28,7 @@ class LocalRenderer : public Renderer {
   struct Loaded {
     PipelineFile file;
     PreparedPicture prepared;
+    uint64_t picture = 0;  ///< number: the same where the same is seen
   };
   // Of the last whole picture of a view: what places are looked up in.
   struct Planes {
@@ -37,7 +39,7 @@ class LocalRenderer : public Renderer {
   };
   std::shared_ptr<const Loaded> loaded() const;
   std::shared_ptr<const Planes> planes_of(int view) const;
-  DrawnView draw_whole(const PreparedPicture& prepared, const StatedPicture& stated, const DrawRequest& request, const OnFiner& on_finer,
+  DrawnView draw_whole(const Loaded& now, const StatedPicture& stated, const DrawRequest& request, const OnFiner& on_finer,
                        Context& context);
   DrawnView draw_moving(const PreparedPicture& prepared, const StatedPicture& stated, const DrawRequest& request, double& coarse,
                         Context& context);
@@ -46,7 +48,8 @@ class LocalRenderer : public Renderer {
   std::vector<std::string> coloring_;           ///< until a pipeline has it
   std::map<int, double> coarse_;                ///< of the next moving picture of each view; for the thread that draws
   double pace_ = 0;                             ///< of the last one of any view, with which others begin
-  mutable std::mutex mutex_;                    ///< for what follows
+  Unfinished unfinished_;
+  mutable std::mutex mutex_;  ///< for what follows
   std::shared_ptr<const Loaded> loaded_;
   std::map<int, std::shared_ptr<const Planes>> planes_;
   StepSeconds seconds_;

@@ -2,6 +2,7 @@
 // What is told of a picture by paths: what it took, and pictures on the way.
 #pragma once
 #include <functional>
+#include <memory>
 
 #include "image/image.h"
 
@@ -23,10 +24,21 @@ struct TraceReport {
   LightPlanes planes;
 };
 
+namespace trace {
+struct SquaresSoFar;
+}
+/// What was drawn of a picture when it was cancelled, for the same scene, camera, size and options: it goes on from there, and has the same
+/// bytes in the end. Of those drawn by squares (trace/squares.h) without a time; others begin anew.
+struct LightSoFar {
+  std::shared_ptr<trace::SquaresSoFar> squares;
+  size_t bytes = 0;  ///< that it takes
+};
+
 /// Gets the picture while it is drawn: at once with two paths a pixel, then about every so many seconds. False ends it there.
 struct LightWatch {
   std::function<bool(const Frame&, const TraceReport&)> on_frame;
-  double every = 1;  ///< seconds; with n pictures told, n times as long, so that a long wait brings few
+  double every = 1;              ///< seconds; with n pictures told, n times as long, so that a long wait brings few
+  LightSoFar* so_far = nullptr;  ///< taken at the beginning, filled where the picture is cancelled; not owned
 };
 
 }  // namespace sg

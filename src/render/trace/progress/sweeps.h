@@ -16,6 +16,8 @@ class Sweeps {
 
   /// Whether the picture is looked at on the way at all.
   bool any() const { return seconds_ > 0 || watch_.on_frame; }
+  /// Where to begin, and to leave what was drawn of a cancelled picture; null: nowhere.
+  LightSoFar* so_far() const { return seconds_ > 0 ? nullptr : watch_.so_far; }
   /// Paths a pixel of the next sweep over `pixels` that are not finished, of which each has n: as many again, at most 16, or what there is
   /// time for by the pace of the last sweep; 0 when there is none left. No less than `least` otherwise, and `least` where n is 0.
   uint32_t next(uint32_t n, uint32_t least, double pixels);
