@@ -72,10 +72,9 @@ await page.waitForFunction(() => window.when.painted, null, { polling: 50 });
 const when = await page.evaluate(() => window.when);
 const first = when.painted - began;
 const parts = [["the server listens", listening], ...[
-  ["page", "the browser has the token's page asked for"],
-  ["script", "the window's script runs"],
+  ["page", "the browser asks for the window"],
+  ["script", "its script asks for a picture"],
   ["socket", "its socket is open"],
-  ["draw", "it asks for a picture"],
   ["frame", "the picture has come"],
   ["painted", "and is on the screen"],
   ["state", "the state has come"],
