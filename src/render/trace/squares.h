@@ -43,8 +43,8 @@ void add_behind(const Plane<float>& behind, Frame& frame);
 
 /// Fills a frame with linear premultiplied light and what the middle of each pixel sees, `behind` with what is seen of the backdrop (empty
 /// where there is none), `variance` with those of the pixels' luminance, and the report, whose plane of errors has the frame's size. In one
-/// go, or where sweeps are wanted as many paths everywhere at a time, with the same bytes; from sweeps.so_far() on, where something was left
-/// there by the same picture, which leaves it there when it is cancelled. The same bytes for any number of threads.
+/// go, or where sweeps are wanted as many paths everywhere at a time, with the same bytes; from sweeps.so_far() on, where something was
+/// left there by the same picture, which leaves it there when it is cancelled. The same bytes for any number of threads.
 void draw_squares(const LitPicture& picture, const Integrator& integrator, Sweeps& sweeps, Frame& frame, Plane<float>& behind,
                   Plane<float>& variance, TraceReport& report, Context& context);
 
