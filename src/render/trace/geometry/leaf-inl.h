@@ -18,14 +18,10 @@ struct LeafRay {
   float ox, oy, oz;
   size_t x, y, z;  ///< rows of a corner
 
-  HWY_INLINE explicit LeafRay(const ShearedRay& r)
-      : ray(r),
-        ox(r.origin[r.kx]),
-        oy(r.origin[r.ky]),
-        oz(r.origin[r.kz]),
-        x(size_t(r.kx) * wide),
-        y(size_t(r.ky) * wide),
-        z(size_t(r.kz) * wide) {}
+  HWY_INLINE explicit LeafRay(const ShearedRay& r) : ray(r), x(size_t(r.kx) * wide), y(size_t(r.ky) * wide), z(size_t(r.kz) * wide) {
+    const float origin[3] = {r.origin.x, r.origin.y, r.origin.z};
+    ox = origin[r.kx], oy = origin[r.ky], oz = origin[r.kz];
+  }
 };
 
 HWY_INLINE Crossing<D8> cross_block(const LeafRay& r, const TriangleBlock& block, int i) {

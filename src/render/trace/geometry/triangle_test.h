@@ -20,11 +20,13 @@ struct ShearedRay {
   int kx, ky, kz;    ///< kz: the axis along which the direction is longest
   float sx, sy, sz;  ///< shear, and 1 / direction along kz
 
+  /// Axes are looked up, not decided on: of rays that go anywhere such branches would be foretold wrong.
   explicit ShearedRay(const Ray& r) : origin(r.origin), direction(r.direction) {
-    const float x = std::abs(r.direction.x), y = std::abs(r.direction.y), z = std::abs(r.direction.z);
-    kz = x > y ? (x > z ? 0 : 2) : y > z ? 1 : 2;
-    kx = kz == 2 ? 0 : kz + 1, ky = kx == 2 ? 0 : kx + 1;
-    sx = direction[kx] / direction[kz], sy = direction[ky] / direction[kz], sz = 1 / direction[kz];
+    const float d[3] = {direction.x, direction.y, direction.z}, size[3] = {std::abs(d[0]), std::abs(d[1]), std::abs(d[2])};
+    const int longer = !(size[0] > size[1]);
+    constexpr int after[3] = {1, 2, 0};
+    kz = size[longer] > size[2] ? longer : 2, kx = after[kz], ky = after[kx];
+    sx = d[kx] / d[kz], sy = d[ky] / d[kz], sz = 1 / d[kz];
   }
 };
 

@@ -59,9 +59,9 @@ struct BoxRay {
 
   explicit BoxRay(const Ray& r) {
     for (int a = 0; a < 3; ++a) {
-      const float d = r.direction[a], away = std::abs(d) < least ? least : std::abs(d);
+      const float d = r.direction[a], away = std::max(std::abs(d), least);
       origin[a] = r.origin[a], backwards[a] = d < 0;
-      const float inverse = backwards[a] ? -1 / away : 1 / away;
+      const float inverse = std::copysign(1.f, backwards[a] ? d : 1.f) / away;
       near_inverse[a] = inverse * (1 - slack), far_inverse[a] = inverse * (1 + slack);
     }
   }
