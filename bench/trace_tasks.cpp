@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The path tracer's trees and rays beside Embree: the mesh, the camera and the rays of the peers' embree_bench.cpp, which reads the same
 // mesh_1M.raw.
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -129,7 +130,7 @@ size_t primary_packets(const Scene1M& s, size_t number) {
       int n = 0;
       for (int k = 0; k < packet_rays; ++k)
         if (x + k % 4 < width && y + k / 4 < height) rays[n++] = s.view.through(x + k % 4, y + k / 4);
-      hits += size_t(__builtin_popcount(s.triangles.nearest_packet(rays, n, out)));
+      hits += size_t(std::popcount(s.triangles.nearest(rays, n, out)));
     }
   return hits;
 }
@@ -163,6 +164,16 @@ void add_trace_tasks(std::vector<Task>& tasks, const std::string& folder) {
         for (size_t i = begin; i < end; ++i) {
           Hit h;
           hits += s.triangles.nearest(s.diffuse[i], h);
+        }
+        return hits;
+      });
+    });
+    add("embree_diffuse", "sixty-four at once", [](const Scene1M& s) {
+      return counted(s.diffuse.size(), rays_per_chunk, [&](size_t begin, size_t end) {
+        size_t hits = 0;
+        for (size_t i = begin; i < end; i += stream_rays) {
+          Hit h[stream_rays];
+          hits += size_t(std::popcount(s.triangles.nearest(&s.diffuse[i], int(std::min(size_t(stream_rays), end - i)), h)));
         }
         return hits;
       });

@@ -103,23 +103,20 @@ uint64_t Geometry::nearest(const Ray* rays, int count, Hit* hits) const {
     for (int i = 0; i < count; ++i) found |= uint64_t(nearest(rays[i], hits[i])) << i;
     return found;
   }
-  Ray inner[packet_rays];
-  Hit h[packet_rays];
+  Ray inner[stream_rays];
+  Hit h[stream_rays];
   float t_max[stream_rays];
   for (int i = 0; i < count; ++i) t_max[i] = rays[i].t_max;
-  for (const auto& o : objects_)
-    for (int first = 0; first < count; first += packet_rays) {
-      const int n = std::min(packet_rays, count - first);
-      for (int k = 0; k < n; ++k) inner[k] = o->inward(rays[first + k]), h[k] = {}, h[k].t = t_max[first + k] * float(o->ratio());
-      const uint32_t met = o->nearest_packet(inner, n, h);
-      for (int k = 0; k < n; ++k) {
-        const int i = first + k;
-        const float t = h[k].t / float(o->ratio());
-        if (!(met >> k & 1) || ((found >> i & 1) && t == t_max[i])) continue;
-        hits[i] = h[k], hits[i].t = t_max[i] = t, hits[i].object = o->item;
-        found |= uint64_t(1) << i;
-      }
+  for (const auto& o : objects_) {
+    for (int i = 0; i < count; ++i) inner[i] = o->inward(rays[i]), h[i] = {}, h[i].t = t_max[i] * float(o->ratio());
+    const uint64_t met = o->nearest_rays(inner, count, h);
+    for (int i = 0; i < count; ++i) {
+      const float t = h[i].t / float(o->ratio());
+      if (!(met >> i & 1) || ((found >> i & 1) && t == t_max[i])) continue;
+      hits[i] = h[i], hits[i].t = t_max[i] = t, hits[i].object = o->item;
+      found |= uint64_t(1) << i;
     }
+  }
   return found;
 }
 

@@ -33,8 +33,8 @@ class Geometry {
 
   /// The nearest hit with 0 < t <= ray.t_max; false leaves `hit` as it is.
   bool nearest(const Ray& ray, Hit& hit) const;
-  /// Of up to most_together rays: with the same result as one by one, and faster where sixteen after each other start at about the same
-  /// place in about the same direction, as those of neighbouring pixels. Bit i tells whether hits[i] was set.
+  /// Of up to most_together rays: with the same result as one by one, and faster, most where sixteen after each other start at about the
+  /// same place in about the same direction, as those of neighbouring pixels. Bit i tells whether hits[i] was set.
   uint64_t nearest(const Ray* rays, int count, Hit* hits) const;
   /// Whether anything is met at 0 < t <= ray.t_max.
   bool blocked(const Ray& ray) const;

@@ -75,9 +75,7 @@ class SurfaceObject : public Geometry::Object {
   bool nearest(const Ray& ray, Hit& hit) const override { return kept_->triangles.nearest(ray, hit); }
   bool blocked(const Ray& ray) const override { return kept_->triangles.blocked(ray); }
   uint64_t blocked_rays(const Ray* rays, int count) const override { return kept_->triangles.blocked(rays, count); }
-  uint32_t nearest_packet(const Ray* rays, int count, Hit* hits) const override {
-    return kept_->triangles.nearest_packet(rays, count, hits);
-  }
+  uint64_t nearest_rays(const Ray* rays, int count, Hit* hits) const override { return kept_->triangles.nearest(rays, count, hits); }
   Place at(const Ray&, const Hit& hit) const override {
     const auto c = kept_->triangles.corners(hit.primitive);
     const Vec3 a(c[0]), ab = Vec3(c[1]) - a, ac = Vec3(c[2]) - a;
@@ -129,10 +127,10 @@ class CopyObject final : public SurfaceObject {
   }
   bool nearest(const Ray& ray, Hit& hit) const override { return kept_->triangles.nearest(into(ray), hit); }
   bool blocked(const Ray& ray) const override { return kept_->triangles.blocked(into(ray)); }
-  uint32_t nearest_packet(const Ray* rays, int count, Hit* hits) const override {
-    Ray moved_rays[packet_rays];
+  uint64_t nearest_rays(const Ray* rays, int count, Hit* hits) const override {
+    Ray moved_rays[stream_rays];
     for (int i = 0; i < count; ++i) moved_rays[i] = into(rays[i]);
-    return kept_->triangles.nearest_packet(moved_rays, count, hits);
+    return kept_->triangles.nearest(moved_rays, count, hits);
   }
   Place at(const Ray& ray, const Hit& hit) const override {
     const Place inner = SurfaceObject::at(ray, hit);
@@ -210,9 +208,9 @@ uint64_t Geometry::Object::blocked_rays(const Ray* rays, int count) const {
   return stopped;
 }
 
-uint32_t Geometry::Object::nearest_packet(const Ray* rays, int count, Hit* hits) const {
-  uint32_t found = 0;
-  for (int i = 0; i < count; ++i) found |= uint32_t(nearest(rays[i], hits[i])) << i;
+uint64_t Geometry::Object::nearest_rays(const Ray* rays, int count, Hit* hits) const {
+  uint64_t found = 0;
+  for (int i = 0; i < count; ++i) found |= uint64_t(nearest(rays[i], hits[i])) << i;
   return found;
 }
 

@@ -18,7 +18,7 @@ class Geometry::Object {
   virtual bool nearest(const Ray& ray, Hit& hit) const = 0;
   virtual bool blocked(const Ray& ray) const = 0;
   virtual uint64_t blocked_rays(const Ray* rays, int count) const;
-  virtual uint32_t nearest_packet(const Ray* rays, int count, Hit* hits) const;
+  virtual uint64_t nearest_rays(const Ray* rays, int count, Hit* hits) const;
   /// A place on the surface in double, and its directions.
   struct Place {
     Vec3 place, error;  ///< error: besides the rounding of `place`

@@ -121,17 +121,7 @@ namespace sg::trace {
 HWY_EXPORT(packet_triangles);
 
 uint32_t Triangles::nearest_packet(const Ray* rays, int count, Hit* hits) const {
-  bool alike = true;
-  const ShearedRay first(rays[0]);
-  for (int i = 0; i < count && alike; ++i) {
-    const Vec3f a = rays[0].direction, b = rays[i].direction;
-    alike = can_trace(rays[i]) && ShearedRay(rays[i]).kz == first.kz && (a.x < 0) == (b.x < 0) && (a.y < 0) == (b.y < 0) &&
-            (a.z < 0) == (b.z < 0);
-  }
-  if (alike && count > 1 && !tree_.empty()) return HWY_DYNAMIC_DISPATCH(packet_triangles)(*this, rays, count, first, hits);
-  uint32_t found = 0;
-  for (int i = 0; i < count; ++i) found |= uint32_t(nearest(rays[i], hits[i])) << i;
-  return found;
+  return HWY_DYNAMIC_DISPATCH(packet_triangles)(*this, rays, count, ShearedRay(rays[0]), hits);
 }
 
 }  // namespace sg::trace

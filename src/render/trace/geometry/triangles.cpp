@@ -43,6 +43,16 @@ Plane<TreeRecord> records_of(const TriangleInput& in) {
   return records;
 }
 
+/// Whether a packet's boxes and shears serve all of them.
+bool alike(const Ray* rays, int count) {
+  const int axis = ShearedRay(rays[0]).kz;
+  const Vec3f a = rays[0].direction;
+  return std::all_of(rays, rays + count, [&](const Ray& r) {
+    const Vec3f b = r.direction;
+    return can_trace(r) && ShearedRay(r).kz == axis && (a.x < 0) == (b.x < 0) && (a.y < 0) == (b.y < 0) && (a.z < 0) == (b.z < 0);
+  });
+}
+
 }  // namespace
 
 Triangles::Triangles(const TriangleInput& in, Context& context) {
@@ -75,6 +85,21 @@ std::array<Vec3f, 3> Triangles::corners(uint32_t triangle) const {
   for (size_t c = 0; c < 3; ++c)
     for (int a = 0; a < 3; ++a) out[c][a] = b.corner[c][a][place % wide];
   return out;
+}
+
+uint64_t Triangles::nearest(const Ray* rays, int count, Hit* hits) const {
+  if (tree_.empty()) return 0;
+  uint64_t found = 0;
+  const auto in_packet = [&](int first) { return count - first > 1 && alike(rays + first, std::min(packet_rays, count - first)); };
+  for (int first = 0, end; first < count; first = end) {
+    const bool packet = in_packet(first);
+    end = std::min(first + packet_rays, count);
+    while (!packet && end < count && !in_packet(end)) end = std::min(end + packet_rays, count);
+    const uint64_t here =
+        packet ? nearest_packet(rays + first, end - first, hits + first) : nearest_in_turns(rays + first, end - first, hits + first);
+    found |= here << first;
+  }
+  return found;
 }
 
 bool Triangles::nearest_by_reference(const Ray& ray, Hit& hit) const {

@@ -51,9 +51,9 @@ class Triangles {
   bool blocked(const Ray& ray) const;
   /// The same of up to stream_rays: bit i of the result of rays[i]. Faster than one by one, the more so the more of their way they share.
   uint64_t blocked(const Ray* rays, int count) const;
-  /// Like nearest() for rays that start and go in about the same way (16 at a time), up to twice as fast; others are right, too.
-  /// Sets bit i of the result where hits[i] was found.
-  uint32_t nearest_packet(const Ray* rays, int count, Hit* hits) const;
+  /// The same as nearest() for each of up to stream_rays: bit i of the result where hits[i] was found. Twice as fast where sixteen after
+  /// each other start and go in about the same way, and faster for others, too.
+  uint64_t nearest(const Ray* rays, int count, Hit* hits) const;
   /// The same by one triangle after the other.
   bool nearest_by_reference(const Ray& ray, Hit& hit) const;
 
@@ -67,6 +67,11 @@ class Triangles {
   size_t bytes() const { return tree_.bytes() + blocks_.size() * sizeof(TriangleBlock) + place_.size() * sizeof(place_[0]); }
 
  private:
+  /// Of up to packet_rays with the same longest axis and signs.
+  uint32_t nearest_packet(const Ray* rays, int count, Hit* hits) const;
+  /// Of any, a few in turns.
+  uint64_t nearest_in_turns(const Ray* rays, int count, Hit* hits) const;
+
   WideBvh tree_;
   Plane<TriangleBlock> blocks_;
   Plane<uint32_t> place_;  ///< of each triangle: block x 8 + place in it; UINT32_MAX: in none

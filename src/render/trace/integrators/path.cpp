@@ -116,16 +116,27 @@ class PathIntegrator : public Integrator {
       }
       shadows.settle();
       if (going == 0) return;
-      met = 0;
-      for (uint64_t bits = going; bits; bits &= bits - 1) {
-        const auto i = size_t(std::countr_zero(bits));
-        hits[i] = {}, met |= uint64_t(world.geometry().nearest(paths[i].ray, hits[i])) << i;
-      }
+      met = next_hits(world.geometry(), paths, going, hits);
     }
   }
 
  private:
   using Integrator::along;
+
+  /// What those that go on meet: bit i where hits[i] was found.
+  static uint64_t next_hits(const Geometry& geometry, std::span<const Path> paths, uint64_t going, Hit* hits) {
+    Ray rays[most_paths];
+    Hit found[most_paths];
+    int count = 0;
+    for (uint64_t bits = going; bits; bits &= bits - 1) rays[count++] = paths[size_t(std::countr_zero(bits))].ray;
+    const uint64_t of_rays = geometry.nearest(rays, count, found);
+    uint64_t met = 0;
+    for (int k = 0; k < count; ++k, going &= going - 1) {
+      const int i = std::countr_zero(going);
+      hits[i] = found[k], met |= (of_rays >> k & 1) << i;
+    }
+    return met;
+  }
 
   /// On to the end. `past_media`: what the path meets of media before the first surface is known.
   void follow(const Following& f, Path& path, bool past_media) const {

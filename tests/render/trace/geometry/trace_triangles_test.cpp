@@ -62,10 +62,10 @@ size_t disagreements(const Triangles& tree, size_t rays, MakeRay&& make_ray) {
     wrong += tree.blocked(ray) != found;
     hits += found;
     packet.push_back(ray), expected.push_back(truth), met.push_back(found);
-    if (packet.size() < 16 && i + 1 < rays) continue;
-    Hit out[packet_rays];
+    if (packet.size() < 48 && i + 1 < rays) continue;
+    Hit out[stream_rays];
     for (size_t k = 0; k < packet.size(); ++k) out[k].t = packet[k].t_max;
-    const uint32_t bits = tree.nearest_packet(packet.data(), int(packet.size()), out);
+    const uint64_t bits = tree.nearest(packet.data(), int(packet.size()), out);
     for (size_t k = 0; k < packet.size(); ++k) wrong += bool(bits >> k & 1) != met[k] || !same(out[k], expected[k]);
     packet.clear(), expected.clear(), met.clear();
   }
@@ -164,7 +164,7 @@ TEST_CASE("trace: the same bytes for every vector width and number of threads") 
         rays[k] = {
             {0, 0, 3},
             normalize(Vec3f(uniform(3, i, -0.3, 0.3) + 0.002f * float(k % 4), uniform(4, i, -0.3, 0.3) + 0.002f * float(k / 4), -1))};
-      tree.nearest_packet(rays, packet_rays, out);
+      tree.nearest(rays, packet_rays, out);
       hits.insert(hits.end(), out, out + packet_rays);
     }
     std::vector<char> bytes(hits.size() * sizeof(Hit) + tree.tree().nodes().size() * sizeof(WideNode));

@@ -22,7 +22,7 @@ size_t leaks(const Triangles& tree, Vec3f start) {
         n += !tree.nearest(ray, h) || !tree.blocked(ray);
         Hit packet[2];
         const Ray two[2] = {ray, {start, normalize(at * 1.00001f - start)}};
-        n += (tree.nearest_packet(two, 2, packet) & 1) == 0;
+        n += (tree.nearest(two, 2, packet) & 1) == 0;
       }
   }
   return n;
