@@ -21,6 +21,7 @@
 #include "pipeline/picture/scene/picture_scene.h"
 #include "pipeline/picture/settle_choices.h"
 #include "scene/choose/coloring.h"
+#include "scene/show/surface.h"
 #include "scene/show/volume.h"
 
 namespace sg {
