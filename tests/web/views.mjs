@@ -129,7 +129,7 @@ async function growing(test, o, browser) {
       await word(name).locator("input[type=text]").press("Enter");
     };
     await andSettle(page, () => fill("noise", "0.002"));
-    await andSettle(page, () => fill("paths", "96"));
+    await andSettle(page, () => fill("paths", "240"));
     heard.frames.length = 0;
     await page.evaluate(keepPictures);
     if ((await word("integrator").count()) === 0) await page.click(".more > summary");
