@@ -30,3 +30,20 @@ TEST_CASE("adaptive samples: edges are those of full supersampling, smooth parts
   CHECK(largest_difference(shot(3, 1.0 / 64), shot(3, 0)) < 1.0f / 32);  // squares that are no whole tiles
   CHECK(same_bytes(shot(1, 0.5), one));
 }
+
+TEST_CASE("adaptive samples: silhouettes of level sets are those of two samples, without being asked for") {
+  for (const RayFunction mode : {RayFunction::isosurface, RayFunction::first_hit}) {
+    VolumeItem v = item(grid(cube(33, -1, 1), [](Vec3 p) { return 1 - length(p); }), one_color({0.5f, 0.5f, 0.5f}), {{{0, 1}}});
+    v.mode = mode, v.levels = {0.3}, v.shaded = false;
+    const Scene scene = scene_of({v});
+    const Camera camera = fit_camera(scene_bounds(scene), {0.3, 0.2, 1}, {0, 1, 0}, 1.2);
+    Context context;
+    const auto shot = [&](int samples) {
+      RenderOptions options;
+      options.width = 96, options.height = 80, options.samples = samples;
+      return render(scene, camera, options, context);
+    };
+    CHECK(largest_difference(shot(0), shot(2)) < 1.0f / 32);
+    CHECK(largest_difference(shot(1), shot(2)) > 0.2f);
+  }
+}

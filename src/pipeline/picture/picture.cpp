@@ -56,7 +56,9 @@ void describe(Schema& s, PictureParams& p) {
   s("triad", p.triad, "Draw the orientation axes.");
   s("letters", p.letters,
     "Draw at the edges of a scan's picture where they lie in the patient: right, left, anterior, posterior, inferior, superior.");
-  s("samples", p.samples, "Samples per pixel and axis; 0 chooses 2 for surfaces, 1 for volumes.").range(0, 4);
+  s("samples", p.samples,
+    "Samples per pixel and axis; 0 chooses 2 for surfaces (of level sets that rays meet where they differ), 1 for volumes.")
+      .range(0, 4);
   s("adaptive", p.adaptive,
     "Above 0: take all samples only where neighbouring pixels differ by more than this share of full scale; 0: take all of them "
     "everywhere.")

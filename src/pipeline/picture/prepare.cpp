@@ -74,7 +74,8 @@ void note_colors(const std::vector<StatedShow>& shows, const std::vector<Data>& 
       if (!field) field = shown_field(*kind, params, *d);
     });
     if (!field) continue;
-    const bool levels = kind->is<VolumeShow>() && params.as<VolumeShow>().mode == RayFunction::isosurface;  // of one colour each
+    const VolumeShow* volume = kind->is<VolumeShow>() ? &params.as<VolumeShow>() : nullptr;
+    const bool levels = volume && volume->mode == RayFunction::isosurface && volume->color_by.empty() && volume->opacity_by.empty();
     const std::string note = fmt::format("{}: {} '{}'", kind->name, levels ? "isosurfaces of" : "coloured by", field->name);
     if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
   }

@@ -182,10 +182,11 @@ void choose_transfer(const VolumeShow& p, const Field& field, VolumeItem& item, 
   if (info_of(item.mode).absorbs) context.info(why);
 }
 
-/// Fields that are constant in each cell have no level sets: they become fields of the points. (Grids are seen between the middles of their
-/// cells, and so are AMR grids.)
+/// Fields that are constant in each cell have no level sets: they become fields of the points. (Even grids are seen between the middles of
+/// their cells, and so are AMR grids.)
 DatasetPtr without_steps(const DatasetPtr& data, const Fields& fields, Context& context) {
-  if (is_lattice(data->mesh()) || data->as<AmrGrid>() || fields.opacity->association != Association::cell) return data;
+  const bool between_middles = data->as<UniformGrid>() || data->as<RectilinearGrid>() || data->as<AmrGrid>();
+  if (between_middles || fields.opacity->association != Association::cell) return data;
   CellToPointParams of;
   of.fields = {fields.opacity->name};
   if (fields.color != fields.opacity && fields.color->association == Association::cell) of.fields.push_back(fields.color->name);

@@ -5,6 +5,7 @@
 
 #include "color/parse_color.h"
 #include "color/transfer_text.h"
+#include "data/cells/point_positions.h"
 #include "data/field_ops.h"
 #include "filter/field/sampling/point_cell.h"
 #include "scene/choose/volume/volume_support.h"
@@ -148,6 +149,20 @@ TEST_CASE("volume words: one level set has the colour of surfaces and no legend,
   for (const char* stated : {"map=viridis", "range=0,1", "colors=0:red,1:blue", "color_by=T"})
     CHECK_MESSAGE(shown({"levels=0.5", stated}).first, stated);
   CHECK(shown({"levels=0.5,0.8"}).first);
+}
+
+TEST_CASE("volume words: the isosurface of a field of cells is that of its mean at the points, and told, where cells have no middles") {
+  const DatasetPtr even = test::cube_of(4, "r", [](Vec3 p) { return length(p); });
+  CurvilinearGrid bent;
+  bent.dims = {4, 4, 4}, bent.points.xyz = point_positions(even->mesh());
+  DatasetParts parts;
+  parts.mesh = std::move(bent);
+  std::vector<float> v(even->cell_count());
+  for (size_t i = 0; i < v.size(); ++i) v[i] = float(i);
+  parts.fields.add({"c", Association::cell, Array::from_vector(v), "", Role::scalars});
+  const Made m = show(make_dataset(parts), {"field=c", "mode=isosurface", "levels=9", "map=gray"});
+  CHECK(m.item.association == Association::point);
+  CHECK(contains(m.notes, "averaged to the points"));
 }
 
 TEST_CASE("volume words: what cannot be is refused before any data is read, all mistakes at once") {

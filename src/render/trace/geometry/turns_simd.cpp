@@ -21,14 +21,12 @@ struct Turn {
   Hit* hit;
   int number;
   bool found = false;
-  uint32_t at = 0;
-  size_t top = 0;
-  uint64_t stack[WideBvh::stack_size];
+  Way way;
 
   Turn(const Ray& ray, Hit& hit, int number) : sheared(ray), leaf(sheared), nodes(BoxRay(ray)), hit(&hit), number(number) {}
 };
 
-constexpr int turns = 16;
+constexpr int turns = 16;  // more leave the cache, fewer do not fill the time
 
 uint64_t nearest_rays(const Triangles& in, const Ray* rays, int count, Hit* hits) {
   const WideNode* nodes = in.tree().nodes().data();
@@ -47,40 +45,15 @@ uint64_t nearest_rays(const Triangles& in, const Ray* rays, int count, Hit* hits
     return true;
   };
   while (busy < turns && start(busy)) ++busy;
-  HWY_ALIGN float near[wide];
   while (busy > 0) {
     for (int slot = 0; slot < busy; ++slot) {
       Turn& r = *going[slot];
-      bool pop = true;
-      if (!(r.at & leaf_bit)) {
-        const WideNode& n = nodes[r.at];
-        uint32_t bits = r.nodes.meet(n, r.hit->t, near);
-        if (bits) {
-          const auto entry = [&] {
-            const int i = std::countr_zero(bits);
-            bits &= bits - 1;
-            children.prefetch(n.child[i]);
-            return uint64_t(std::bit_cast<uint32_t>(near[i])) << 32 | n.child[i];
-          };
-          uint64_t nearest = entry();
-          for (const size_t base = r.top; bits; ++r.top) {
-            const uint64_t e = entry(), farther = std::max(e, nearest);
-            nearest = std::min(e, nearest);
-            size_t k = r.top;
-            for (; k > base && r.stack[k - 1] < farther; --k) r.stack[k] = r.stack[k - 1];
-            r.stack[k] = farther;
-          }
-          r.at = uint32_t(nearest), pop = false;
-        }
-      } else if (nearest_in(r.leaf, blocks[r.at & ~leaf_bit], *r.hit, r.found)) {
+      if (!r.way.at_leaf()) {
+        if (r.way.enter(nodes, r.nodes, r.hit->t, children)) continue;
+      } else if (nearest_in(r.leaf, blocks[r.way.leaf()], *r.hit, r.found)) {
         in.fetch(r.hit->primitive);
       }
-      if (!pop) continue;
-      while (r.top > 0 && std::bit_cast<float>(uint32_t(r.stack[r.top - 1] >> 32)) > r.hit->t) --r.top;
-      if (r.top > 0) {
-        r.at = uint32_t(r.stack[--r.top]);
-        continue;
-      }
+      if (r.way.next(r.hit->t)) continue;
       found |= uint64_t(r.found) << r.number;
       if (!start(slot)) std::swap(going[slot--], going[--busy]);
     }

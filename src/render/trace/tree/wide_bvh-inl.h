@@ -102,44 +102,62 @@ struct NodeRay {
   }
 };
 
+/// How far a ray has come, near ones first: where it is, and what waits, the nearest last.
+class Way {
+ public:
+  HWY_INLINE bool at_leaf() const { return at_ & leaf_bit; }
+  HWY_INLINE uint32_t leaf() const { return at_ & ~leaf_bit; }
+  /// On to the nearest child of the node that may be met by t_max, the others wait; false where there is none.
+  template <class Bounds>
+  HWY_INLINE bool enter(const WideNode* nodes, const Bounds& ray, float t_max, const Children& children) {
+    const WideNode& n = nodes[at_];
+    HWY_ALIGN float near[wide];
+    uint32_t bits = ray.meet(n, t_max, near);
+    if (bits == 0) return false;
+    const auto entry = [&] {
+      const int i = std::countr_zero(bits);
+      bits &= bits - 1;
+      children.prefetch(n.child[i]);
+      return uint64_t(std::bit_cast<uint32_t>(near[i])) << 32 | n.child[i];
+    };
+    uint64_t nearest = entry();
+    for (const size_t base = top_; bits; ++top_) {
+      const uint64_t e = entry(), farther = std::max(e, nearest);
+      nearest = std::min(e, nearest);
+      size_t k = top_;
+      for (; k > base && waiting_[k - 1] < farther; --k) waiting_[k] = waiting_[k - 1];
+      waiting_[k] = farther;
+    }
+    at_ = uint32_t(nearest);
+    return true;
+  }
+  /// On to what waits; false where nothing may be met by t_max any more.
+  HWY_INLINE bool next(float t_max) {
+    do {
+      if (top_ == 0) return false;
+      --top_;
+    } while (std::bit_cast<float>(uint32_t(waiting_[top_] >> 32)) > t_max);
+    at_ = uint32_t(waiting_[top_]);
+    return true;
+  }
+
+ private:
+  uint32_t at_ = 0;
+  size_t top_ = 0;
+  // Where the box is entered in the upper half: t >= 0, whose bits are ordered like the numbers.
+  uint64_t waiting_[WideBvh::stack_size];
+};
+
 /// Calls leaf(number), near ones first, for each leaf that may be met by t_max (read again after each call); it returns true to stop.
 template <class Bounds, class Leaf>
 HWY_INLINE void walk(const WideNode* nodes, const Bounds& ray, const float& t_max, const Children& children, Leaf&& leaf) {
-  // Where the box is entered in the upper half: t >= 0, whose bits are ordered like the numbers.
-  uint64_t stack[WideBvh::stack_size];
-  HWY_ALIGN float near[wide];
-  size_t top = 0;
-  uint32_t at = 0;
-  for (;;) {
-    while (!(at & leaf_bit)) {
-      const WideNode& n = nodes[at];
-      uint32_t bits = ray.meet(n, t_max, near);
-      auto entry = [&] {
-        const int i = std::countr_zero(bits);
-        bits &= bits - 1;
-        const uint32_t child = n.child[i];
-        children.prefetch(child);
-        return uint64_t(std::bit_cast<uint32_t>(near[i])) << 32 | child;
-      };
-      if (bits == 0) goto next;
-      uint64_t nearest = entry();
-      // The nearest is gone on with, the others wait, the nearer the higher.
-      for (const size_t base = top; bits; ++top) {
-        const uint64_t e = entry(), farther = std::max(e, nearest);
-        nearest = std::min(e, nearest);
-        size_t k = top;
-        for (; k > base && stack[k - 1] < farther; --k) stack[k] = stack[k - 1];
-        stack[k] = farther;
-      }
-      at = uint32_t(nearest);
+  for (Way way;;) {
+    if (!way.at_leaf()) {
+      if (way.enter(nodes, ray, t_max, children)) continue;
+    } else if (leaf(way.leaf())) {
+      return;
     }
-    if (leaf(at & ~leaf_bit)) return;
-  next:
-    do {
-      if (top == 0) return;
-      --top;
-    } while (std::bit_cast<float>(uint32_t(stack[top] >> 32)) > t_max);
-    at = uint32_t(stack[top]);
+    if (!way.next(t_max)) return;
   }
 }
 
